@@ -1,0 +1,127 @@
+"""A finished picture.
+
+What flows in: pixels encoded for display, and where they came from. What flows out: an immutable
+``Picture`` that saves itself and shows itself in a notebook. Knows nothing about how the pixels
+were made.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.film.png import encode
+from distal.film.replacement import SaveError, check_destination, replacement
+from distal.version import __version__
+
+SUFFIXES = (".png",)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Provenance:
+    """Where a picture came from: what is needed to render it again.
+
+    Attributes:
+        source: Name of the scene's file or function, as the author knows it; may be empty.
+        source_hash: Hash of the source that was compiled; may be empty.
+        parameters: The value of each parameter by name, as plain JSON values.
+        time: Seconds.
+    """
+
+    source: str = ""
+    source_hash: str = ""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    time: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """Pixels encoded for display, and where they came from.
+
+    Attributes:
+        array: float32, (height, width, 4), top row first: red, green, blue encoded for display
+            and straight alpha. Read-only. Values outside 0 to 1, infinities and NaN stay as the
+            scene made them; saving clamps them, and makes NaN 0.
+        provenance: Where the picture came from; it travels in the file's metadata.
+        stats: What rendering took: times in seconds and how the work was done.
+    """
+
+    array: NDArray[np.float32]
+    provenance: Provenance = field(default_factory=Provenance)
+    stats: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        shape = self.array.shape
+        if len(shape) != 3 or shape[2] != 4 or 0 in shape:
+            raise ValueError(f"a picture's array has the shape (height, width, 4), not {shape}")
+        if self.array.dtype != np.float32:
+            raise ValueError(f"a picture's array is of float32, not {self.array.dtype}")
+        view = self.array.view()
+        view.setflags(write=False)
+        object.__setattr__(self, "array", view)
+        object.__setattr__(self, "stats", MappingProxyType(dict(self.stats)))
+
+    @property
+    def width(self) -> int:
+        """Pixels from left to right."""
+        return int(self.array.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Pixels from top to bottom."""
+        return int(self.array.shape[0])
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """The texts that a saved file carries."""
+        origin = self.provenance
+        return {
+            "Software": f"distal {__version__}",
+            "distal:version": __version__,
+            "distal:source": origin.source,
+            "distal:source-hash": origin.source_hash,
+            "distal:parameters": json.dumps(dict(origin.parameters), sort_keys=True),
+            "distal:time": repr(float(origin.time)),
+            "distal:size": f"{self.width}x{self.height}",
+        }
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the picture; the suffix says how. The file appears whole or not at all.
+
+        PNG: 8 bits with sRGB declared, nearest rounding, metadata as in ``metadata``.
+
+        Raises:
+            SaveError: The suffix is unknown, or the file cannot be written.
+        """
+        destination = Path(path)
+        check_savable(destination)
+        with replacement(destination) as file:
+            file.write(self._repr_png_())
+
+    def _repr_png_(self) -> bytes:
+        """The bytes that a notebook shows."""
+        return encode(self.array, self.metadata)
+
+    def __repr__(self) -> str:
+        name = self.provenance.source
+        return f"<Picture {self.width}x{self.height}{f' of {name}' if name else ''}>"
+
+
+def check_savable(path: Path) -> None:
+    """Refuse a path that ``Picture.save`` would refuse, before any work is spent on it.
+
+    Raises:
+        SaveError: The suffix is unknown, or no file can stand there.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        named = f"the suffix '{path.suffix}'" if path.suffix else "no suffix"
+        raise SaveError(f"cannot write {path}: it has {named}, pictures end in {SUFFIXES[0]}")
+    check_destination(path)
