@@ -1,0 +1,1 @@
+"""distal: 3D scenes written as Python functions, seen everywhere."""
