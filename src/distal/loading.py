@@ -1,0 +1,148 @@
+"""Finding scenes: a file's path, or the name of a gallery example, to the object to compile.
+
+What flows in: ``FILE[:NAME]``. What flows out: a ``Func`` or ``Image``. A file is run once from a
+snapshot of its text, so that a later edit never mixes in.
+"""
+
+from __future__ import annotations
+
+import linecache
+import sys
+import types
+from pathlib import Path
+
+from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.lang.functions import Func, Image
+
+_DEFAULT_NAMES = ("scene", "picture")
+
+
+def gallery() -> dict[str, Path]:
+    """The examples that come with the package, by name, in the order of their names."""
+    installed = Path(__file__).parent / "gallery"
+    checkout = Path(__file__).parents[2] / "examples"
+    folder = installed if installed.is_dir() else checkout
+    return {path.stem: path for path in sorted(folder.glob("*.py"))} if folder.is_dir() else {}
+
+
+def load(path: str | Path, name: str | None = None) -> Func:
+    """Load a scene from a file.
+
+    Args:
+        path: A Python file, or ``example:NAME`` for one of the gallery.
+        name: Which of its functions. Without it: the only ``@image`` defined in the file, else
+            the one called ``scene`` or ``picture``.
+
+    Raises:
+        LoadError: There is no such file or name, or the file fails when run.
+        CompileError: The file is not valid Python.
+    """
+    file = _find(str(path))
+    module = _run(file)
+    return _pick(module, file, name)
+
+
+def _find(path: str) -> Path:
+    if path.startswith("example:"):
+        wanted = path.removeprefix("example:")
+        examples = gallery()
+        if wanted not in examples:
+            raise LoadError(f"there is no example '{wanted}'; examples: {', '.join(examples)}")
+        return examples[wanted]
+    file = Path(path)
+    if file.is_dir():
+        raise LoadError(f"{file} is a folder, not a scene file")
+    if not file.exists():
+        raise LoadError(f"there is no file {file}")
+    return file
+
+
+def _run(file: Path) -> types.ModuleType:
+    text = _read(file)
+    name = "distal_scene_" + "".join(c if c.isalnum() else "_" for c in file.stem)
+    module = types.ModuleType(name)
+    module.__file__ = str(file)
+    filename = str(file)
+    linecache.cache[filename] = (len(text), None, text.splitlines(keepends=True), filename)
+    try:
+        code = compile(text, filename, "exec", dont_inherit=True)
+    except SyntaxError as error:
+        raise _syntax_error(error, filename) from None
+    except ValueError as error:  # a NUL byte
+        raise LoadError(f"{file} is not Python source: {error}") from None
+    # Decorators look their module up; neighbours of the file can be imported, as in a script.
+    sys.modules[name] = module
+    folder = str(file.resolve().parent)
+    sys.path.insert(0, folder)
+    try:
+        exec(code, module.__dict__)
+    except CompileError:
+        raise
+    except SystemExit as error:
+        raise LoadError(f"{file} left with sys.exit({error.code!r}) while it was loaded") from None
+    except Exception as error:
+        raise LoadError(_failure(file, error)) from error
+    finally:
+        sys.path.remove(folder)
+    return module
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise LoadError(f"{file} is not text in UTF-8") from None
+    except OSError as error:
+        raise LoadError(f"cannot read {file}: {error.strerror}") from None
+
+
+def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
+    line = error.lineno or 1
+    text = (error.text or "").rstrip("\n")
+    start = max((error.offset or 1) - 1, 0)
+    same_line = error.end_lineno == error.lineno and error.end_offset
+    end = error.end_offset - 1 if same_line and error.end_offset else len(text)
+    span = Span(filename, line, start, max(end, start + 1), text, line)
+    return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
+
+
+def _failure(file: Path, error: Exception) -> str:
+    """Say where in the author's file an exception came from, in a line or two."""
+    line = None
+    trace = error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == str(file):
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    place = f"{file}:{line}" if line is not None else str(file)
+    lines = [f"{type(error).__name__}: {error}", f"  --> {place}"]
+    if line is not None:
+        lines.append(f"  {linecache.getline(str(file), line).strip()}")
+    return "\n".join(lines)
+
+
+def _pick(module: types.ModuleType, file: Path, name: str | None) -> Func:
+    found = {key: value for key, value in vars(module).items() if isinstance(value, Func)}
+    if name is not None:
+        if name not in found:
+            raise LoadError(f"{file} has no @image or @func '{name}'; {_listed(found)}")
+        return found[name]
+    images = {
+        key: value
+        for key, value in found.items()
+        if isinstance(value, Image) and value.python_function.__module__ == module.__name__
+    }
+    if len(images) == 1:
+        return next(iter(images.values()))
+    for wanted in _DEFAULT_NAMES:
+        if wanted in images:
+            return images[wanted]
+    if not images:
+        raise LoadError(f"{file} defines no @image; {_listed(found)}")
+    raise LoadError(f"{file} defines several images; say which: {file}:NAME; {_listed(images)}")
+
+
+def _listed(found: dict[str, Func]) -> str:
+    if not found:
+        return "it has no scene code at all"
+    return f"it has: {', '.join(found)}"
