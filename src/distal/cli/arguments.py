@@ -1,0 +1,116 @@
+"""What the words of the command line mean.
+
+What flows in: texts. What flows out: plain values, or ``UsageError`` with one clear message. Knows
+neither typer nor how anything is rendered.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Final
+
+from distal.lang.parameter_values import Value
+from distal.lang.parameters import Parameter
+
+LARGEST_SIDE: Final = 16384  # of a picture in pixels: 4 GiB as a square of float32 RGBA
+EXAMPLE_PREFIX: Final = "example:"
+
+
+class UsageError(Exception):
+    """A command line that does not say what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneReference:
+    """A scene on the command line: a file, or an example, and the name within, if given."""
+
+    file: str
+    name: str | None
+    is_example: bool
+
+
+def read_scene(text: str) -> SceneReference:
+    """Take FILE[:NAME] or example:NAME[:NAME] apart."""
+    is_example = text.startswith(EXAMPLE_PREFIX)
+    rest = text.removeprefix(EXAMPLE_PREFIX)
+    file, colon, name = rest.rpartition(":")
+    # A colon may belong to the file's own name, or to a drive (C:\scene.py).
+    if not colon or not name.isidentifier() or (not is_example and Path(rest).exists()):
+        file, name = rest, ""
+    if not file:
+        raise UsageError(f"'{text}' names no {'example' if is_example else 'file'}")
+    return SceneReference(file, name or None, is_example)
+
+
+def locate(scene: SceneReference, gallery: Mapping[str, Path]) -> Path:
+    """The file of a scene; the gallery is asked for examples only."""
+    if not scene.is_example:
+        return Path(scene.file)
+    if scene.file not in gallery:
+        close = get_close_matches(scene.file, gallery, 1)
+        meant = f"; did you mean {EXAMPLE_PREFIX}{close[0]}?" if close else ""
+        names = ", ".join(sorted(gallery)) or "none"
+        raise UsageError(f"there is no example '{scene.file}'{meant} (examples: {names})")
+    return gallery[scene.file]
+
+
+def read_size(text: str) -> tuple[int, int]:
+    """Width and height from WIDTHxHEIGHT."""
+    match = re.fullmatch(r"\s*([0-9]{1,9})\s*[xX]\s*([0-9]{1,9})\s*", text)
+    if match is None:
+        raise UsageError(f"a size is WIDTHxHEIGHT in pixels, like 640x480, not '{text:.40}'")
+    width, height = int(match[1]), int(match[2])
+    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
+        raise UsageError(f"each side has 1 to {LARGEST_SIDE} pixels, not {width}x{height}")
+    return width, height
+
+
+def read_time(text: str) -> float:
+    """Finite seconds."""
+    try:
+        time = float(text)
+    except ValueError:
+        raise UsageError(f"a time is a number of seconds, not '{text:.40}'") from None
+    if not math.isfinite(time):
+        raise UsageError(f"a time is finite, not {time}")
+    return time
+
+
+def read_assignments(texts: Iterable[str], parameters: Sequence[Parameter]) -> dict[str, Value]:
+    """The values of ``name=value`` texts, each checked against its parameter.
+
+    Raises:
+        UsageError: With the list of parameters, since the author of a command line may not know
+            the scene.
+    """
+    known = {parameter.name: parameter for parameter in parameters}
+    values: dict[str, Value] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip()
+        if not equals or not name:
+            raise UsageError(f"--set takes name=value, not '{text:.60}'\n{_listing(parameters)}")
+        if name not in known:
+            close = get_close_matches(name, known, 1)
+            meant = f"; did you mean '{close[0]}'?" if close else ""
+            raise UsageError(f"there is no parameter '{name:.60}'{meant}\n{_listing(parameters)}")
+        if name in values:
+            raise UsageError(f"--set gives '{name}' twice")
+        try:
+            values[name] = known[name].parse(value)
+        except ValueError as error:
+            raise UsageError(f"--set {name}: {error}\n{_listing(parameters)}") from None
+    return values
+
+
+def _listing(parameters: Sequence[Parameter]) -> str:
+    if not parameters:
+        return "this scene has no parameters"
+    width = max(len(p.name) for p in parameters)
+    rows = (f"  {p.name.ljust(width)}  {p.describe()}" for p in parameters)
+    return "\n".join(("parameters:", *rows))

@@ -1,0 +1,207 @@
+"""What this machine can do for distal, and what would mend what is missing.
+
+What flows in: nothing but the machine. What flows out: ``Finding`` rows. Nothing here fails: what
+cannot be found out becomes a finding too. Knows nothing of how findings are shown.
+"""
+
+from __future__ import annotations
+
+import ctypes.util
+import importlib.metadata
+import importlib.util
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Any, Final
+
+from distal.version import __version__
+
+
+class State(Enum):
+    """How a finding stands."""
+
+    READY = "ready"
+    OPTIONAL = "optional"  # missing, and only some things need it
+    BROKEN = "broken"  # missing or faulty, and rendering needs it
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One fact about the machine.
+
+    Attributes:
+        area: The heading it stands under.
+        subject: What was looked at.
+        state: How it stands.
+        detail: What was found.
+        remedy: The command or setting that mends it, or "".
+    """
+
+    area: str
+    subject: str
+    state: State
+    detail: str
+    remedy: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """A package of the registry; ``extra`` is the extra that brings it, "" for the core."""
+
+    name: str
+    extra: str
+    purpose: str
+
+
+PACKAGES: Final = (
+    Package("numpy", "", "arrays and the reference"),
+    Package("llvmlite", "", "the CPU device"),
+    Package("pillow", "", "PNG files"),
+    Package("typer", "", "this command"),
+    Package("rich", "", "this command"),
+    Package("wgpu", "gpu", "GPU work"),
+    Package("rendercanvas", "gpu", "windows"),
+    Package("glfw", "gpu", "windows"),
+    Package("av", "video", "video files"),
+    Package("OpenEXR", "exr", "EXR files"),
+    Package("anywidget", "notebook", "sliders in notebooks"),
+)
+
+_GPU_TIMEOUT_S: Final = 30  # a driver that hangs must not take the doctor along
+_GPU_QUESTION: Final = """
+import json, wgpu
+print(json.dumps([dict(a.info) for a in wgpu.gpu.enumerate_adapters_sync()], default=str))
+"""
+
+
+def examine() -> list[Finding]:
+    """Look at everything; takes a few seconds where a GPU driver has to start."""
+    return [
+        finding
+        for look in (_python, _cpu, _cache, _packages, _gpu, _system)
+        for finding in _safely(look)
+    ]
+
+
+def _safely(look: Callable[[], Iterator[Finding]]) -> Iterator[Finding]:
+    try:
+        yield from look()
+    except Exception as error:  # whatever a broken installation throws is the finding
+        area = look.__name__.strip("_")
+        yield Finding(area, "examination", State.BROKEN, f"{type(error).__name__}: {error}")
+
+
+def _python() -> Iterator[Finding]:
+    version = platform.python_version()
+    supported = sys.version_info >= (3, 11)
+    yield Finding(
+        "python",
+        platform.python_implementation(),
+        State.READY if supported else State.BROKEN,
+        version,
+        "" if supported else "install Python 3.11 or newer",
+    )
+    yield Finding("python", "distal", State.READY, f"{__version__} in {Path(__file__).parent}")
+    yield Finding("python", "system", State.READY, platform.platform())
+
+
+def _cpu() -> Iterator[Finding]:
+    yield Finding("cpu", "model", State.READY, _cpu_model())
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    yield Finding("cpu", "threads", State.READY, f"{usable} usable of {os.cpu_count()}")
+
+
+def _cpu_model() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    named = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(named, platform.machine())
+
+
+def _cache() -> Iterator[Finding]:
+    yield from ()
+
+
+def _packages() -> Iterator[Finding]:
+    for package in PACKAGES:
+        area = f"packages [{package.extra}]" if package.extra else "packages"
+        try:
+            version = importlib.metadata.version(package.name)
+        except importlib.metadata.PackageNotFoundError:
+            remedy = (
+                f"pip install 'distal[{package.extra}]'"
+                if package.extra
+                else f"pip install {package.name}"
+            )
+            state = State.OPTIONAL if package.extra else State.BROKEN
+            yield Finding(area, package.name, state, f"missing ({package.purpose})", remedy)
+        else:
+            yield Finding(area, package.name, State.READY, version)
+
+
+def _gpu() -> Iterator[Finding]:
+    if importlib.util.find_spec("wgpu") is None:
+        return
+    adapters, complaint = _gpu_adapters()
+    for adapter in adapters:
+        kind = adapter.get("adapter_type", "")
+        detail = f"{kind}, {adapter.get('backend_type', '')}, {adapter.get('description', '')}"
+        yield Finding("gpu", str(adapter.get("device", "?")), State.READY, detail.rstrip(", "))
+    if not adapters:
+        yield Finding(
+            "gpu",
+            "adapters",
+            State.OPTIONAL,
+            complaint or "none",
+            "install the GPU's driver, or in software: apt-get install mesa-vulkan-drivers",
+        )
+
+
+def _gpu_adapters() -> tuple[list[dict[str, Any]], str]:
+    """The adapters, asked in a process of its own; and a complaint, or ""."""
+    try:
+        answer = subprocess.run(
+            [sys.executable, "-c", _GPU_QUESTION],
+            capture_output=True,
+            text=True,
+            timeout=_GPU_TIMEOUT_S,
+            stdin=subprocess.DEVNULL,
+            # Any existing folder silences Mesa's complaint about a missing one.
+            env={"XDG_RUNTIME_DIR": "/tmp", **os.environ},
+        )
+    except subprocess.TimeoutExpired:
+        return [], f"the driver did not answer within {_GPU_TIMEOUT_S} s"
+    if answer.returncode != 0:
+        last = answer.stderr.strip().splitlines()[-1:] or [f"exit code {answer.returncode}"]
+        return [], last[0]
+    adapters: list[dict[str, Any]] = json.loads(answer.stdout.strip().splitlines()[-1])
+    return adapters, ""
+
+
+def _system() -> Iterator[Finding]:
+    for library, package in (("EGL", "libegl1"), ("GL", "libgl1"), ("vulkan", "libvulkan1")):
+        found = ctypes.util.find_library(library)
+        yield Finding(
+            "system",
+            f"lib{library}",
+            State.READY if found else State.OPTIONAL,
+            found or "missing (GPU work, tests)",
+            "" if found else f"apt-get install {package}",
+        )
+    validator = shutil.which("glslangValidator")
+    yield Finding(
+        "system",
+        "glslangValidator",
+        State.READY if validator else State.OPTIONAL,
+        validator or "missing (tests)",
+        "" if validator else "apt-get install glslang-tools",
+    )

@@ -1,0 +1,199 @@
+"""The commands: what they call, what they print where, and their exit codes.
+
+A double stands for the library here.
+"""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import distal
+from distal.cli.application import application
+from distal.diagnostics import CompileError, LoadError, Span
+from distal.doctor import Finding, State
+from distal.film.picture import Picture
+from distal.lang.parameters import slider
+
+STATS = {"compile_s": 0.1, "render_s": 0.2, "cache_hit": True, "lanes": 32, "threads": 2}
+
+
+class Scene:
+    """Takes what a scene takes, and remembers it."""
+
+    def __init__(self):
+        self.options = None
+        self.failure = None
+
+    def parameters(self):
+        return [slider("Blend", 0.3)]
+
+    def render(self, **options):
+        if self.failure:
+            raise self.failure
+        self.options = options
+        width, height = options["size"]
+        return Picture(np.ones((height, width, 4), np.float32), stats=STATS)
+
+
+@pytest.fixture
+def scene(monkeypatch):
+    scene = Scene()
+    scene.loaded = []
+
+    def load(path, name=None):
+        scene.loaded.append((path, name))
+        return scene
+
+    def compile(obj, target, after=None):
+        text = f"// {target} {after}\n"
+        return SimpleNamespace(text=text, interface={"a": 1}, vertex="vertex\n")
+
+    monkeypatch.setattr(distal, "load", load, raising=False)
+    monkeypatch.setattr(distal, "compile", compile, raising=False)
+    monkeypatch.setattr(distal, "gallery", lambda: {"ball": Path("/g/ball.py")}, raising=False)
+    return scene
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return lambda *words: CliRunner().invoke(application, words)
+
+
+def test_render_writes_the_picture_and_says_how_long_it_took(scene, run):
+    result = run("render", "s.py:picture", "-o", "a.png", "--size", "4x3", "--set", "blend=0.5")
+    assert result.exit_code == 0, result.output
+    assert scene.loaded == [("s.py", "picture")]
+    assert scene.options["size"] == (4, 3)
+    assert scene.options["params"] == {"blend": 0.5}
+    assert scene.options["device"] == "cpu"
+    assert Path("a.png").read_bytes().startswith(b"\x89PNG")
+    assert result.stdout == ""
+    assert "a.png: 4x3; load" in result.stderr
+    assert "compile 0.100 s, render 0.200 s" in result.stderr
+
+
+def test_render_hands_on_time_device_and_threads(scene, run):
+    words = ("--time", "1.5", "--device", "reference", "--threads", "3")
+    assert run("render", "example:ball", "-o", "a.png", *words).exit_code == 0
+    assert scene.loaded == [("/g/ball.py", None)]
+    assert scene.options["time"] == 1.5
+    assert scene.options["device"] == "reference"
+    assert scene.options["threads"] == 3
+
+
+def test_stats_are_exactly_one_json_line_on_stdout(scene, run):
+    result = run("render", "s.py", "-o", "a.png", "--size", "4x3", "--stats")
+    assert result.stdout.count("\n") == 1
+    figures = json.loads(result.stdout)
+    assert {k: figures[k] for k in STATS} == STATS
+    assert (figures["device"], figures["size"]) == ("cpu", [4, 3])
+    assert result.stderr == ""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--size", "0x0"),
+        ("--time", "soon"),
+        ("--threads", "0"),
+        ("--device", "toaster"),
+        ("--set", "nothing=1"),
+        ("--set", "blend=9"),
+        ("--nonsense",),
+    ],
+)
+def test_wrong_usage_is_exit_2_and_renders_nothing(scene, run, words):
+    result = run("render", "s.py", "-o", "a.png", *words)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr
+    assert scene.options is None
+    assert not Path("a.png").exists()
+
+
+def test_output_is_needed_and_checked_before_any_work(scene, run):
+    assert run("render", "s.py").exit_code == 2
+    for name in ("a.bmp", "nowhere/a.png"):
+        result = run("render", "s.py", "-o", name)
+        assert result.exit_code == 1
+        assert result.stderr.startswith(f"error: cannot write {name}")
+    assert scene.loaded == []
+
+
+@pytest.mark.parametrize(
+    ("failure", "code", "message"),
+    [
+        (
+            CompileError.at("'x' is not defined", Span("s.py", 1, 4, 5, "y = x")),
+            1,
+            "error: 'x' is not defined\n  --> s.py:1:5\n  |\n1 | y = x\n  |     ^\n",
+        ),
+        (LoadError("there is no file s.py"), 1, "error: there is no file s.py\n"),
+        (KeyboardInterrupt(), 130, ""),
+    ],
+)
+def test_failures_have_their_text_and_code_and_leave_no_file(scene, run, failure, code, message):
+    scene.failure = failure
+    result = run("render", "s.py", "-o", "a.png")
+    assert result.exit_code == code
+    assert result.stderr == message
+    assert list(Path().iterdir()) == []
+
+
+def test_a_fault_of_ours_is_not_dressed_up(scene, run):
+    scene.failure = ZeroDivisionError("ours")
+    assert isinstance(run("render", "s.py", "-o", "a.png").exception, ZeroDivisionError)
+
+
+def test_compile_prints_the_text_alone(scene, run):
+    result = run("compile", "s.py", "--target", "wgsl")
+    assert (result.exit_code, result.stdout) == (0, "// wgsl None\n")
+    assert run("compile", "s.py", "--target", "ir", "--after", "fold").stdout == "// ir fold\n"
+
+
+def test_compile_to_a_file_writes_interface_and_vertex_stage_beside_it(scene, run):
+    result = run("compile", "s.py", "--target", "glsl-es300", "-o", "a.frag")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert Path("a.frag").read_text() == "// glsl-es300 None\n"
+    assert json.loads(Path("a.json").read_text()) == {"a": 1}
+    assert Path("a.vert").read_text() == "vertex\n"
+    assert len(list(Path().iterdir())) == 3
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (),
+        ("--target", "basic"),
+        ("--target", "wgsl", "--after", "fold"),
+        ("--target", "wgsl", "-o", "a.json"),
+    ],
+)
+def test_compile_refuses_wrong_usage(scene, run, words):
+    assert run("compile", "s.py", *words).exit_code == 2
+    assert list(Path().iterdir()) == []
+
+
+def test_examples_are_listed(scene, run):
+    assert run("examples").stdout == "example:ball\t/g/ball.py\n"
+
+
+def test_unknown_example_is_wrong_usage(scene, run):
+    result = run("render", "example:bell", "-o", "a.png")
+    assert result.exit_code == 2
+    assert "did you mean example:ball?" in result.stderr
+
+
+@pytest.mark.parametrize(("state", "code"), [(State.OPTIONAL, 0), (State.BROKEN, 1)])
+def test_doctor_shows_each_finding_and_its_remedy(run, monkeypatch, state, code):
+    missing = Finding("packages [gpu]", "wgpu", state, "missing", "pip install 'distal[gpu]'")
+    monkeypatch.setattr("distal.doctor.examine", lambda: [missing])
+    result = run("doctor")
+    assert result.exit_code == code
+    for word in ("packages [gpu]", "wgpu", "missing", "mend: pip install 'distal[gpu]'"):
+        assert word in result.stdout
