@@ -14,14 +14,13 @@ import time
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, ParamSpec
+from typing import TYPE_CHECKING, Annotated, ParamSpec
 
 import typer
 
 import distal
 from distal.cli.arguments import (
     UsageError,
-    locate,
     read_assignments,
     read_scene,
     read_size,
@@ -30,6 +29,9 @@ from distal.cli.arguments import (
 from distal.diagnostics import CompileError, LoadError
 from distal.film.replacement import SaveError, check_destination, replacement
 from distal.version import __version__
+
+if TYPE_CHECKING:
+    from distal.lang.functions import Func
 
 Arguments = ParamSpec("Arguments")
 
@@ -191,6 +193,8 @@ def compile(
     """Compile a scene to text: a shader, vector code, or any stage of the compiler."""
     if after is not None and target is not TargetName.IR:
         raise UsageError("--after belongs to --target ir")
+    if after is not None:
+        _check_pass(after)
     if output is not None:
         if output.suffix.lower() in (".json", ".vert"):
             raise UsageError(f"'{output}' is where the interface or the vertex stage goes")
@@ -229,7 +233,13 @@ def doctor() -> None:
         raise typer.Exit(1)
 
 
-def _load(text: str) -> Any:
-    scene = read_scene(text)
-    path = locate(scene, distal.gallery() if scene.is_example else {})
-    return distal.load(str(path), scene.name)
+def _load(scene: str) -> Func:
+    path, name = read_scene(scene)
+    return distal.load(path, name)
+
+
+def _check_pass(name: str) -> None:
+    from distal.passes.pipeline import PASS_NAMES
+
+    if name not in ("lower", *PASS_NAMES):
+        raise UsageError(f"there is no pass '{name}'; passes: lower, {', '.join(PASS_NAMES)}")

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
@@ -25,38 +24,17 @@ class UsageError(Exception):
     """A command line that does not say what to do."""
 
 
-@dataclass(frozen=True, slots=True)
-class SceneReference:
-    """A scene on the command line: a file, or an example, and the name within, if given."""
-
-    file: str
-    name: str | None
-    is_example: bool
-
-
-def read_scene(text: str) -> SceneReference:
-    """Take FILE[:NAME] or example:NAME[:NAME] apart."""
-    is_example = text.startswith(EXAMPLE_PREFIX)
-    rest = text.removeprefix(EXAMPLE_PREFIX)
+def read_scene(text: str) -> tuple[str, str | None]:
+    """FILE[:NAME] or example:NAME[:NAME] as the path that ``distal.load`` takes, and the name."""
+    prefix = EXAMPLE_PREFIX if text.startswith(EXAMPLE_PREFIX) else ""
+    rest = text.removeprefix(prefix)
     file, colon, name = rest.rpartition(":")
     # A colon may belong to the file's own name, or to a drive (C:\scene.py).
-    if not colon or not name.isidentifier() or (not is_example and Path(rest).exists()):
+    if not colon or not name.isidentifier() or (not prefix and Path(rest).exists()):
         file, name = rest, ""
     if not file:
-        raise UsageError(f"'{text}' names no {'example' if is_example else 'file'}")
-    return SceneReference(file, name or None, is_example)
-
-
-def locate(scene: SceneReference, gallery: Mapping[str, Path]) -> Path:
-    """The file of a scene; the gallery is asked for examples only."""
-    if not scene.is_example:
-        return Path(scene.file)
-    if scene.file not in gallery:
-        close = get_close_matches(scene.file, gallery, 1)
-        meant = f"; did you mean {EXAMPLE_PREFIX}{close[0]}?" if close else ""
-        names = ", ".join(sorted(gallery)) or "none"
-        raise UsageError(f"there is no example '{scene.file}'{meant} (examples: {names})")
-    return gallery[scene.file]
+        raise UsageError(f"'{text}' names no {'example' if prefix else 'file'}")
+    return prefix + file, name or None
 
 
 def read_size(text: str) -> tuple[int, int]:

@@ -52,9 +52,10 @@ def scene(monkeypatch):
         text = f"// {target} {after}\n"
         return SimpleNamespace(text=text, interface={"a": 1}, vertex="vertex\n")
 
-    monkeypatch.setattr(distal, "load", load, raising=False)
-    monkeypatch.setattr(distal, "compile", compile, raising=False)
-    monkeypatch.setattr(distal, "gallery", lambda: {"ball": Path("/g/ball.py")}, raising=False)
+    # Into the namespace itself: asking for the real names first would import the whole compiler.
+    monkeypatch.setitem(vars(distal), "load", load)
+    monkeypatch.setitem(vars(distal), "compile", compile)
+    monkeypatch.setitem(vars(distal), "gallery", lambda: {"ball": Path("/g/ball.py")})
     return scene
 
 
@@ -80,7 +81,7 @@ def test_render_writes_the_picture_and_says_how_long_it_took(scene, run):
 def test_render_hands_on_time_device_and_threads(scene, run):
     words = ("--time", "1.5", "--device", "reference", "--threads", "3")
     assert run("render", "example:ball", "-o", "a.png", *words).exit_code == 0
-    assert scene.loaded == [("/g/ball.py", None)]
+    assert scene.loaded == [("example:ball", None)]
     assert scene.options["time"] == 1.5
     assert scene.options["device"] == "reference"
     assert scene.options["threads"] == 3
@@ -153,7 +154,7 @@ def test_a_fault_of_ours_is_not_dressed_up(scene, run):
 def test_compile_prints_the_text_alone(scene, run):
     result = run("compile", "s.py", "--target", "wgsl")
     assert (result.exit_code, result.stdout) == (0, "// wgsl None\n")
-    assert run("compile", "s.py", "--target", "ir", "--after", "fold").stdout == "// ir fold\n"
+    assert run("compile", "s.py", "--target", "ir", "--after", "lower").stdout == "// ir lower\n"
 
 
 def test_compile_to_a_file_writes_interface_and_vertex_stage_beside_it(scene, run):
@@ -170,7 +171,8 @@ def test_compile_to_a_file_writes_interface_and_vertex_stage_beside_it(scene, ru
     [
         (),
         ("--target", "basic"),
-        ("--target", "wgsl", "--after", "fold"),
+        ("--target", "wgsl", "--after", "lower"),
+        ("--target", "ir", "--after", "nothing"),
         ("--target", "wgsl", "-o", "a.json"),
     ],
 )
@@ -181,12 +183,6 @@ def test_compile_refuses_wrong_usage(scene, run, words):
 
 def test_examples_are_listed(scene, run):
     assert run("examples").stdout == "example:ball\t/g/ball.py\n"
-
-
-def test_unknown_example_is_wrong_usage(scene, run):
-    result = run("render", "example:bell", "-o", "a.png")
-    assert result.exit_code == 2
-    assert "did you mean example:ball?" in result.stderr
 
 
 @pytest.mark.parametrize(("state", "code"), [(State.OPTIONAL, 0), (State.BROKEN, 1)])

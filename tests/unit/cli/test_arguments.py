@@ -1,13 +1,9 @@
 """The words of the command line: what they mean, and how nonsense is refused."""
 
-from pathlib import Path
-
 import pytest
 
 from distal.cli.arguments import (
-    SceneReference,
     UsageError,
-    locate,
     read_assignments,
     read_scene,
     read_size,
@@ -19,38 +15,30 @@ PARAMETERS = [slider("Blend softness", 0.3), choice("Mode", ["flat", "lit"]), co
 
 
 @pytest.mark.parametrize(
-    ("text", "file", "name", "is_example"),
+    ("text", "path", "name"),
     [
-        ("scene.py", "scene.py", None, False),
-        ("a/scene.py:picture", "a/scene.py", "picture", False),
-        ("C:\\scene.py", "C:\\scene.py", None, False),
-        ("C:\\scene.py:picture", "C:\\scene.py", "picture", False),
-        ("example:melting", "melting", None, True),
-        ("example:melting:picture", "melting", "picture", True),
+        ("scene.py", "scene.py", None),
+        ("a/scene.py:picture", "a/scene.py", "picture"),
+        ("C:\\scene.py", "C:\\scene.py", None),
+        ("C:\\scene.py:picture", "C:\\scene.py", "picture"),
+        ("example:melting", "example:melting", None),
+        ("example:melting:picture", "example:melting", "picture"),
     ],
 )
-def test_scene_is_taken_apart(text, file, name, is_example):
-    assert read_scene(text) == SceneReference(file, name, is_example)
+def test_scene_is_taken_apart(text, path, name):
+    assert read_scene(text) == (path, name)
 
 
 def test_colon_of_an_existing_file_belongs_to_its_name(tmp_path):
     odd = tmp_path / "odd:name"
     odd.touch()
-    assert read_scene(str(odd)) == SceneReference(str(odd), None, False)
+    assert read_scene(str(odd)) == (str(odd), None)
 
 
 @pytest.mark.parametrize("text", ["", "example:", ":name"])
 def test_no_file_is_refused(text):
     with pytest.raises(UsageError, match="names no"):
         read_scene(text)
-
-
-def test_unknown_example_names_the_close_one_and_all():
-    gallery = {"melting": Path("m.py"), "raymarcher": Path("r.py")}
-    assert locate(read_scene("example:melting"), gallery) == Path("m.py")
-    with pytest.raises(UsageError) as caught:
-        locate(read_scene("example:raymarch"), gallery)
-    assert "did you mean example:raymarcher? (examples: melting, raymarcher)" in str(caught.value)
 
 
 @pytest.mark.parametrize(
