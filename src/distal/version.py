@@ -1,10 +1,6 @@
 """The version, in the one place that the package, the wheel and every picture read.
 
-Knows nothing else, so that any layer may import it.
+Knows nothing else, so that any layer may import it. The build reads the line below as text.
 """
 
-from __future__ import annotations
-
-from typing import Final
-
-__version__: Final = "0.1.0"
+__version__ = "0.1.0"
