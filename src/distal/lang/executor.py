@@ -1,0 +1,53 @@
+"""The one hook through which scene code runs when Python calls it.
+
+``lang`` only records functions. What compiles and runs them stands far above; it gives a loader
+here, and the loader is called the first time something is really run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from distal.lang.functions import Func, Image
+    from distal.lang.names import LangFunction
+    from distal.lang.parameters import Parameter
+
+
+class Executor(Protocol):
+    """Runs scene code for Python."""
+
+    def call(
+        self, function: Func | LangFunction, args: tuple[Any, ...], kwargs: Mapping[str, Any]
+    ) -> Any:
+        """The function's value for numbers, vectors or arrays of points."""
+        ...
+
+    def render(self, image: Image, **options: Any) -> Any:
+        """The picture of an image; the options are those of ``Image.render``."""
+        ...
+
+    def parameters(self, function: Func) -> list[Parameter]:
+        """The parameters that the function and what it calls read, by first use."""
+        ...
+
+
+_loader: Callable[[], Executor] | None = None
+_executor: Executor | None = None
+
+
+def set_executor_loader(loader: Callable[[], Executor]) -> None:
+    """Say how the executor is made when it is first needed."""
+    global _loader, _executor
+    _loader, _executor = loader, None
+
+
+def executor() -> Executor:
+    """The executor, made now if it was not yet."""
+    global _executor
+    if _executor is None:
+        if _loader is None:
+            raise RuntimeError("nothing here runs scene code: no executor was set")
+        _executor = _loader()
+    return _executor

@@ -1,0 +1,68 @@
+"""What a name of the language is, as a Python object.
+
+The front end finds these objects behind the author's names; nothing is decided by spelling.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from distal.ir.intrinsics import Intrinsic
+from distal.lang.executor import executor
+
+
+@dataclass(frozen=True, slots=True)
+class LangFunction:
+    """A built-in: a row of the table. Called from Python it computes through the executor."""
+
+    row: Intrinsic
+
+    @property
+    def __name__(self) -> str:
+        return self.row.name
+
+    @property
+    def __doc__(self) -> str:  # type: ignore[override]  # a property, where object has a text
+        return self.row.doc
+
+    def __call__(self, *args: Any) -> Any:
+        """The value for numbers, vectors or arrays."""
+        return executor().call(self, args, {})
+
+
+@dataclass(frozen=True, slots=True)
+class LangForm:
+    """A call with rules of its own, such as ``select`` or ``gradient``; scene code only."""
+
+    name: str
+    signature: str
+    doc: str
+
+    @property
+    def __name__(self) -> str:
+        return self.name
+
+    def __call__(self, *args: Any) -> Any:
+        """Refuse: there is nothing to compute outside scene code."""
+        raise TypeError(f"{self.name} works in scene code only: call it in a @func")
+
+
+select = LangForm(
+    "select",
+    "select(condition, yes, no)",
+    "yes where the condition holds, else no; a bvec picks each component.",
+)
+gradient = LangForm(
+    "gradient", "gradient(field, p)", "The exact derivative of a float function at p."
+)
+value_and_gradient = LangForm(
+    "value_and_gradient",
+    "value_and_gradient(field, p)",
+    "The value of a float function at p and its derivative there, from one evaluation.",
+)
+sample = LangForm("sample", "sample(texture, coord)", "The filtered value of a texture, a vec4.")
+texel = LangForm("texel", "texel(texture, index)", "One texel, a vec4; the index is clamped.")
+size = LangForm("size", "size(resource)", "The size of a texture in texels, or of a buffer.")
+
+FORMS = (select, gradient, value_and_gradient, sample, texel, size)
