@@ -118,8 +118,9 @@ def _row(name: str, doc: str, *rest: Any, **columns: Any) -> Intrinsic:
 
 _COMPONENTS = (
     _row("abs", "Magnitude; the most negative int stays itself.", _ONE, (componentwise(1, SIGNED),),
-         (_R,), lambda xp, x: xp.abs(x)),
-    _row("sign", "-1, 0 or 1.", _ONE, (componentwise(1, SIGNED),), (_R,), meanings.sign),
+         (_R,), lambda xp, x: xp.abs(x), scene="choosing.magnitude_int"),
+    _row("sign", "-1, 0 or 1.", _ONE, (componentwise(1, SIGNED),), (_R,), meanings.sign,
+         scene="choosing.sign_int"),
     _row("floor", "The largest whole number not above x.", _ONE, (UNARY,), (_R,),
          lambda xp, x: xp.floor(x)),
     _row("ceil", "The smallest whole number not below x.", _ONE, (UNARY,), (_R,),
@@ -233,10 +234,10 @@ _GEOMETRY = (
          ((0.0, 1.0),), lambda xp, v: xp.all(v, axis=0)),
     _row("isnan", "True for not-a-number; promised on CPU and reference only.", _ONE,
          (Signature((T,), Follows.AS_BOOL, FLOATS),), (_R,), lambda xp, x: xp.isnan(x),
-         scene="bits.is_nan", glsl100=SCENE, wgsl=SCENE),
+         scene="bits.is_nan", glsl100="@bits.is_unordered", wgsl=SCENE),
     _row("isinf", "True for an infinity; promised on CPU and reference only.", _ONE,
          (Signature((T,), Follows.AS_BOOL, FLOATS),), (_R,), lambda xp, x: xp.isinf(x),
-         scene="bits.is_infinite", glsl100=SCENE, wgsl=SCENE),
+         scene="bits.is_infinite", glsl100="@bits.is_beyond_range", wgsl=SCENE),
 )  # fmt: skip
 
 _MATRIX = (
