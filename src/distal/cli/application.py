@@ -136,15 +136,18 @@ def render(
     """Render a scene to a picture."""
     width_height, seconds = read_size(size), read_time(at)
     from distal.cli.report import ProgressBar, say, stages
-    from distal.film.picture import check_savable
+    from distal.film.picture import Picture, check_savable
 
     check_savable(output)
     begin = time.perf_counter()
     obj = _load(scene)
+    run = getattr(obj, "render", None)
+    if run is None:
+        raise LoadError(f"'{obj.name}' is a @func; only an @image can be rendered")
     values = read_assignments(assignments or (), obj.parameters())
     loaded = time.perf_counter()
     with ProgressBar() as progress:
-        picture = obj.render(
+        picture: Picture = run(
             size=width_height,
             time=seconds,
             params=values,

@@ -87,6 +87,14 @@ def test_render_hands_on_time_device_and_threads(scene, run):
     assert scene.options["threads"] == 3
 
 
+def test_a_function_is_no_image(scene, run, monkeypatch):
+    function = SimpleNamespace(name="map", parameters=list)
+    monkeypatch.setitem(vars(distal), "load", lambda path, name=None: function)
+    result = run("render", "s.py:map", "-o", "a.png")
+    assert result.exit_code == 1
+    assert result.stderr == "error: 'map' is a @func; only an @image can be rendered\n"
+
+
 def test_stats_are_exactly_one_json_line_on_stdout(scene, run):
     result = run("render", "s.py", "-o", "a.png", "--size", "4x3", "--stats")
     assert result.stdout.count("\n") == 1

@@ -3,8 +3,6 @@
 import io
 import sys
 
-import pytest
-
 from distal.cli import report
 from distal.cli.report import ProgressBar, stages
 
@@ -14,36 +12,28 @@ class Terminal(io.StringIO):
         return True
 
 
-@pytest.fixture
-def terminal(monkeypatch):
-    stream = Terminal()
+def run_on(monkeypatch, stream):
+    # Here, not in a fixture: pytest puts its own stderr back between set-up and test.
     monkeypatch.setattr(sys, "stderr", stream)
-    return stream
-
-
-def work():
     with ProgressBar() as progress:
         progress(0.25)
         progress(3, 4)
+    return stream.getvalue()
 
 
-def test_quick_work_shows_nothing(terminal):
-    work()
-    assert terminal.getvalue() == ""
+def test_quick_work_shows_nothing(monkeypatch):
+    assert run_on(monkeypatch, Terminal()) == ""
 
 
-def test_long_work_shows_a_bar_on_a_terminal(terminal, monkeypatch):
+def test_long_work_shows_a_bar_on_a_terminal(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")  # a dumb terminal gets no bar
     monkeypatch.setattr(report, "PATIENCE_S", 0.0)
-    work()
-    assert "rendering" in terminal.getvalue()
+    assert "rendering" in run_on(monkeypatch, Terminal())
 
 
 def test_long_work_shows_nothing_elsewhere(monkeypatch):
-    stream = io.StringIO()
-    monkeypatch.setattr(sys, "stderr", stream)
     monkeypatch.setattr(report, "PATIENCE_S", 0.0)
-    work()
-    assert stream.getvalue() == ""
+    assert run_on(monkeypatch, io.StringIO()) == ""
 
 
 def test_stages_name_the_figures_that_are_seconds():
