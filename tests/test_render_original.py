@@ -16,7 +16,8 @@ from tests.egl import EglUnavailableError, context
 ROOT = Path(__file__).parent.parent
 ORIGINALS = ROOT / "tests" / "originals"
 TEXT = (
-    "precision highp float;\nuniform vec2 u_resolution;\nuniform float u_time;\nuniform vec3 tint;\n"
+    "precision highp float;\nuniform vec2 u_resolution;\n"
+    "uniform float u_time;\nuniform vec3 tint;\n"
     "void main() {\n  float top = step(0.5, gl_FragCoord.y / u_resolution.y);\n"
     "  gl_FragColor = vec4(tint.x, top, u_time, 1.0);\n}\n"
 )
