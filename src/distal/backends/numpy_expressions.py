@@ -211,7 +211,7 @@ class Expressions:
         for e, taken in ((yes, condition), (no, ~condition)):
             lanes = np.flatnonzero(taken)
             value = self._evaluate(e, scope.narrowed(lanes), {})
-            base = operations.each_leaf(np.zeros_like, value) if result is None else result
+            base = operations.blank(value) if result is None else result
             result = operations.scatter(base, lanes, value, scope.lanes)
         assert result is not None
         return result

@@ -59,6 +59,11 @@ def gather(value: Value, lanes: NDArray[np.intp]) -> Value:
     return each_leaf(lambda leaf: leaf if leaf.shape[-1] == 1 else leaf[..., lanes], value)
 
 
+def blank(value: Value) -> Value:
+    """Zeros of a value's type, for any number of lanes."""
+    return each_leaf(lambda leaf: np.zeros_like(leaf[..., :1]), value)
+
+
 def scatter(old: Value, lanes: NDArray[np.intp], new: Value, count: int) -> Value:
     """The value of ``count`` lanes with some of them replaced."""
 

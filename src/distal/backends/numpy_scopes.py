@@ -39,7 +39,7 @@ class Frame:
             if lanes is None:
                 self.result = value
                 return
-            self.result = operations.each_leaf(np.zeros_like, value)
+            self.result = operations.blank(value)
         self.result = operations.scatter(self.result, lanes, value, self.lanes)
 
 
