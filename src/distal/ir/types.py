@@ -221,6 +221,19 @@ def component_count(type: Type) -> int:
             raise AssertionError(f"{type} has no components")
 
 
+def index_count(type: Type) -> int | None:
+    """How many elements an index chooses among; None for a buffer, whose length is bound later."""
+    match type:
+        case Array(_, length):
+            return length
+        case Vector(_, size) | Matrix(size):
+            return size
+        case Buffer():
+            return None
+        case _:
+            raise AssertionError(f"{type} takes no index")
+
+
 def is_static(type: Type) -> bool:
     """True for what exists at compile time only: functions, textures and buffers."""
     return isinstance(type, Texture | Buffer | FunctionType)

@@ -39,8 +39,8 @@ from distal.ir.nodes import (
 )
 from distal.ir.nodes import Resource as ResourceNode
 from distal.ir.printer import print_expression
-from distal.ir.types import BOOL, FRAME, INT, VEC2, VEC4, Buffer, FunctionType, Type, is_static
-from distal.ir.verify_types import check_types, index_count
+from distal.ir.types import BOOL, FRAME, INT, VEC2, VEC4, FunctionType, Type, index_count, is_static
+from distal.ir.verify_types import check_types
 from distal.ir.walk import children, expressions, nodes_in, root_of
 
 DEEPEST = 200
@@ -194,8 +194,9 @@ class _Checker:
 
 
 def _index_in_range(e: Expr) -> None:
-    if isinstance(e, Index) and isinstance(e.index, Const) and not isinstance(e.base.type, Buffer):
-        assert 0 <= e.index.value < index_count(e.base.type), "index out of range"
+    if isinstance(e, Index) and isinstance(e.index, Const):
+        count = index_count(e.base.type)
+        assert count is None or 0 <= e.index.value < count, "index out of range"
 
 
 def _match(types: Iterable[Type], args: tuple[Expr, ...], name: str) -> None:

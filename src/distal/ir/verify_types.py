@@ -189,17 +189,6 @@ def check_types(e: Expr) -> None:
             assert_never(e)
 
 
-def index_count(type: Type) -> int:
-    """How many elements an index into an array, vector or matrix chooses among."""
-    match type:
-        case Array(_, length):
-            return length
-        case Vector(_, size) | Matrix(size):
-            return size
-        case _:
-            raise AssertionError(f"{type} takes no index with a known range")
-
-
 def _constant(value: bool | int | float, type: Type) -> None:
     if type is BOOL:
         assert isinstance(value, bool), repr(value)

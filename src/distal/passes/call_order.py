@@ -17,6 +17,7 @@ def in_call_order(functions: Iterable[Function], entry: str) -> tuple[Function, 
     """The functions that ``entry`` reaches, callees first."""
     known = {f.name: f for f in functions}
     done: dict[str, Function] = {}
+    opened: set[str] = set()
     stack = [(entry, False)]
     while stack:
         name, ready = stack.pop()
@@ -25,6 +26,8 @@ def in_call_order(functions: Iterable[Function], entry: str) -> tuple[Function, 
         if ready:
             done[name] = known[name]
             continue
+        assert name not in opened, f"{name} calls itself"
+        opened.add(name)
         stack.append((name, True))
         stack.extend((callee, False) for callee in reversed(_callees(known, name)))
     return tuple(done.values())
