@@ -19,6 +19,7 @@ from distal.ir.nodes import (
     Field,
     PerFrame,
     Read,
+    Resource,
     Splat,
     Swizzle,
     Unary,
@@ -68,7 +69,7 @@ class Constants:
             e = e.value
         if isinstance(e, Read):
             return e.name not in self._mutable
-        return isinstance(e, Const | Uniform | PerFrame)
+        return isinstance(e, Const | Uniform | PerFrame | Resource)
 
     def components(self, e: Expr) -> Components | None:
         """The components of a constant scalar, vector or matrix, rounded; else None."""
@@ -151,3 +152,15 @@ class Constants:
         left = self.components(lhs)
         right = None if left is None else self.components(rhs)
         return None if left is None or right is None else (left, right)
+
+
+def is_plain(e: Expr) -> bool:
+    """True for what is free to name again where it stands: a leaf, or components of one.
+
+    Unlike ``Constants.is_trivial`` it lets pass a local that may change later.
+    """
+    while isinstance(e, Swizzle | Field):
+        e = e.base
+    if isinstance(e, Splat):
+        e = e.value
+    return isinstance(e, Const | Uniform | PerFrame | Read | Resource)

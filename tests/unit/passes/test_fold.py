@@ -34,8 +34,8 @@ from distal.ir.nodes import (
     While,
 )
 from distal.ir.types import BOOL, FLOAT, INT, IVEC2, UINT, VEC2, VEC3, Array, Kind, Struct
-from distal.passes.context import Context
 from distal.passes.fold import fold_expression, fold_function, run
+from tests.unit.passes.random_modules import Generator, check, context
 
 x = build.read("x", FLOAT)
 p = build.read("p", VEC3)
@@ -320,10 +320,7 @@ def test_unreached_functions_go() -> None:
     callee = Function("g", (), FLOAT, (Return(n(1.0)),), "g")
     body = (If(build.boolean(False), (Return(Call("g", (), FLOAT)),), (Return(x),)),)
     main = Function("f", (Param("x", FLOAT),), FLOAT, body, "f")
-    module = run(
-        Module((callee, main), "f", EntryKind.FUNCTION),
-        Context(None, None),  # type: ignore[arg-type]
-    )
+    module = run(Module((callee, main), "f", EntryKind.FUNCTION), context(None))
     assert [f.name for f in module.functions] == ["f"]
     assert module.functions[0].body == (Return(x),)
 
@@ -338,3 +335,9 @@ def test_int_vectors_and_their_casts() -> None:
     )
     same = Binary(BinaryOp.XOR, build.read("u", UINT), build.read("u", UINT), UINT)
     assert fold32(same) is build.unsigned(0)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_random_modules_keep_their_value(seed: int) -> None:
+    module = Generator(seed).module()
+    check(module, run(module, context(None)), "fold")
