@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
 C = TypeVar("C", bound=type)
@@ -26,8 +26,22 @@ def struct(cls: C) -> C:
     """Make a class with annotated fields (defaults allowed) a struct of scene code."""
     if not isinstance(cls, type):
         raise TypeError("@struct stands above a class with annotated fields")
-    made = dataclass(cls)
+    made = _dataclass(cls)
     frame = sys._getframe(1)
     enclosing = {} if frame.f_locals is frame.f_globals else dict(frame.f_locals)
     made.__distal_struct__ = StructNames(frame.f_globals, enclosing)  # type: ignore[attr-defined]
+    return made
+
+
+def _dataclass(cls: C) -> C:
+    """A dataclass whose annotations are left alone.
+
+    As texts they would be looked up in the class's module, which a file run by itself has not.
+    """
+    annotations = dict(cls.__annotations__)
+    cls.__annotations__ = dict.fromkeys(annotations, Any)
+    made = dataclass(cls)
+    made.__annotations__ = annotations
+    for field in fields(made):
+        field.type = annotations.get(field.name, field.type)
     return made
