@@ -24,12 +24,14 @@ class Artifact:
         vertex: The vertex stage, for targets that have one of their own; else None.
         lines: For each line of ``text`` (from 1), the author's (file, line), where known: to map a
             driver's message back.
+        vertex_lines: The same for ``vertex``.
     """
 
     text: str
     interface: dict[str, Any]
     vertex: str | None = None
     lines: tuple[tuple[str, int] | None, ...] = ()
+    vertex_lines: tuple[tuple[str, int] | None, ...] = ()
 
 
 class TextBackend(Protocol):

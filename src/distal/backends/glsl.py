@@ -1,0 +1,133 @@
+"""GLSL: WebGL 2 (ES 3.00), desktop 3.30, glslCanvas (ES 1.00) and Shadertoy.
+
+In: a module that has been through the passes. Out: its fragment text, the vertex text where there
+is one, and the interface. The text of functions and of programs is written by
+``distal.backends.glsl_writer`` and ``distal.backends.glsl_stages``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from distal.backends.base import Artifact
+from distal.backends.glsl_resources import shadertoy_channels
+from distal.backends.glsl_stages import DIALECTS, Program, fragment_lines, vertex_lines
+from distal.backends.interface import interface
+from distal.backends.keywords import (
+    GLSL_CANVAS_NAMES,
+    GLSL_FUNCTIONS,
+    GLSL_KEYWORDS,
+    SHADERTOY_NAMES,
+)
+from distal.backends.module_names import ModuleNames, name_module, reachable
+from distal.backends.module_text import joined, per_frame_reads, without_frame
+from distal.backends.packing import Packing, pack
+from distal.ir.nodes import EntryKind, Module, Origin
+from distal.ir.target import FramePlace, Target
+from distal.ir.types import Type
+from distal.ir.walk import expressions_in
+
+_RESERVED: Final = GLSL_KEYWORDS | GLSL_FUNCTIONS
+
+TARGETS: Final = (
+    Target("glsl-es300", "glsl", FramePlace.VERTEX),
+    Target("glsl-330", "glsl", FramePlace.VERTEX),
+    Target(
+        "glsl-es100",
+        "glsl100",
+        FramePlace.PIXEL,
+        unsigned=False,
+        dynamic_loops=False,
+        dynamic_index=False,
+        texel_fetch=False,
+    ),
+    Target("shadertoy", "glsl", FramePlace.PIXEL),
+)
+
+_FIRST_NAMES: Final = {
+    "glsl-es300": frozenset({"fragment_color"}),
+    "glsl-330": frozenset({"fragment_color"}),
+    "glsl-es100": GLSL_CANVAS_NAMES,
+    "shadertoy": SHADERTOY_NAMES,
+}
+_VERSIONS: Final = {
+    "glsl-es300": "300 es",
+    "glsl-330": "330",
+    "glsl-es100": "100",
+    "shadertoy": "300 es",
+}
+
+
+def emit(module: Module, target: Target) -> Artifact:
+    """Write the whole program.
+
+    Raises:
+        CompileError: The target cannot say what the author wrote.
+    """
+    program = _program(without_frame(module), target)
+    module = program.module
+    text, places = joined(fragment_lines(program))
+    if target.frame is not FramePlace.VERTEX or module.kind is not EntryKind.IMAGE:
+        return Artifact(text, _interface(program, target), None, places)
+    vertex, vertex_places = joined(vertex_lines(program))
+    return Artifact(text, _interface(program, target), vertex, places, vertex_places)
+
+
+def _program(module: Module, target: Target) -> Program:
+    dialect = DIALECTS[target.name]
+    fixed = {
+        uniform.name: dialect.texts[uniform.name]
+        for uniform in module.uniforms
+        if uniform.origin is Origin.FRAME and uniform.name in dialect.texts
+    }
+    channels = shadertoy_channels(module.resources) if target.name == "shadertoy" else {}
+    names = name_module(
+        module, _RESERVED, GLSL_KEYWORDS, _FIRST_NAMES[target.name], fixed, channels
+    )
+    packing = None
+    if target.frame is FramePlace.VERTEX:
+        packing = pack(_sent(module))
+    return Program(module, names, dialect, target.name, fixed, packing, _vectors(names, packing))
+
+
+def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
+    """The per-frame values that the fragment stage reads."""
+    entry = module.function(module.entry)
+    functions = reachable(module, expressions_in(entry.body))
+    read = per_frame_reads((*functions, entry))
+    return tuple((name, value.type) for name, value in module.frame if name in read)
+
+
+def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
+    if packing is None:
+        return []
+    count = packing.float_vectors + packing.int_vectors
+    return [names.namer.name(f"frame_{i}") for i in range(count)]
+
+
+def _interface(program: Program, target: Target) -> dict[str, Any]:
+    module, names = program.module, program.names
+    result = interface(module, target, names)
+    for uniform in result["uniforms"]:
+        # glslCanvas hands in the mouse as two numbers; the text makes Frame.mouse of them.
+        uniform["uniform"] = uniform["uniform"].removeprefix("vec4(").partition(",")[0]
+    result["version"] = _VERSIONS[target.name]
+    for buffer in result["buffers"]:
+        buffer["count"] = names.counts[buffer["name"]]
+        buffer["layout"] = "texture, one texel an element, row by row"
+    if module.kind is EntryKind.FUNCTION:
+        result["entry"] = names.functions[module.entry]
+        result["stages"] = {}
+        return result
+    result["entry"] = "mainImage" if target.name == "shadertoy" else "main"
+    result["stages"] = {"fragment": result["entry"]}
+    if program.packing is not None:
+        result["stages"]["vertex"] = "main"
+    result["frame"] = {
+        "place": target.frame.value,
+        "values": [
+            {"name": names.frame[name], "type": str(value.type)} for name, value in module.frame
+        ],
+        "vectors": program.vectors,
+    }
+    return result

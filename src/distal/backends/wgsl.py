@@ -1,0 +1,97 @@
+"""WGSL for WebGPU: as a vertex and a fragment stage, or as a compute program.
+
+In: a module that has been through the passes. Out: one text with all entry points, and the
+interface with offsets and bindings. The text of functions and of programs is written by
+``distal.backends.wgsl_writer`` and ``distal.backends.wgsl_stages``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Final
+
+from distal.backends.base import Artifact
+from distal.backends.interface import interface
+from distal.backends.keywords import WGSL_KEYWORDS, WGSL_PREDECLARED
+from distal.backends.module_names import name_module
+from distal.backends.module_text import joined, without_frame
+from distal.backends.wgsl_layout import lay_out
+from distal.backends.wgsl_resources import texture_binding
+from distal.backends.wgsl_stages import OWN_NAMES, Program, program_lines
+from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
+from distal.ir.target import FramePlace, Target
+from distal.ir.types import VEC2
+
+TARGETS: Final = (
+    Target("wgsl", "wgsl", FramePlace.HOST),
+    Target("wgsl-compute", "wgsl", FramePlace.HOST),
+)
+
+_RESERVED: Final = WGSL_KEYWORDS | WGSL_PREDECLARED
+_RESOLUTION: Final = "resolution"
+
+
+def emit(module: Module, target: Target) -> Artifact:
+    """Write the whole program."""
+    program = _program(_with_resolution(without_frame(module)), target)
+    text, places = joined(program_lines(program))
+    return Artifact(text, _interface(program, target), None, places)
+
+
+def _is_resolution(uniform: UniformDeclaration) -> bool:
+    return uniform.origin is Origin.FRAME and uniform.name == _RESOLUTION
+
+
+def _with_resolution(module: Module) -> Module:
+    """The module with the picture's size among its uniforms: the entry points turn rows by it."""
+    if module.kind is EntryKind.FUNCTION or any(map(_is_resolution, module.uniforms)):
+        return module
+    size = UniformDeclaration(_RESOLUTION, VEC2, Origin.FRAME, (640.0, 480.0))
+    return replace(module, uniforms=(size, *module.uniforms))
+
+
+def _program(module: Module, target: Target) -> Program:
+    names = name_module(module, _RESERVED, WGSL_KEYWORDS, OWN_NAMES)
+    uniforms = lay_out(tuple((u.name, u.type) for u in module.uniforms))
+    frame = lay_out(tuple((name, value.type) for name, value in module.frame))
+    size = next((u.name for u in module.uniforms if _is_resolution(u)), "")
+    resolution = names.uniforms.get(size, "")
+    return Program(module, names, resolution, uniforms, frame, target.name == "wgsl-compute")
+
+
+def _interface(program: Program, target: Target) -> dict[str, Any]:
+    module, names = program.module, program.names
+    result = interface(module, target, names)
+    for entry, member in zip(result["uniforms"], program.uniforms.members, strict=True):
+        entry |= member.entry()
+    result["uniform_buffer"] = {"group": 0, "binding": 0, "size": program.uniforms.size}
+    numbers = {r.name: texture_binding(i) for i, r in enumerate(module.resources)}
+    for texture in result["textures"]:
+        binding = numbers[texture["name"]]
+        texture |= {"group": 1, "binding": binding, "sampler_binding": binding + 1}
+    for buffer in result["buffers"]:
+        buffer |= {"group": 1, "binding": numbers[buffer["name"]]}
+    if module.kind is EntryKind.FUNCTION:
+        result["entry"] = names.functions[module.entry]
+        result["stages"] = {}
+        return result
+    if program.compute:
+        result["stages"] = {"compute": "compute_main"}
+        result["workgroup"] = [8, 8]
+        result["output"] = {"group": 0, "binding": 3, "layout": "vec4f, row by row, top row first"}
+    else:
+        result["stages"] = {"vertex": "vertex_main", "fragment": "fragment_main"}
+    result["entry"] = next(reversed(result["stages"].values()))
+    if module.frame:
+        result["stages"]["frame"] = "frame_main"
+        result["frame"] = {
+            "place": "dispatch",
+            "size": program.frame.size,
+            "uniform": {"group": 0, "binding": 1},
+            "storage": {"group": 0, "binding": 2},
+            "values": [
+                {"name": names.frame[m.name], "type": str(m.type), **m.entry()}
+                for m in program.frame.members
+            ],
+        }
+    return result
