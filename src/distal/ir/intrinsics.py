@@ -201,7 +201,7 @@ _ELEMENTARY = (
          lambda xp, x: xp.arctan(x), llvm="@elementary.arc_tangent", rtol=1e-4, atol=1e-4,
          derivative=derivatives.arc_tangent),
     _row("atan2", "Angle of the point (x, y), from -pi to pi; atan2(0, 0) = 0.", ("y", "x"),
-         (BINARY,), (_R, _R), lambda xp, y, x: xp.arctan2(y, x),
+         (BINARY,), (_R, _R), meanings.angle,
          scene="elementary.arc_tangent_2", glsl="@elementary.guarded_arc_tangent_2",
          wgsl="@elementary.guarded_arc_tangent_2", llvm=SCENE, rtol=1e-4, atol=1e-4,
          derivative=derivatives.arc_tangent_2),

@@ -29,6 +29,12 @@ def power(xp: Any, a: Any, b: Any) -> Any:
     return xp.power(xp.where(a > 0, a, xp.zeros_like(a)), b)
 
 
+def angle(xp: Any, y: Any, x: Any) -> Any:
+    """The arc tangent of y / x in its quadrant, whatever the sign of a zero."""
+    zero = xp.zeros_like(y)
+    return xp.arctan2(y + zero, x + zero)
+
+
 def dot(xp: Any, a: Any, b: Any) -> Any:
     """Sum over the component axis, left to right."""
     total = a[0] * b[0]
