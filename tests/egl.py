@@ -35,13 +35,19 @@ class ShaderRejectedError(ValueError):
     """The driver refused the text; the message is the driver's own log."""
 
 
-@cache
 def context() -> moderngl.Context:
     """The process's one context: made on first use, so that callers may set driver options before.
 
     Raises:
         EglUnavailableError: if the machine has no EGL driver.
     """
+    made = _made_context()
+    made.__enter__()  # wgpu in the same process makes a context of its own current
+    return made
+
+
+@cache
+def _made_context() -> moderngl.Context:
     try:
         return moderngl.create_context(
             standalone=True,
