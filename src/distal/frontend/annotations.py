@@ -10,6 +10,7 @@ import collections.abc
 import dataclasses
 import typing
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
 from distal.ir.types import (
@@ -49,7 +50,7 @@ class AnnotationError(Exception):
         self.hint = hint
 
 
-class UnboundVariable(Exception):
+class UnboundVariableError(Exception):
     """A type variable that the call has not decided."""
 
     def __init__(self, variable: TypeVar) -> None:
@@ -62,7 +63,7 @@ def to_type(annotation: Any, bindings: Bindings = NO_BINDINGS) -> Type:
 
     Raises:
         AnnotationError: It stands for none.
-        UnboundVariable: It needs a type variable that has no binding.
+        UnboundVariableError: It needs a type variable that has no binding.
     """
     if isinstance(annotation, type):
         found = _class_type(annotation)
@@ -79,7 +80,7 @@ def to_type(annotation: Any, bindings: Bindings = NO_BINDINGS) -> Type:
             return _buffer(to_type(element, bindings))
         case TypeVar():
             if annotation not in bindings:
-                raise UnboundVariable(annotation)
+                raise UnboundVariableError(annotation)
             return bindings[annotation]
     return _generic(annotation, bindings)
 
@@ -177,7 +178,7 @@ def _field(cls: type, field: dataclasses.Field[Any], names: StructNames) -> tupl
         annotation = evaluate(annotation, names.enclosing, names.module)
     try:
         found = to_type(annotation)
-    except UnboundVariable:
+    except UnboundVariableError:
         raise AnnotationError(f"field '{field.name}' of '{cls.__name__}' has no type") from None
     if is_static(found):
         raise AnnotationError(f"field '{field.name}' of '{cls.__name__}' cannot be {found}")
@@ -189,10 +190,14 @@ def struct_defaults(cls: type) -> dict[str, Callable[[], Any]]:
     defaults: dict[str, Callable[[], Any]] = {}
     for field in dataclasses.fields(cls):
         if field.default is not dataclasses.MISSING:
-            defaults[field.name] = lambda value=field.default: value
+            defaults[field.name] = partial(_same, field.default)
         elif field.default_factory is not dataclasses.MISSING:
             defaults[field.name] = field.default_factory
     return defaults
+
+
+def _same(value: Any) -> Any:
+    return value
 
 
 def admits(variable: TypeVar, type: Type) -> bool:

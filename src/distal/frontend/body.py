@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from distal.diagnostics import Diagnostic, Span
-from distal.frontend.problems import Followup, Problem
+from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.scan import Plan
 from distal.frontend.source import SourceMap
 from distal.frontend.values import Closure, Static, Value
@@ -119,10 +119,13 @@ class Body:
         return self.source.span(node)
 
     def problem(
-        self, message: str, node: ast.expr | ast.stmt | ast.arg | ast.keyword, hint: str | None = None
-    ) -> Problem:
+        self,
+        message: str,
+        node: ast.expr | ast.stmt | ast.arg | ast.keyword,
+        hint: str | None = None,
+    ) -> SceneError:
         """A mistake at a node, to be raised."""
-        return Problem(message, self.span(node), hint)
+        return SceneError(message, self.span(node), hint)
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Note a mistake of this function."""
@@ -229,7 +232,7 @@ class Body:
     def read(self, variable: Variable, node: ast.expr) -> Value:
         """The value of a variable here; of an enclosing function's variable, a capture."""
         if variable.failed:
-            raise Followup
+            raise FollowupError
         owner = variable.owner
         if variable not in owner.assigned and owner.reachable:
             message = f"'{variable.name}' may be read before it has a value"
@@ -237,7 +240,7 @@ class Body:
         if variable.static is not None:
             return variable.static
         if variable.type is None:
-            raise Followup
+            raise FollowupError
         if owner is self:
             return Read(variable.ir_name, variable.type, span=self.span(node))
         return self.capture(variable)
@@ -296,4 +299,3 @@ def zero(type: Type) -> Expr:
             return Construct((zero(element),) * length, type)
         case _:
             raise AssertionError(f"{type} is no type of a local")
-

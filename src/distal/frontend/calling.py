@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeVar
 
 from distal.diagnostics import Diagnostic
-from distal.frontend.annotations import AnnotationError, UnboundVariable, to_type
+from distal.frontend.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.body import Body, Variable
+from distal.frontend.fitting import shown_type
 from distal.frontend.headers import MISSING, Header
+from distal.frontend.instances import Instance
 from distal.frontend.matching import Argument, closeness, match, pair, signature_of
-from distal.frontend.problems import Followup, Problem
+from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.scan import scan
 from distal.frontend.statements import lower_statements
 from distal.frontend.values import Value, Whole
@@ -21,21 +23,23 @@ from distal.ir.walk import blocks, map_statement
 from distal.lang.functions import Func
 
 if TYPE_CHECKING:
-    from distal.frontend.program import Instance, Program
+    from distal.frontend.program import Program
 
 
-def call(program: Program, body: Body, function: Func, args: Sequence[Value], node: ast.Call) -> Expr:
+def call(
+    program: Program, body: Body, function: Func, args: Sequence[Value], node: ast.Call
+) -> Expr:
     """A call of another scene function."""
     positional = [Argument(v, n) for v, n in zip(args, node.args, strict=True)]
     keywords = keyword_arguments(body, node)
     headers = [program.header(o) for o in function.overloads]
     header, paired = _choose(body, function, headers, positional, keywords, node)
     if header.problems:
-        raise Followup
+        raise FollowupError
     matched = match(body, header, paired)
     instance = instantiate(program, header, matched.types, matched.bindings, (body, node))
     if instance.result is None:
-        raise Followup
+        raise FollowupError
     return Call(instance.name, matched.args, instance.result, span=body.span(node))
 
 
@@ -60,23 +64,23 @@ def _choose(
     if len(headers) == 1:
         (only,) = headers
         if only.problems and not only.slots:
-            raise Followup
+            raise FollowupError
         return only, pair(body, only, args, keywords, node)
     best: tuple[int, Header, list[Argument]] | None = None
     for header in headers:
         try:
             paired = pair(body, header, args, keywords, node)
-        except Problem:
+        except SceneError:
             continue
         score = closeness(header, paired, body)
         if score is not None and (best is None or score > best[0]):
             best = (score, header, paired)
     if best is None:
-        from distal.frontend.fitting import shown_type
-
         shown = ", ".join(shown_type(a.value) for a in (*args, *keywords.values()))
         hint = " or ".join(signature_of(h) for h in headers)
-        raise body.problem(f"no overload of '{function.name}' takes {shown or 'nothing'}", node, hint)
+        raise body.problem(
+            f"no overload of '{function.name}' takes {shown or 'nothing'}", node, hint
+        )
     return best[1], best[2]
 
 
@@ -88,8 +92,6 @@ def instantiate(
     caller: tuple[Body, ast.expr | ast.stmt] | None,
 ) -> Instance:
     """The function for these types, lowered now if it was not yet."""
-    from distal.frontend.program import Instance
-
     key = (header.overload, types)
     known = program.instances.get(key)
     if known is not None:
@@ -138,9 +140,7 @@ def lower_function(
         return
     instance.result = result
     program.functions.append(
-        Function(
-            instance.name, tuple(params), result, statements, header.name, span=header.span
-        )
+        Function(instance.name, tuple(params), result, statements, header.name, span=header.span)
     )
 
 
@@ -157,7 +157,7 @@ def _declare_result(
     except AnnotationError as error:
         body.report(Diagnostic(error.message, span, error.hint))
         return False
-    except UnboundVariable as error:
+    except UnboundVariableError as error:
         message = f"nothing tells what '{error.variable.__name__}' is"
         body.report(Diagnostic(message, span))
         return False
@@ -184,9 +184,7 @@ def lower_body(body: Body, statements: list[ast.stmt]) -> tuple[Stmt, ...]:
     return tuple(block.statements)
 
 
-def settle_result(
-    body: Body, statements: tuple[Stmt, ...]
-) -> tuple[Type | None, tuple[Stmt, ...]]:
+def settle_result(body: Body, statements: tuple[Stmt, ...]) -> tuple[Type | None, tuple[Stmt, ...]]:
     """The result's type; without an annotation the returned values tell."""
     if body.result is not None:
         return body.result, statements
@@ -197,7 +195,8 @@ def settle_result(
     wholes = [isinstance(value, Whole) for value, _ in body.returned]
     if set(found) == {INT, FLOAT}:
         literal = all(
-            whole for whole, (value, _) in zip(wholes, body.returned, strict=True)
+            whole
+            for whole, (value, _) in zip(wholes, body.returned, strict=True)
             if whole or getattr(value, "type", None) is INT
         )
         if literal:

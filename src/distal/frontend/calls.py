@@ -5,17 +5,18 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from types import FunctionType as PythonFunction
 from types import ModuleType
 from typing import Any, Final
 
 from distal.frontend.annotations import AnnotationError, to_type
 from distal.frontend.body import Body
-from distal.frontend.rows import PYTHON_FUNCTIONS, call_row
 from distal.frontend.constructors import construct, construct_struct, length_of
 from distal.frontend.fitting import fit_or_refuse, settle, shown_type
 from distal.frontend.operators import meet
-from distal.frontend.problems import Problem
+from distal.frontend.problems import SceneError
+from distal.frontend.rows import PYTHON_FUNCTIONS, call_row
 from distal.frontend.values import Closure, Display, Static, Value, Whole
 from distal.ir.build import splat
 from distal.ir.intrinsics import INTRINSICS
@@ -123,7 +124,7 @@ def _row_keywords(
 ) -> list[Value]:
     slots: dict[str, Value] = dict(zip(names, args, strict=False))
     for keyword in node.keywords:
-        if keyword.arg not in names:
+        if keyword.arg is None or keyword.arg not in names:
             hint = f"its arguments: {', '.join(names)}"
             raise body.problem(f"'{name}' has no argument '{keyword.arg}'", keyword, hint)
         if keyword.arg in slots:
@@ -142,12 +143,10 @@ def _type_call(body: Body, cls: type, text: str, node: ast.Call) -> Value:
     return construct(body, type, arguments(body, node), node)
 
 
-def _not_scene_code(body: Body, obj: Any, text: str, node: ast.Call) -> Problem:
+def _not_scene_code(body: Body, obj: Any, text: str, node: ast.Call) -> SceneError:
     hint = None
-    try:
+    with suppress(TypeError):  # not hashable
         hint = _HINTS.get(obj)
-    except TypeError:
-        pass
     if hint is None:
         name = getattr(obj, "__name__", None)
         if isinstance(obj, PythonFunction):
@@ -173,7 +172,9 @@ def _apply(body: Body, function: Expr, type: FunctionType, node: ast.Call) -> Ex
     return Apply(function, fitted, type.result, span=body.span(node))
 
 
-def _exactly(body: Body, name: str, count: int, node: ast.Call, hint: str | None = None) -> list[Value]:
+def _exactly(
+    body: Body, name: str, count: int, node: ast.Call, hint: str | None = None
+) -> list[Value]:
     if node.keywords:
         raise body.problem(f"'{name}' takes no keyword arguments", node.keywords[0], hint)
     args = arguments(body, node)

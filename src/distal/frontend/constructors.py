@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from distal.frontend.annotations import AnnotationError, struct_defaults, struct_type
 from distal.frontend.body import Body
 from distal.frontend.fitting import fit, fit_or_refuse, natural_type, settle, shown_type
-from distal.frontend.objects import Refused, value_of
+from distal.frontend.objects import RefusedError, value_of
 from distal.frontend.problems import did_you_mean
 from distal.frontend.values import Closure, Display, Static, Value, Whole
 from distal.ir.build import cast, number, splat
@@ -199,7 +199,7 @@ def _struct_field(
         raise body.problem(f"'{type}' needs its field '{name}'", node)
     try:
         default = value_of(make(), f"{type}.{name}", body.program)
-    except Refused as refused:
+    except RefusedError as refused:
         raise body.problem(refused.message, node, refused.hint) from None
     return fit_or_refuse(body, default, wanted, node, what)
 
@@ -228,5 +228,3 @@ def repeated(body: Body, element: Value, count: Value, node: ast.expr) -> Value:
     if not 1 <= total <= 1 << 16:
         raise body.problem(f"an array has 1 to {1 << 16} elements, not {total}", node)
     return Display(element.items * count.value, is_list=True)
-
-

@@ -15,7 +15,7 @@ from distal.frontend.body import Body, Variable
 from distal.frontend.calls import arguments, lower_call
 from distal.frontend.constructors import repeated
 from distal.frontend.fitting import constant_int, fit, settle, unify
-from distal.frontend.objects import Refused, float_constant, value_of
+from distal.frontend.objects import RefusedError, float_constant, value_of
 from distal.frontend.operators import binary, compare, condition, unary
 from distal.frontend.problems import did_you_mean
 from distal.frontend.refusals import refusal
@@ -56,7 +56,7 @@ def _constant(body: Body, node: ast.Constant) -> Value:
         case float():
             try:
                 return float_constant(node.value, ast.unparse(node))
-            except Refused as refused:
+            except RefusedError as refused:
                 raise body.problem(refused.message, node, refused.hint) from None
         case _:
             raise refusal(body, node)
@@ -77,7 +77,7 @@ def object_value(body: Body, obj: Any, text: str, node: ast.expr) -> Value:
     """The meaning of a Python object that is named here."""
     try:
         return value_of(obj, text, body.program)
-    except Refused as refused:
+    except RefusedError as refused:
         raise body.problem(refused.message, node, refused.hint) from None
 
 
@@ -100,7 +100,7 @@ def _as_vector(body: Body, display: Display, node: ast.expr) -> Value:
 def member(body: Body, value: Expr, name: str, node: ast.expr) -> Expr:
     """``value.name``: a swizzle or a field."""
     match value.type:
-        case Vector(kind, size):
+        case Vector(kind):
             lanes = swizzle_lanes(body, name, value.type, node)
             return Swizzle(value, lanes, vector_of(kind, len(lanes)), span=body.span(node))
         case Struct(_, fields, False):
@@ -113,10 +113,10 @@ def member(body: Body, value: Expr, name: str, node: ast.expr) -> Expr:
             hint = f"{close} {listed}" if close else listed
             raise body.problem(f"{value.type} has no field '{name}'", node, hint)
         case _:
-            hint = None
+            hint = ""
             if isinstance(value.type, Scalar) and set(name) <= set("xyzwrgba"):
                 hint = f"a {value.type} has one component: use it as it is"
-            raise body.problem(f"{value.type} has no '{name}'", node, hint)
+            raise body.problem(f"{value.type} has no '{name}'", node, hint or None)
 
 
 def swizzle_lanes(body: Body, name: str, type: Vector, node: ast.expr) -> str:
@@ -262,7 +262,9 @@ def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:
     if isinstance(base.type, Struct):
         raise body.problem("a tuple's index is a number known now", node.slice)
     if value.type is not INT:
-        hint = "write int(...) around it" if kind_of(value.type) in (Kind.FLOAT, Kind.UINT) else None
+        hint = (
+            "write int(...) around it" if kind_of(value.type) in (Kind.FLOAT, Kind.UINT) else None
+        )
         raise body.problem(f"an index is int, not {value.type}", node.slice, hint)
     return Index(base, value, element_type(base.type), span=body.span(node))
 
@@ -327,7 +329,9 @@ def make_closure(body: Body, node: ast.Lambda | ast.FunctionDef, name: str) -> C
     """A function that may use the locals around it; its defaults are computed here."""
     a = node.args
     if a.vararg or a.kwarg:
-        raise body.problem("'*' parameters are not part of scene code", a.vararg or a.kwarg or a.args[0])
+        raise body.problem(
+            "'*' parameters are not part of scene code", a.vararg or a.kwarg or a.args[0]
+        )
     positional = [*a.posonlyargs, *a.args]
     pairs = list(zip(positional[len(positional) - len(a.defaults) :], a.defaults, strict=True))
     pairs += [(p, d) for p, d in zip(a.kwonlyargs, a.kw_defaults, strict=True) if d is not None]

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from distal.frontend.body import Body
 from distal.frontend.objects import kind_of_object
-from distal.frontend.problems import Problem
+from distal.frontend.problems import SceneError
 from distal.frontend.values import Closure, Display, Static, Value, Whole, describe, whole_to
 from distal.ir.nodes import Compose, Const, Construct, Expr
 from distal.ir.types import (
@@ -145,7 +145,7 @@ def settle(body: Body, value: Value, node: ast.expr | ast.stmt) -> Expr:
             return value
 
 
-def not_a_value(body: Body, obj: object, text: str, node: ast.expr | ast.stmt) -> Problem:
+def not_a_value(body: Body, obj: object, text: str, node: ast.expr | ast.stmt) -> SceneError:
     """The mistake of using a function, a type or a module as a value."""
     hint = None
     if isinstance(obj, Func | LangFunction | LangForm):
@@ -159,15 +159,13 @@ def _kind(obj: object) -> str:
     return kind_of_object(obj)
 
 
-def _mixed_display(body: Body, value: Value, node: ast.expr | ast.stmt) -> Problem:
+def _mixed_display(body: Body, value: Value, node: ast.expr | ast.stmt) -> SceneError:
     assert isinstance(value, Display)
     for item in value.items:
         if isinstance(item, Static | Closure):
             return body.problem(f"{describe(item)} is not a value", node)
     kinds = list(dict.fromkeys(describe(i) for i in value.items))
-    return body.problem(
-        f"the elements of an array have one type, not {' and '.join(kinds)}", node
-    )
+    return body.problem(f"the elements of an array have one type, not {' and '.join(kinds)}", node)
 
 
 def fit_or_refuse(
@@ -179,7 +177,9 @@ def fit_or_refuse(
         return fitted
     if isinstance(value, Static):
         raise not_a_value(body, value.object, value.text, node)
-    raise body.problem(f"{what} is {type}, not {shown_type(value)}", node, conversion_hint(value, type))
+    raise body.problem(
+        f"{what} is {type}, not {shown_type(value)}", node, conversion_hint(value, type)
+    )
 
 
 def shown_type(value: Value) -> str:

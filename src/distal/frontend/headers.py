@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from distal.diagnostics import Diagnostic, Span
 from distal.frontend.body import Names
-from distal.frontend.problems import Problem, did_you_mean
+from distal.frontend.problems import SceneError, did_you_mean
 from distal.frontend.source import SourceMap, parse_definition
 from distal.lang.functions import Overload
 
@@ -121,7 +121,7 @@ def _slots(header: Header, python: FunctionType) -> list[Slot]:
 def _evaluated(header: Header, node: ast.expr) -> Any:
     try:
         return header.names.annotation(node)
-    except Problem as problem:
+    except SceneError as problem:
         span = header.source.span(node)
         diagnostic = problem.diagnostic
         header.problems.append(Diagnostic(diagnostic.message, span, diagnostic.hint))
@@ -157,17 +157,18 @@ def _names(python: FunctionType, enclosing: Mapping[str, Any]) -> Names:
 def _annotation(node: ast.expr, find: Any, known: Any) -> Any:
     """Evaluate an annotation as Python would, its names looked up by ``find``."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        text = node.value
         try:
-            node = ast.parse(node.value, mode="eval").body
+            node = ast.parse(text, mode="eval").body
         except (SyntaxError, RecursionError, ValueError):
-            raise Problem(f"'{node.value}' is not a type of scene code", None) from None
+            raise SceneError(f"'{text}' is not a type of scene code", None) from None
     names = [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]
     scope: dict[str, Any] = {}
     for name in names:
         exists, found = find(name)
         if not exists:
             hint = did_you_mean(name, known())
-            raise Problem(f"'{name}' is not defined", None, hint)
+            raise SceneError(f"'{name}' is not defined", None, hint)
         scope[name] = found
     if isinstance(node, ast.Name):
         return scope[node.id]
@@ -176,4 +177,4 @@ def _annotation(node: ast.expr, find: Any, known: Any) -> Any:
         return eval(code, {"__builtins__": {}}, scope)
     except Exception as error:
         message = f"'{ast.unparse(node)}' is not a type of scene code"
-        raise Problem(message, None, str(error) or None) from None
+        raise SceneError(message, None, str(error) or None) from None

@@ -12,15 +12,16 @@ from typing import TYPE_CHECKING
 
 from distal.diagnostics import Diagnostic
 from distal.frontend import calling
-from distal.frontend.body import Body
-from distal.frontend.fitting import fit_or_refuse, natural_type, settle
+from distal.frontend.body import Body, Variable
+from distal.frontend.fitting import fit_or_refuse, settle
 from distal.frontend.headers import MISSING, Header
+from distal.frontend.instances import Instance
 from distal.frontend.matching import slot_type
-from distal.frontend.objects import Refused, value_of
-from distal.frontend.problems import Followup, Problem
-from distal.frontend.rows import _exact
+from distal.frontend.objects import RefusedError, value_of
+from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.rows import exact_instances
 from distal.frontend.scan import scan
-from distal.frontend.values import Closure, Static, Value, Whole
+from distal.frontend.values import Closure, Static, Value
 from distal.ir.intrinsics import Intrinsic
 from distal.ir.nodes import (
     Builtin,
@@ -37,7 +38,7 @@ from distal.lang.functions import Func
 from distal.lang.names import LangFunction
 
 if TYPE_CHECKING:
-    from distal.frontend.program import Instance, Program
+    from distal.frontend.program import Program
 
 Node = ast.expr | ast.stmt
 
@@ -60,14 +61,14 @@ def function_value(
 def _func_value(
     program: Program, body: Body, function: Func, type: FunctionType, node: Node
 ) -> Expr | None:
-    problem: Problem | None = None
+    problem: SceneError | None = None
     for overload in function.overloads:
         header = program.header(overload)
         if header.problems:
-            raise Followup
+            raise FollowupError
         try:
             found = _header_value(program, body, header, type, node)
-        except Problem as error:
+        except SceneError as error:
             problem = error
             continue
         if found is not None:
@@ -100,7 +101,7 @@ def _header_value(
     )
     instance = calling.instantiate(program, header, types, bindings, (body, node))
     if instance.result is None:
-        raise Followup
+        raise FollowupError
     if instance.result is not type.result:
         message = f"'{header.name}' gives {instance.result} where {type} is wanted"
         raise body.problem(message, node)
@@ -112,14 +113,14 @@ def _default(
 ) -> Expr:
     try:
         value = value_of(default, name, program)
-    except Refused as refused:
+    except RefusedError as refused:
         raise body.problem(refused.message, node, refused.hint) from None
     return fit_or_refuse(body, value, type, node, f"the default of '{name}' of '{function}'")
 
 
 def _row_value(program: Program, row: Intrinsic, type: FunctionType) -> Expr | None:
     """A built-in passed as a function: a small function that calls it."""
-    result = _exact(row.name).get(type.params)
+    result = exact_instances(row.name).get(type.params)
     if result is not type.result:
         return None
     instance = lower_row(program, row, type.params)
@@ -128,13 +129,11 @@ def _row_value(program: Program, row: Intrinsic, type: FunctionType) -> Expr | N
 
 def lower_row(program: Program, row: Intrinsic, types: tuple[Type, ...]) -> Instance:
     """A function of the module that only calls a built-in."""
-    from distal.frontend.program import Instance
-
     key = (row.name, types)
     known = program.instances.get(key)
     if known is not None:
         return known
-    result = _exact(row.name)[types]
+    result = exact_instances(row.name)[types]
     name = program.unique_name(f"{row.name}_function", str(types[0]))
     params = tuple(Param(n, t) for n, t in zip(row.args, types, strict=True))
     value = Builtin(row.name, tuple(Read(p.name, p.type) for p in params), result)
@@ -158,7 +157,7 @@ def _closure_value(
     types = (*type.params, *(d.type for d in defaults))
     instance = lift(program, body, closure, types, type.result, node)
     if instance.result is None:
-        raise Followup
+        raise FollowupError
     if instance.result is not type.result:
         what = "the lambda" if closure.name == "lambda" else f"'{closure.name}'"
         raise body.problem(f"{what} gives {instance.result} where {type.result} is wanted", node)
@@ -166,11 +165,8 @@ def _closure_value(
     return FunctionRef(instance.name, (*defaults, *captures), type)
 
 
-def captured(body: Body, variable: object, node: Node) -> Expr:
+def captured(body: Body, variable: Variable, node: Node) -> Expr:
     """The value that a captured variable has where the function is used."""
-    from distal.frontend.body import Variable
-
-    assert isinstance(variable, Variable)
     if variable not in variable.owner.assigned and variable.owner.reachable:
         message = f"'{variable.name}' may be read before it has a value"
         raise body.problem(message, node, "give it a value first")
@@ -208,7 +204,7 @@ def call_closure(
     types = tuple(f.type for f in fitted)
     instance = lift(program, body, closure, types, None, node)
     if instance.result is None:
-        raise Followup
+        raise FollowupError
     captures = tuple(captured(body, v, node) for v in instance.captures)
     return Call(instance.name, (*fitted, *captures), instance.result, span=body.span(node))
 
@@ -231,16 +227,14 @@ def lift(
     node: Node,
 ) -> Instance:
     """Lower a lambda or nested function for these types, once."""
-    from distal.frontend.program import Instance
-
-    known = closure.instances.get((*types, result))  # type: ignore[arg-type]
+    known: Instance | None = closure.instances.get((*types, result))
     if known is not None:
         program.check_recursion(known, body.span(node))
-        return known  # type: ignore[no-any-return]
+        return known
     owner = closure.owner
     name = f"{owner.name}_{closure.name}" if closure.name == "lambda" else closure.name
     instance = Instance(program.unique_name(name), closure.name, types)
-    closure.instances[(*types, result)] = instance  # type: ignore[index]
+    closure.instances[(*types, result)] = instance
     program.in_progress.append(instance)
     try:
         _lower_closure(program, closure, instance, result)
@@ -270,7 +264,8 @@ def _lower_closure(
     if isinstance(node, ast.FunctionDef) and node.returns is not None:
         body.result = program.annotation(owner, node.returns)
     elif isinstance(node, ast.Lambda):
-        body.result = _literal_result(result)
+        # A lambda's result is what is wanted of it, so that its literals take that type.
+        body.result = result
     instance.result = body.result
     statements = calling.lower_body(body, body_nodes)
     if body.reachable and not body.failed and isinstance(node, ast.FunctionDef):
@@ -293,17 +288,9 @@ def _lower_closure(
     )
 
 
-def _literal_result(result: Type | None) -> Type | None:
-    """A lambda's result is what is wanted of it, so that its literals take that type."""
-    return result
-
-
 def _check_annotation(program: Program, owner: Body, arg: ast.arg, type: Type) -> None:
     if arg.annotation is None:
         return
     annotated = program.annotation(owner, arg.annotation)
     if annotated is not type:
         raise owner.problem(f"parameter '{arg.arg}' is {annotated}, and gets {type}", arg)
-
-
-_ = (natural_type, Whole)

@@ -6,14 +6,15 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from distal.diagnostics import CompileError, Diagnostic
-from distal.frontend.annotations import AnnotationError, UnboundVariable, admits, to_type
+from distal.frontend.annotations import AnnotationError, UnboundVariableError, admits, to_type
 from distal.frontend.calling import instantiate
 from distal.frontend.headers import MISSING, Header
+from distal.frontend.instances import Instance
 from distal.frontend.lifting import lower_row
 from distal.frontend.matching import signature_of
-from distal.frontend.problems import Followup, Problem
-from distal.frontend.program import Instance, Program
-from distal.frontend.rows import _exact
+from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.program import Program
+from distal.frontend.rows import exact_instances
 from distal.ir.nodes import EntryKind, Function, Module
 from distal.ir.types import FRAME, VEC3, VEC4, FunctionType, Type, is_static
 from distal.lang.functions import Func, Image
@@ -41,9 +42,7 @@ def lower(obj: Func | Image | LangFunction, arg_types: tuple[Type, ...] | None =
     return _guarded(program, obj.name, lambda: _lower_func(program, obj, arg_types))
 
 
-def lower_overload(
-    func: Func | LangFunction, arg_types: tuple[Type, ...]
-) -> tuple[Function, ...]:
+def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tuple[Function, ...]:
     """A function for exactly these argument types, and what it calls, callees first.
 
     Unlike for ``lower``, parameters may be functions, textures and buffers.
@@ -68,9 +67,9 @@ def _guarded(program: Program, name: str, work: Callable[[], R]) -> R:
     """Run, and turn whatever stops the work into one error with all mistakes."""
     try:
         return work()
-    except Problem as problem:
+    except SceneError as problem:
         program.report(problem.diagnostic)
-    except Followup:
+    except FollowupError:
         pass
     except CompileError as error:
         for diagnostic in error.diagnostics:
@@ -87,7 +86,7 @@ def _lower_builtin(
     program: Program, function: LangFunction, types: tuple[Type, ...] | None
 ) -> Module:
     row = function.row
-    if types is None or types not in _exact(row.name):
+    if types is None or types not in exact_instances(row.name):
         given = "nothing" if not types else ", ".join(map(str, types))
         raise CompileError.at(f"'{row.name}' does not take {given}", None)
     return program.finish(lower_row(program, row, types), EntryKind.FUNCTION)
@@ -96,13 +95,13 @@ def _lower_builtin(
 def _lower_image(program: Program, image: Image) -> Module:
     header = program.header(image.overloads[0])
     if len(image.overloads) > 1:
-        raise Problem(f"the image '{image.name}' has overloads", header.span)
+        raise SceneError(f"the image '{image.name}' has overloads", header.span)
     hint = f"write def {image.name}(frame: Frame) -> vec3"
     if not header.problems:
         types = [_plain_type(program, s.annotation) for s in header.slots]
         if types != [FRAME]:
             message = f"the image '{image.name}' takes one parameter, a Frame"
-            raise Problem(message, header.span, hint)
+            raise SceneError(message, header.span, hint)
     instance = instantiate(program, header, (FRAME,) * len(header.slots), {}, None)
     if instance.result is not None and instance.result not in (VEC3, VEC4):
         message = f"the image '{image.name}' returns vec3 or vec4, not {instance.result}"
@@ -113,7 +112,7 @@ def _lower_image(program: Program, image: Image) -> Module:
 def _plain_type(program: Program, annotation: object) -> Type | None:
     try:
         return program.adopt(to_type(annotation))
-    except (AnnotationError, UnboundVariable):
+    except (AnnotationError, UnboundVariableError):
         return None
 
 
@@ -125,7 +124,7 @@ def _lower_func(program: Program, func: Func, types: tuple[Type, ...] | None) ->
         if is_static(type) or type is FRAME:
             what = "a function" if isinstance(type, FunctionType) else f"a {type}"
             message = f"'{func.name}' takes {what}: only scene code can call it"
-            raise Problem(message, header.span)
+            raise SceneError(message, header.span)
     return program.finish(_instance(program, func, types), EntryKind.FUNCTION)
 
 
@@ -134,7 +133,7 @@ def _own_types(program: Program, func: Func) -> tuple[Type, ...]:
     headers = [program.header(o) for o in func.overloads]
     if len(headers) > 1:
         message = f"'{func.name}' has {len(headers)} overloads: say which argument types are meant"
-        raise Problem(message, headers[0].span)
+        raise SceneError(message, headers[0].span)
     (header,) = headers
     types: list[Type] = []
     for slot in header.slots:
@@ -144,12 +143,12 @@ def _own_types(program: Program, func: Func) -> tuple[Type, ...]:
             continue
         try:
             types.append(program.adopt(to_type(slot.annotation)))
-        except UnboundVariable:
+        except UnboundVariableError:
             message = f"'{func.name}' is generic: say which argument types are meant"
-            raise Problem(message, slot.span) from None
+            raise SceneError(message, slot.span) from None
         except AnnotationError as error:
             program.report(Diagnostic(error.message, slot.span, error.hint))
-            raise Followup from None
+            raise FollowupError from None
     return tuple(types)
 
 
@@ -162,7 +161,7 @@ def _instance(program: Program, func: Func, types: tuple[Type, ...]) -> Instance
             return instantiate(program, header, types, bindings, None)
     given = ", ".join(map(str, types)) or "nothing"
     hint = " or ".join(signature_of(h) for h in headers)
-    raise Problem(f"'{func.name}' does not take {given}", headers[0].span, hint)
+    raise SceneError(f"'{func.name}' does not take {given}", headers[0].span, hint)
 
 
 def _exact_bindings(
@@ -183,7 +182,7 @@ def _exact_bindings(
             ):
                 return None
         except AnnotationError as error:
-            raise Problem(error.message, slot.span, error.hint) from None
-        except UnboundVariable:
+            raise SceneError(error.message, slot.span, error.hint) from None
+        except UnboundVariableError:
             return None
     return bindings

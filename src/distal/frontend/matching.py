@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from distal.frontend.annotations import (
     AnnotationError,
-    UnboundVariable,
+    UnboundVariableError,
     admits,
     choices,
     to_type,
@@ -28,8 +28,8 @@ from distal.frontend.fitting import (
     shown_type,
 )
 from distal.frontend.headers import MISSING, Header, Slot
-from distal.frontend.objects import Refused, value_of
-from distal.frontend.problems import Followup, Problem, did_you_mean
+from distal.frontend.objects import RefusedError, value_of
+from distal.frontend.problems import FollowupError, SceneError, did_you_mean
 from distal.frontend.values import Closure, Static, Value, Whole
 from distal.ir.build import splat
 from distal.ir.nodes import Expr
@@ -72,7 +72,11 @@ def ast_annotation(header: Header, name: str) -> str:
 
 
 def pair(
-    body: Body, header: Header, args: Sequence[Argument], keywords: dict[str, Argument], node: ast.expr
+    body: Body,
+    header: Header,
+    args: Sequence[Argument],
+    keywords: dict[str, Argument],
+    node: ast.expr,
 ) -> list[Argument]:
     """One argument for each parameter: by place, by keyword, by default."""
     name = header.name
@@ -101,9 +105,9 @@ def pair(
 def _default(body: Body, header: Header, slot: Slot, node: ast.expr) -> Argument:
     try:
         value = value_of(slot.default, slot.name, body.program)
-    except Refused as refused:
+    except RefusedError as refused:
         message = f"the default of '{slot.name}' of '{header.name}': {refused.message}"
-        raise Problem(message, slot.span, refused.hint) from None
+        raise SceneError(message, slot.span, refused.hint) from None
     return Argument(value, node)
 
 
@@ -111,7 +115,7 @@ def match(body: Body, header: Header, args: Sequence[Argument]) -> Match:
     """Bring paired arguments to the parameters' types.
 
     Raises:
-        Problem: An argument has another type.
+        SceneError: An argument has another type.
     """
     bindings = _bind(body, header, args)
     types, fitted = [], []
@@ -125,20 +129,18 @@ def match(body: Body, header: Header, args: Sequence[Argument]) -> Match:
 def slot_type(body: Any, header: Header, slot: Slot, bindings: dict[TypeVar, Type]) -> Type:
     """The type of a parameter."""
     if slot.annotation is MISSING:
-        raise Followup
+        raise FollowupError
     try:
         adopted: Type = body.program.adopt(to_type(slot.annotation, bindings))
         return adopted
     except AnnotationError as error:
-        raise Problem(error.message, slot.span, error.hint) from None
-    except UnboundVariable as error:
+        raise SceneError(error.message, slot.span, error.hint) from None
+    except UnboundVariableError as error:
         message = f"nothing tells what '{error.variable.__name__}' is in this call"
-        raise Problem(message, slot.span) from None
+        raise SceneError(message, slot.span) from None
 
 
-def _fit_argument(
-    body: Body, header: Header, slot: Slot, type: Type, argument: Argument
-) -> Expr:
+def _fit_argument(body: Body, header: Header, slot: Slot, type: Type, argument: Argument) -> Expr:
     value, node = argument.value, argument.node
     if isinstance(slot.annotation, TypeVar) and isinstance(type, Vector):
         scalar = Scalar(type.kind)
@@ -149,9 +151,7 @@ def _fit_argument(
     fitted = fit(body, value, type, node)
     if fitted is not None:
         return fitted
-    if isinstance(value, Static) and not (
-        isinstance(type, FunctionType) and is_callable(value)
-    ):
+    if isinstance(value, Static) and not (isinstance(type, FunctionType) and is_callable(value)):
         raise not_a_value(body, value.object, value.text, node)
     what = f"argument '{slot.name}' of '{header.name}'"
     raise body.problem(
@@ -171,10 +171,8 @@ def _bind(body: Body, header: Header, args: Sequence[Argument]) -> dict[TypeVar,
     return bindings
 
 
-def _bound(
-    body: Body, header: Header, variable: TypeVar, group: list[Argument]
-) -> Type:
-    firm = {}
+def _bound(body: Body, header: Header, variable: TypeVar, group: list[Argument]) -> Type:
+    firm: dict[Type, Argument] = {}
     for argument in group:
         if isinstance(argument.value, Static | Closure):
             continue
@@ -184,7 +182,7 @@ def _bound(
                 firm.setdefault(natural, argument)
     wide = [t for t in firm if not isinstance(t, Scalar)]
     if not firm:
-        chosen = INT if admits(variable, INT) else FLOAT
+        chosen: Type = INT if admits(variable, INT) else FLOAT
     elif len(wide) > 1 or (not wide and len(firm) > 1):
         names = " and ".join(map(str, firm))
         node = list(firm.values())[-1].node
@@ -209,7 +207,7 @@ def closeness(header: Header, args: Sequence[Argument], body: Body) -> int | Non
             if score is None:
                 return None
             total += score
-    except Problem:
+    except SceneError:
         return None
     return total
 
@@ -222,7 +220,7 @@ def _slot_closeness(
     if isinstance(type, FunctionType):
         return 2 if is_callable(value) else None
     if isinstance(value, Whole):
-        return {INT: 2, FLOAT: 1}.get(type, 0) if isinstance(type, Scalar) else None
+        return {INT.kind: 2, FLOAT.kind: 1}.get(type.kind, 0) if isinstance(type, Scalar) else None
     if natural_type(value) is type:
         return 3
     if isinstance(slot.annotation, TypeVar) and isinstance(type, Vector):

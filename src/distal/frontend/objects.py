@@ -13,7 +13,17 @@ from types import FunctionType, ModuleType
 from typing import Any, Protocol
 
 from distal.frontend.annotations import struct_type, to_type
-from distal.frontend.values import FALSE, LARGEST_FLOAT, TRUE, Display, Static, Value, Whole
+from distal.frontend.values import (
+    FALSE,
+    LARGEST_FLOAT,
+    TRUE,
+    Closure,
+    Display,
+    Static,
+    Value,
+    Whole,
+    whole_to,
+)
 from distal.ir.nodes import Compose, Const, Construct, Expr
 from distal.ir.types import (
     FLOAT,
@@ -37,7 +47,7 @@ from distal.lang.resources import TextureValue
 from distal.lang.values import MatrixValue, VectorValue, uint
 
 
-class Refused(Exception):
+class RefusedError(Exception):
     """An object that scene code cannot use; the message says why."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:
@@ -62,7 +72,7 @@ def value_of(obj: Any, text: str, declarations: Declarations) -> Value:
     """The value of an object named ``text``; a ``Static`` for what has none but may be used.
 
     Raises:
-        Refused: The object has no meaning in scene code.
+        RefusedError: The object has no meaning in scene code.
     """
     number = number_of(obj, text)
     if number is not None:
@@ -79,9 +89,9 @@ def value_of(obj: Any, text: str, declarations: Declarations) -> Value:
         case tuple() | list():
             return _sequence(obj, text, declarations)
         case str() | bytes():
-            raise Refused(f"'{text}' is text, which scene code does not have")
+            raise RefusedError(f"'{text}' is text, which scene code does not have")
         case dict() | set() | frozenset():
-            raise Refused(
+            raise RefusedError(
                 f"'{text}' is a {type(obj).__name__}, which scene code does not have",
                 "use a list, a struct or a Buffer",
             )
@@ -97,7 +107,7 @@ def number_of(obj: Any, text: str) -> Expr | Whole | None:
     if isinstance(obj, Enum):
         inner = number_of(obj.value, text)
         if inner is None:
-            raise Refused(f"'{text}' is an Enum member whose value is not a number")
+            raise RefusedError(f"'{text}' is an Enum member whose value is not a number")
         return inner
     if hasattr(obj, "dtype") and hasattr(obj, "item") and getattr(obj, "shape", None) == ():
         unsigned = obj.dtype.kind == "u"
@@ -120,13 +130,16 @@ def number_of(obj: Any, text: str) -> Expr | Whole | None:
 def float_constant(value: float, text: str) -> Expr:
     """A float that every target can say."""
     if math.isnan(value):
-        raise Refused(f"'{text}' is not a number (NaN), which scene code does not have")
+        raise RefusedError(f"'{text}' is not a number (NaN), which scene code does not have")
     if math.isinf(value):
-        raise Refused(
-            f"'{text}' is infinite, which scene code does not have", "use a large number, such as 1e9"
+        raise RefusedError(
+            f"'{text}' is infinite, which scene code does not have",
+            "use a large number, such as 1e9",
         )
     if abs(value) > LARGEST_FLOAT:
-        raise Refused(f"'{text}' is larger than a 32-bit float can be", "the largest is 3.4e38")
+        raise RefusedError(
+            f"'{text}' is larger than a 32-bit float can be", "the largest is 3.4e38"
+        )
     return Const(value, FLOAT)
 
 
@@ -152,7 +165,7 @@ def _lang_value(value: VectorValue | MatrixValue, text: str) -> Expr:
 
 def _sequence(items: Sequence[Any], text: str, declarations: Declarations) -> Value:
     if not items:
-        raise Refused(f"'{text}' is empty", "an array has at least one element")
+        raise RefusedError(f"'{text}' is empty", "an array has at least one element")
     inner = [i for i in items if isinstance(i, tuple | list)]
     if len(inner) == len(items):
         vectors = _rows(inner, text)
@@ -161,7 +174,9 @@ def _sequence(items: Sequence[Any], text: str, declarations: Declarations) -> Va
     values = tuple(value_of(i, f"{text}[{n}]", declarations) for n, i in enumerate(items))
     for value in values:
         if isinstance(value, Static):
-            raise Refused(f"'{text}' holds {value.object!r:.60}, which is no value of scene code")
+            raise RefusedError(
+                f"'{text}' holds {value.object!r:.60}, which is no value of scene code"
+            )
     return Display(values, is_list=True, captured=True)
 
 
@@ -179,7 +194,9 @@ def _rows(rows: list[Any], text: str) -> tuple[Value, ...] | None:
     type = vector_of(Kind.FLOAT, size)
     return tuple(
         Compose(
-            tuple(float_constant(float(n.value), text) for n in row if isinstance(n, Whole | Const)),
+            tuple(
+                float_constant(float(n.value), text) for n in row if isinstance(n, Whole | Const)
+            ),
             type,
         )
         for row in numbers
@@ -193,7 +210,7 @@ def _struct_value(obj: Any, text: str, declarations: Declarations) -> Expr:
         value = value_of(getattr(obj, name), f"{text}.{name}", declarations)
         fitted = fit_constant(value, field_type)
         if fitted is None:
-            raise Refused(f"'{text}.{name}' is not the {field_type} its struct says")
+            raise RefusedError(f"'{text}.{name}' is not the {field_type} its struct says")
         parts.append(fitted)
     return Construct(tuple(parts), struct)
 
@@ -201,7 +218,7 @@ def _struct_value(obj: Any, text: str, declarations: Declarations) -> Expr:
 def _array(obj: Any, text: str) -> Value:
     kind = {"f": Kind.FLOAT, "i": Kind.INT, "u": Kind.UINT, "b": Kind.BOOL}.get(obj.dtype.kind)
     if kind is None:
-        raise Refused(f"'{text}' is an array of {obj.dtype}, which scene code does not have")
+        raise RefusedError(f"'{text}' is an array of {obj.dtype}, which scene code does not have")
     shape = tuple(obj.shape)
     if len(shape) == 2 and shape[0] == shape[1] and 2 <= shape[0] <= 4 and kind is Kind.FLOAT:
         # NumPy writes rows, scene code's matrices are made of columns.
@@ -216,22 +233,22 @@ def _array(obj: Any, text: str) -> Value:
         vector = vector_of(kind, shape[1])
         rows = (Compose(tuple(_scalar(x, kind, text) for x in row), vector) for row in obj.tolist())
         return Display(tuple(rows), is_list=True, captured=True)
-    raise Refused(f"'{text}' is an array of shape {shape}, which no type holds", "use a Buffer")
+    raise RefusedError(
+        f"'{text}' is an array of shape {shape}, which no type holds", "use a Buffer"
+    )
 
 
 def fit_constant(value: Value, type: Type) -> Expr | None:
     """A captured value as a constant of exactly this type, or None."""
-    from_whole = {FLOAT: FLOAT}.get(type, type)
     match value:
-        case Whole(number) if isinstance(type, Scalar):
-            return float_constant(float(number), "") if from_whole is FLOAT else Const(number, type)
+        case Whole(number):
+            return whole_to(number, type)
         case Display(items):
             return _fit_display(items, type)
-        case Whole() | Static():
+        case Static() | Closure():
             return None
         case _:
-            expr_type = getattr(value, "type", None)
-            return value if expr_type is type else None  # type: ignore[return-value]
+            return value if value.type is type else None
 
 
 def _fit_display(items: tuple[Value, ...], type: Type) -> Expr | None:
@@ -252,7 +269,7 @@ def type_of_value(obj: Any) -> Type | None:
     """The type a Python value has in scene code, or None: for whoever calls a function with it."""
     try:
         number = number_of(obj, "value")
-    except Refused:
+    except RefusedError:
         return FLOAT  # NaN and infinity may be passed, though not written
     if isinstance(number, Whole):
         return to_type(int)
@@ -278,5 +295,3 @@ def kind_of_object(obj: Any) -> str:
     if isinstance(obj, type):
         return "a type"
     return f"a {type(obj).__name__}"
-
-

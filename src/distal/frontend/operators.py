@@ -12,8 +12,8 @@ from typing import Any, Final
 
 from distal.frontend.body import Body
 from distal.frontend.fitting import fit, natural_type, settle, shown_type
-from distal.frontend.objects import Refused, float_constant
-from distal.frontend.problems import Problem
+from distal.frontend.objects import RefusedError, float_constant
+from distal.frontend.problems import SceneError
 from distal.frontend.values import Display, Value, Whole
 from distal.ir.build import builtin, cast, number, splat
 from distal.ir.nodes import (
@@ -76,7 +76,9 @@ _SHIFTS = {BinaryOp.SHL, BinaryOp.SHR}
 _LARGEST_LITERAL = 1 << 64
 
 
-def binary(body: Body, op: ast.operator, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Value:
+def binary(
+    body: Body, op: ast.operator, lhs: Value, rhs: Value, node: ast.expr | ast.stmt
+) -> Value:
     """``lhs op rhs``."""
     if isinstance(op, ast.Pow):
         return power(body, lhs, rhs, node)
@@ -93,15 +95,13 @@ def binary(body: Body, op: ast.operator, lhs: Value, rhs: Value, node: ast.expr 
     return _arithmetic(body, kind, left, right, node)
 
 
-def _fold(
-    body: Body, op: BinaryOp, lhs: int, rhs: int, node: ast.expr | ast.stmt
-) -> Value | None:
+def _fold(body: Body, op: BinaryOp, lhs: int, rhs: int, node: ast.expr | ast.stmt) -> Value | None:
     if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD) and rhs == 0:
         raise body.problem("division by zero", node)
     if op is BinaryOp.DIV:
         try:
             return float_constant(lhs / rhs, "the quotient")
-        except (Refused, OverflowError):
+        except (RefusedError, OverflowError):
             raise body.problem("the quotient is out of the range of float", node) from None
     compute = _LITERAL.get(op)
     if compute is None:
@@ -166,13 +166,13 @@ def _literal_beside(body: Body, literal: Whole, other: Expr, node: ast.expr | as
 
 def _do_not_mix(
     body: Body, left: Type, right: Type, node: ast.expr | ast.stmt, symbol: str
-) -> Problem:
+) -> SceneError:
     message = f"{left} and {right} do not mix in '{symbol}'"
     hint = None
     kinds = {kind_of(left), kind_of(right)}
-    if isinstance(left, Matrix) and isinstance(right, Matrix | Vector) and symbol == "*":
-        hint = "the product of matrices is written @"
-    elif isinstance(right, Matrix) and isinstance(left, Vector) and symbol == "*":
+    if (isinstance(left, Matrix) and isinstance(right, Matrix | Vector) and symbol == "*") or (
+        isinstance(right, Matrix) and isinstance(left, Vector) and symbol == "*"
+    ):
         hint = "the product of matrices is written @"
     elif kinds == {Kind.INT, Kind.FLOAT}:
         hint = "convert the int: float(i), or vec3(v) of an ivec3"
@@ -186,9 +186,7 @@ def _do_not_mix(
     return body.problem(message, node, hint)
 
 
-def _arithmetic(
-    body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt
-) -> Expr:
+def _arithmetic(body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt) -> Expr:
     type, span = lhs.type, body.span(node)
     kind = kind_of(type)
     if kind is None:
@@ -219,14 +217,14 @@ def _check_matrix(
     if op in (BinaryOp.MUL, BinaryOp.DIV) and scaled:
         return
     if scaled or isinstance(lhs, Splat):
-        raise body.problem(f"'{op.value}' does not take {lhs.type} and a number in this order", node)
+        raise body.problem(
+            f"'{op.value}' does not take {lhs.type} and a number in this order", node
+        )
     hint = "the product of matrices is written @" if op is BinaryOp.MUL else None
     raise body.problem(f"'{op.value}' does not take {lhs.type} and {rhs.type}", node, hint)
 
 
-def _shift(
-    body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | ast.stmt
-) -> Value:
+def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Value:
     if isinstance(rhs, Whole) and not 0 <= rhs.value < 32:
         raise body.problem("a shift goes by 0 to 31 bits", node)
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
@@ -325,8 +323,10 @@ def _multiplied(body: Body, base: Expr, exponent: int, node: ast.expr | ast.stmt
     left = abs(exponent)
     while True:
         if left & 1:
-            result = power if result is None else Binary(
-                BinaryOp.MUL, result, power, base.type, span=span
+            result = (
+                power
+                if result is None
+                else Binary(BinaryOp.MUL, result, power, base.type, span=span)
             )
         left >>= 1
         if not left:
@@ -364,7 +364,7 @@ def unary(body: Body, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
         case ast.Invert() if kind is Kind.BOOL and isinstance(value.type, Vector):
             return Unary(UnaryOp.NOT, value, value.type, span=span)
         case _:
-            symbol = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}[type(op)]  # type: ignore[index]
+            symbol = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}[type(op)]
             hint = "write not" if isinstance(op, ast.Invert) and kind is Kind.BOOL else None
             raise body.problem(f"'{symbol}' does not take {value.type}", node, hint)
 
@@ -386,7 +386,7 @@ def compare(body: Body, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -
     return Compare(found, left, right, with_kind(left.type, Kind.BOOL), span=body.span(node))
 
 
-def _no_comparison(body: Body, op: ast.cmpop, node: ast.expr) -> Problem:
+def _no_comparison(body: Body, op: ast.cmpop, node: ast.expr) -> SceneError:
     match op:
         case ast.Is() | ast.IsNot():
             symbol = "is" if isinstance(op, ast.Is) else "is not"
@@ -410,5 +410,3 @@ def condition(body: Body, value: Value, node: ast.expr, what: str) -> Expr:
     elif isinstance(expr.type, Scalar):
         hint = "compare it: x != 0"
     raise body.problem(f"{what} is a bool, not {shown_type(expr)}", node, hint)
-
-

@@ -1,7 +1,7 @@
 """A mistake found while lowering, on its way from an expression to its statement.
 
-An expression raises a ``Problem``; the statement around it records the diagnostic and lowering
-goes on with the next statement. ``Followup`` is raised for a name whose own definition failed:
+An expression raises a ``SceneError``; the statement around it records the diagnostic and lowering
+goes on with the next statement. ``FollowupError`` is raised for a name whose own definition failed:
 its mistake was told once already.
 """
 
@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from distal.diagnostics import Diagnostic, Span
 
 
-class Problem(Exception):
+class SceneError(Exception):
     """A mistake of the author at a place."""
 
     def __init__(self, message: str, span: Span | None, hint: str | None = None) -> None:
@@ -21,7 +21,7 @@ class Problem(Exception):
         self.diagnostic = Diagnostic(message, span, hint)
 
 
-class Followup(Exception):
+class FollowupError(Exception):
     """The consequence of a mistake that was reported elsewhere."""
 
 

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend import calling, lifting
-from distal.frontend.annotations import AnnotationError, UnboundVariable, to_type
+from distal.frontend.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.body import Body
 from distal.frontend.expressions import lower_expression
 from distal.frontend.headers import Header, read_header
-from distal.frontend.problems import Followup, Problem
+from distal.frontend.instances import Instance
+from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.values import Closure, Value
 from distal.ir.nodes import (
     EntryKind,
@@ -30,30 +30,11 @@ from distal.ir.nodes import (
     Uniform,
     UniformDeclaration,
 )
-from distal.ir.types import Array, Buffer, FunctionType, Struct, Type
+from distal.ir.types import Array, FunctionType, Struct, Type
 from distal.lang.functions import Func, Overload
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer as LangBuffer
 from distal.lang.resources import TextureValue
-
-
-@dataclass(eq=False, slots=True)
-class Instance:
-    """A function lowered, or being lowered, for certain types.
-
-    Attributes:
-        name: Its name in the module.
-        source_name: What the author calls it.
-        params: The types of its own parameters, captures not counted.
-        result: None until it is known; stays None where a mistake hides it.
-        captures: The enclosing variables that its last parameters are, for a lifted function.
-    """
-
-    name: str
-    source_name: str
-    params: tuple[Type, ...]
-    result: Type | None = None
-    captures: tuple[Any, ...] = ()
 
 
 class Program:
@@ -104,7 +85,7 @@ class Program:
             except CompileError as error:
                 for diagnostic in error.diagnostics:
                     self.report(diagnostic)
-                raise Followup from None
+                raise FollowupError from None
             for diagnostic in header.problems:
                 self.report(diagnostic)
             self._headers[overload] = header
@@ -151,11 +132,11 @@ class Program:
         """The type that an annotation inside a body names."""
         try:
             return self.adopt(to_type(body.names.annotation(node), body.bindings))
-        except Problem as problem:
+        except SceneError as problem:
             raise body.problem(problem.diagnostic.message, node, problem.diagnostic.hint) from None
         except AnnotationError as error:
             raise body.problem(error.message, node, error.hint) from None
-        except UnboundVariable as error:
+        except UnboundVariableError as error:
             message = f"nothing tells what '{error.variable.__name__}' is here"
             raise body.problem(message, node) from None
 
@@ -165,7 +146,9 @@ class Program:
         known = self._uniforms.get(name)
         if known is not None and known[0] != parameter:
             message = f"two parameters are called '{name}'"
-            hint = f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
+            hint = (
+                f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
+            )
             raise CompileError.at(message, None, hint)
         if known is None:
             declaration = UniformDeclaration(
@@ -222,4 +205,4 @@ class Program:
             start = self.in_progress.index(instance)
             chain = [i.source_name for i in self.in_progress[start:]] + [instance.source_name]
             message = f"recursion is not part of scene code: {' calls '.join(chain)}"
-            raise Problem(message, span, "write a loop")
+            raise SceneError(message, span, "write a loop")

@@ -6,7 +6,7 @@ import ast
 from typing import Final
 
 from distal.frontend.body import Body
-from distal.frontend.problems import Problem
+from distal.frontend.problems import SceneError
 
 # Syntax node -> (what the author wrote, hint).
 _REFUSED: Final[dict[type[ast.AST], tuple[str, str | None]]] = {
@@ -40,7 +40,7 @@ _REFUSED: Final[dict[type[ast.AST], tuple[str, str | None]]] = {
 }
 
 
-def refusal(body: Body, node: ast.expr | ast.stmt) -> Problem:
+def refusal(body: Body, node: ast.expr | ast.stmt) -> SceneError:
     """The mistake of using syntax that scene code does not have."""
     if isinstance(node, ast.Constant):
         return _constant(body, node)
@@ -48,7 +48,7 @@ def refusal(body: Body, node: ast.expr | ast.stmt) -> Problem:
     return body.problem(f"{what} is not part of scene code", node, hint)
 
 
-def _constant(body: Body, node: ast.Constant) -> Problem:
+def _constant(body: Body, node: ast.Constant) -> SceneError:
     match node.value:
         case str() | bytes():
             return body.problem("text is not part of scene code", node)

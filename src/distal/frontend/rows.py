@@ -12,7 +12,7 @@ from typing import Any, Final
 from distal.frontend.body import Body
 from distal.frontend.fitting import fit, natural_type, settle, shown_type
 from distal.frontend.operators import power
-from distal.frontend.problems import Problem
+from distal.frontend.problems import SceneError
 from distal.frontend.values import Closure, Display, Static, Value, Whole
 from distal.ir.build import splat
 from distal.ir.intrinsics import INTRINSICS, Intrinsic
@@ -37,8 +37,12 @@ PYTHON_FUNCTIONS: Final[dict[Any, Intrinsic]] = {
 }
 
 
+# A whole-number literal is an int by itself, becomes a float readily, a uint only beside one.
+_LITERAL_SCORES: Final[dict[Type, int]] = {INT: 2, FLOAT: 1, UINT: 0}
+
+
 @cache
-def _exact(name: str) -> dict[tuple[Type, ...], Type]:
+def exact_instances(name: str) -> dict[tuple[Type, ...], Type]:
     """Every instance of a row: argument types to result."""
     instances: dict[tuple[Type, ...], Type] = {}
     for signature in INTRINSICS[name].signatures:
@@ -73,7 +77,7 @@ def call_row(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) 
     if row.name == "pow" and not isinstance(args[1], Display | Static | Closure):
         return power(body, args[0], args[1], node)
     types = tuple(None if isinstance(a, Whole) else natural_type(a) for a in args)
-    result = _exact(row.name).get(types)  # type: ignore[arg-type]  # None finds nothing
+    result = exact_instances(row.name).get(types)  # type: ignore[arg-type]  # None finds nothing
     if result is not None:
         settled = tuple(settle(body, a, node) for a in args)
         return Builtin(row.name, settled, result, span=body.span(node))
@@ -113,7 +117,7 @@ def _score(args: Sequence[Value], params: Sequence[Type], *, splats: bool) -> in
     total, exact = 0, False
     for arg, type in zip(args, params, strict=True):
         if isinstance(arg, Whole):
-            score = {INT: 2, FLOAT: 1, UINT: 0}.get(type)
+            score = _LITERAL_SCORES.get(type)
             if score is None and splats and isinstance(type, Vector):
                 score = 0
         elif isinstance(arg, Display):
@@ -150,7 +154,7 @@ def _fit(body: Body, value: Value, type: Type, node: ast.expr) -> Expr:
     return fitted
 
 
-def _mismatch(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) -> Problem:
+def _mismatch(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) -> SceneError:
     for arg in args:
         if isinstance(arg, Static | Closure):
             settle(body, arg, node)
@@ -171,13 +175,14 @@ def signature_text(row: Intrinsic) -> str:
         for n, p in zip(row.args, signature.params, strict=True)
         if not isinstance(p, Follows)
     ]
-    result = {
+    words: dict[object, str] = {
         Follows.T: f"the type of {followers[0]}" if followers else "",
         Follows.AS_BOOL: "a bool for each component",
         Follows.AS_INT: "an int for each component",
         Follows.AS_UINT: "a uint for each component",
         Follows.AS_FLOAT: "a float for each component",
         Follows.SQUARE: "a matrix",
-    }.get(signature.result, str(signature.result))  # type: ignore[call-overload]
+    }
+    result = words.get(signature.result, str(signature.result))
     rest = [f"{', '.join(followers)}: {over}"] if followers else []
     return ", ".join([f"{head} -> {result}", *fixed, *rest])

@@ -243,7 +243,9 @@ def _flow(statements: list[ast.stmt]) -> tuple[set[str], set[str] | frozenset[st
             case ast.While(head, body):
                 exposed |= (_loads(head) | _flow(body)[0]) - assigned
             case ast.For(target, head, body):
-                inside = _flow(body)[0] - {n.id for n in ast.walk(target) if isinstance(n, ast.Name)}
+                inside = _flow(body)[0] - {
+                    n.id for n in ast.walk(target) if isinstance(n, ast.Name)
+                }
                 exposed |= (_loads(head) | inside) - assigned
             case ast.FunctionDef(name):
                 exposed |= free_names(stmt) - assigned
@@ -283,6 +285,4 @@ def _flat_targets(target: ast.expr) -> Iterator[ast.expr]:
 
 def _reads_in(node: ast.AST) -> set[str]:
     """Names that a statement reads in its value, or through a part it assigns."""
-    return {
-        n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
-    }
+    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}

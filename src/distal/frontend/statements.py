@@ -15,7 +15,7 @@ from distal.frontend.body import Body, Loop, Variable
 from distal.frontend.expressions import arguments_of_range, make_closure
 from distal.frontend.fitting import constant_int, fit_or_refuse, natural_type, settle
 from distal.frontend.operators import condition
-from distal.frontend.problems import Followup, Problem
+from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.refusals import refusal
 from distal.frontend.targets import assign, augment, value_node
 from distal.frontend.values import TRUE, Closure, Display, Static, Value, Whole
@@ -34,10 +34,10 @@ def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
             if rule is None:
                 raise refusal(body, stmt)
             rule(body, stmt)
-        except Problem as problem:
+        except SceneError as problem:
             body.report(problem.diagnostic)
             _give_up(body, stmt)
-        except Followup:
+        except FollowupError:
             body.failed = True
             _give_up(body, stmt)
         except RecursionError:
@@ -67,9 +67,9 @@ def _guarded(body: Body, lower: Callable[[], Expr]) -> Expr | None:
     """A head's value, or None after recording its mistake: the blocks are lowered still."""
     try:
         return lower()
-    except Problem as problem:
+    except SceneError as problem:
         body.report(problem.diagnostic)
-    except Followup:
+    except FollowupError:
         body.failed = True
     return None
 
@@ -169,10 +169,10 @@ def _for(body: Body, stmt: ast.For) -> None:
         raise body.problem(message, stmt.target, "give the loop variable a name of its own")
     try:
         bounds, array = _iteration(body, stmt)
-    except Problem as problem:
+    except SceneError as problem:
         body.report(problem.diagnostic)
         bounds, array = None, None
-    except Followup:
+    except FollowupError:
         body.failed = True
         bounds, array = None, None
     variable = Variable(name, body, False, loop=True, failed=bounds is None)
@@ -282,8 +282,7 @@ def _expr(body: Body, stmt: ast.Expr) -> None:
         case ast.Constant(str()):
             return  # a docstring, or a comment written as one
         case _:
-            value = body.expression(stmt.value)
-            natural: Type | None = natural_type(value)
+            natural: Type | None = natural_type(body.expression(stmt.value))
             what = "this value" if natural is None else f"this {natural}"
             hint = "functions have no effect but their value: assign it, or return it"
             raise body.problem(f"{what} is not used", stmt, hint)
@@ -301,7 +300,7 @@ def _function_def(body: Body, stmt: ast.FunctionDef) -> None:
         raise body.problem(message, stmt.decorator_list[0], "a nested def needs none")
     if variable.changes or variable.static is not None:
         message = f"'{stmt.name}' cannot change what function it stands for"
-        raise Problem(message, body.source.header(stmt), "give each function a name of its own")
+        raise SceneError(message, body.source.header(stmt), "give each function a name of its own")
     variable.static = make_closure(body, stmt, stmt.name)
     body.assigned.add(variable)
 

@@ -8,8 +8,9 @@ from distal.frontend.body import Body, Variable
 from distal.frontend.expressions import element, member
 from distal.frontend.fitting import conversion_hint, fit, settle, shown_type
 from distal.frontend.operators import binary
-from distal.frontend.problems import Followup, Problem
+from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.values import Closure, Display, Static, Value, Whole
+from distal.ir.build import integer
 from distal.ir.nodes import Assign, Const, Expr, Field, Index, Read, Swizzle, Uniform
 from distal.ir.types import (
     FLOAT,
@@ -21,7 +22,6 @@ from distal.ir.types import (
     Vector,
     is_static,
 )
-from distal.ir.build import integer
 
 
 def assign(body: Body, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
@@ -82,9 +82,7 @@ def _assign_static(body: Body, variable: Variable, value: Value, target: ast.Nam
     body.assigned.add(variable)
 
 
-def _changed_type(
-    body: Body, name: str, type: Type, value: Value, stmt: ast.stmt
-) -> Problem:
+def _changed_type(body: Body, name: str, type: Type, value: Value, stmt: ast.stmt) -> SceneError:
     given = shown_type(value)
     hint = conversion_hint(value, type)
     if type is INT and given == str(FLOAT):
@@ -92,9 +90,7 @@ def _changed_type(
     return body.problem(f"'{name}' is {type} and cannot become {given}", stmt, hint)
 
 
-def _assign_part(
-    body: Body, place: Expr, target: ast.expr, value: Value, stmt: ast.stmt
-) -> None:
+def _assign_part(body: Body, place: Expr, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
     fitted = fit(body, value, place.type, value_node(stmt))
     if fitted is None:
         message = f"'{ast.unparse(target)}' is {place.type}, not {shown_type(value)}"
@@ -129,7 +125,7 @@ def _root(body: Body, target: ast.Name) -> Expr:
         raise body.problem(message, target, f"copy it first: local = {target.id}")
     local(body, target)
     if variable.failed:
-        raise Followup
+        raise FollowupError
     if variable.static is not None:
         raise body.problem(f"'{target.id}' cannot change", target)
     value = body.read(variable, target)
@@ -165,9 +161,7 @@ def _may_change(body: Body, target: ast.expr) -> bool:
     return variable is not None and variable.changes
 
 
-def _items(
-    body: Body, value: Value, count: int, target: ast.expr, stmt: ast.stmt
-) -> list[Value]:
+def _items(body: Body, value: Value, count: int, target: ast.expr, stmt: ast.stmt) -> list[Value]:
     if isinstance(value, Display):
         items = list(value.items)
     else:

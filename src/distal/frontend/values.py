@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from distal.frontend.body import Body
 
 LARGEST_FLOAT = 3.4028234663852886e38
-WHOLE_RANGES = {INT: range(-(2**31), 2**31), UINT: range(2**32)}
+WHOLE_RANGES: dict[Type, range] = {INT: range(-(2**31), 2**31), UINT: range(2**32)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class Closure:
     owner: Body
     name: str
     defaults: dict[str, Value] = field(default_factory=dict)
-    instances: dict[tuple[Type, ...], Any] = field(default_factory=dict)
+    instances: dict[tuple[Type | None, ...], Any] = field(default_factory=dict)
 
 
 Value: TypeAlias = "Expr | Whole | Display | Static | Closure"

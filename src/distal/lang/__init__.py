@@ -12,7 +12,6 @@ from distal.ir.types import Type
 from distal.lang.annotations import Field2, Field3, Floats, Vectors, array
 from distal.lang.functions import Func, Image, func, image
 from distal.lang.names import (
-    FORMS,
     LangForm,
     LangFunction,
     gradient,
@@ -66,4 +65,4 @@ __all__ = [
     "uint",
     "value_and_gradient",
 ]
-__all__ += [*map(str, VALUE_CLASSES), *BUILTINS]  # noqa: PLE0604 (names of the two tables)
+__all__ += [*map(str, VALUE_CLASSES), *BUILTINS]

@@ -34,9 +34,9 @@ class array:  # noqa: N801
 
 
 # A function of a point in the plane, and of one in space: what most functions as parameters are.
-Field2 = Callable[[_vec2], float]
-Field3 = Callable[[_vec3], float]
+Field2: Any = Callable[[_vec2], float]
+Field3: Any = Callable[[_vec3], float]
 
 # A function with these is compiled for each type it is called with.
-Floats = TypeVar("Floats", float, _vec2, _vec3, _vec4)
-Vectors = TypeVar("Vectors", _vec2, _vec3, _vec4)
+Floats = TypeVar("Floats", float, _vec2, _vec3, _vec4)  # type: ignore[valid-type]
+Vectors = TypeVar("Vectors", _vec2, _vec3, _vec4)  # type: ignore[valid-type]

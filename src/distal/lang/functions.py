@@ -56,6 +56,11 @@ class Func:
         """The function's own name."""
         return self.__name__
 
+    @property
+    def python_function(self) -> FunctionType:
+        """The Python function that was decorated (the first of several overloads)."""
+        return self.overloads[0].python
+
     def overload(self, function: Callable[..., Any]) -> Func:
         """Add a version for other parameter types: ``@f.overload`` above ``def f``."""
         self.overloads.append(_record(function, f"@{self.name}.overload", sys._getframe(1)))

@@ -40,7 +40,7 @@ def _dataclass(cls: C) -> C:
     """
     annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(annotations, Any)
-    made = dataclass(cls)
+    made: C = dataclass(cls)
     made.__annotations__ = annotations
     for field in fields(made):
         field.type = annotations.get(field.name, field.type)

@@ -233,7 +233,12 @@ class Frame:
 
 
 def _value_class(type: Type, base: type[VectorValue] | type[MatrixValue], doc: str) -> Any:
-    members = {"__slots__": (), "__distal_type__": type, "__doc__": doc, "__module__": "distal.lang"}
+    members = {
+        "__slots__": (),
+        "__distal_type__": type,
+        "__doc__": doc,
+        "__module__": "distal.lang",
+    }
     return __builtins_type(str(type), (base,), members)
 
 
