@@ -46,7 +46,7 @@ from distal.ir.types import (
 Tangent: TypeAlias = Expr | None
 Lanes: TypeAlias = tuple[Tangent, ...]
 
-_LETTERS = "xyzw"
+LETTERS = "xyzw"
 
 
 def has_floats(type: Type) -> bool:
@@ -181,7 +181,9 @@ def lane(value: Expr, i: int) -> Expr:
         return value.value
     if isinstance(value, Compose) and len(value.parts) == value.type.size:
         return value.parts[i]
-    return Swizzle(value, _LETTERS[i], Scalar(value.type.kind))
+    if isinstance(value, Compare):
+        return compared(value.op, lane(value.lhs, i), lane(value.rhs, i))
+    return Swizzle(value, LETTERS[i], Scalar(value.type.kind))
 
 
 def plus(a: Tangent, b: Tangent) -> Tangent:
@@ -315,7 +317,7 @@ def swizzled(a: Tangent, letters: str) -> Tangent:
     if isinstance(a, Splat):
         return a.value if len(letters) == 1 else Splat(a.value, type)
     if isinstance(a, Compose) and all(isinstance(p.type, Scalar) for p in a.parts):
-        parts = [a.parts[_LETTERS.index(c)] for c in letters]
+        parts = [a.parts[LETTERS.index(c)] for c in letters]
         found = tuple(None if constant_of(p) == 0.0 else p for p in parts)
         return found[0] if len(letters) == 1 else from_lanes(found, type)
     return Swizzle(a, letters, type)

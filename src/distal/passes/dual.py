@@ -56,11 +56,14 @@ from distal.ir.nodes import (
     span_in,
 )
 from distal.ir.tangents import (
+    LETTERS,
     Lanes,
     Tangent,
     filled,
+    from_lanes,
     has_floats,
     is_constant,
+    lanes_of,
     zero,
 )
 from distal.ir.types import BOOL, tuple_type
@@ -73,8 +76,6 @@ from distal.passes.naming import Names
 _DEEP_TANGENT = 8
 _DEEP_VALUE = 24
 _DEEP_ARGUMENT = 3
-
-_AXES = "xyzw"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +111,7 @@ class _Pair:
 
 def tangent_name(name: str, direction: int, count: int) -> str:
     """What the tangent of a local is called."""
-    return f"{name}_d" if count == 1 else f"{name}_d{_AXES[direction]}"
+    return f"{name}_d" if count == 1 else f"{name}_d{LETTERS[direction]}"
 
 
 class DualBody:
@@ -132,6 +133,7 @@ class DualBody:
         self._still: Lanes = (None,) * count
         self._returned: Returned = lambda value, _: value
         self._memo: dict[Expr, _Pair] = {}  # of the statement at hand
+        self._vars: set[str] = set()  # the tangents that are Vars themselves
         self._depths: dict[Expr, int] = {}
         self._span: Span | None = None
 
@@ -181,10 +183,9 @@ class DualBody:
         memo: dict[Expr, Expr] = {}
         bound: list[Tangent] = []
         for k, tangent in enumerate(pair.tangents):
-            if tangent is not None and not is_constant(tangent):
-                local = self._names.fresh(tangent_name(name, k, self._count))
-                out.append(Let(local, substitute(tangent, dict(known), memo), span=self._span))
-                tangent = Read(local, tangent.type)
+            wish = tangent_name(name, k, self._count)
+            if tangent is not None:
+                tangent = self._named(substitute(tangent, dict(known), memo), 0, wish, out)
             bound.append(tangent)
         self._tangents[name] = tuple(bound)
 
@@ -198,6 +199,7 @@ class DualBody:
         bound = list(self._still)
         for k in self._directions(name):
             local = self._names.fresh(tangent_name(name, k, self._count))
+            self._vars.add(local)
             out.append(Var(local, filled(pair.tangents[k], value.type), span=self._span))
             bound[k] = Read(local, value.type)
         self._tangents[name] = tuple(bound)
@@ -290,7 +292,7 @@ class DualBody:
             return plain
         items = tuple_type((e.type,) * (1 + version.directions.bit_count()))
         call = Call(version.function, (*values, *version.passed), items, span=e.span)
-        result = Read(self._names.fresh(f"{name}_dual"), items)
+        result = Read(self._names.fresh(f"{name}_result"), items)
         out.append(Let(result.name, call, span=self._span))
         tangents = list(self._still)
         item = 1
@@ -355,11 +357,28 @@ class DualBody:
         return tuple(None if t is None else self._named(t, deepest, "slope", out) for t in tangents)
 
     def _named(self, e: Expr, deepest: int, name: str, out: list[Stmt]) -> Expr:
-        if self._depth(e) <= deepest or is_constant(e):
+        """The expression, read from a local of its own unless it is shallow."""
+        if is_constant(e) or (self._depth(e) <= deepest and not self._may_change(e)):
             return e
-        local = Read(self._names.fresh(name), e.type)
-        out.append(Let(local.name, e, span=self._span))
-        return local
+        lanes = lanes_of(e)
+        if lanes is None:
+            local = Read(self._names.fresh(name), e.type)
+            out.append(Let(local.name, e, span=self._span))
+            return local
+        # Zeros stay visible: only the components that change get names.
+        whole = from_lanes(
+            tuple(
+                None if part is None else self._named(part, deepest, f"{name}_{letter}", out)
+                for part, letter in zip(lanes, LETTERS, strict=False)
+            ),
+            e.type,
+        )
+        assert whole is not None
+        return whole
+
+    def _may_change(self, e: Expr) -> bool:
+        """True for a bare read of a Var: harmless in the statement at hand, not beyond it."""
+        return isinstance(e, Read) and e.name in self._vars
 
     def _depth(self, e: Expr) -> int:
         found = self._depths.get(e)

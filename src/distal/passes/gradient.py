@@ -28,7 +28,16 @@ from distal.ir.nodes import (
     Param,
     Read,
 )
-from distal.ir.tangents import Lanes, filled, is_constant, seeds
+from distal.ir.tangents import (
+    LETTERS,
+    Lanes,
+    Tangent,
+    filled,
+    from_lanes,
+    is_constant,
+    lanes_of,
+    seeds,
+)
 from distal.ir.types import FLOAT, Kind, Type, tuple_type, vector_of
 from distal.ir.walk import expressions_in, map_expressions, rewrite
 from distal.passes.activity import Activity
@@ -52,8 +61,9 @@ class _Anything(Enum):
     ANYTHING = "anything"
 
 
-# For each parameter and direction: None (still), a constant tangent, or ANYTHING.
-_Change: TypeAlias = Expr | _Anything | None
+# For each parameter and direction: None (still), a constant tangent, or ANYTHING; the latter for
+# each component where some are still.
+_Change: TypeAlias = Expr | _Anything | tuple[_Anything | None, ...] | None
 _Key: TypeAlias = tuple[str, _Form, tuple[tuple[_Change, ...], ...]]
 
 
@@ -116,10 +126,10 @@ class _Derived:
         key = tuple(tuple(map(_change, along)) for along in tangents)
         made = self._version(name, _Form.DUAL, key)
         passed = [
-            t
+            part
             for along, changes in zip(tangents, key, strict=True)
-            for t, change in zip(along, changes, strict=True)
-            if t is not None and change is _Anything.ANYTHING
+            for tangent, change in zip(along, changes, strict=True)
+            for part in _passed(tangent, change)
         ]
         return Version(made.name, made.directions, tuple(passed))
 
@@ -155,23 +165,48 @@ class _Derived:
         return _Made(new, activity.result)
 
 
-def _change(tangent: Expr | None) -> _Change:
-    return tangent if tangent is None or is_constant(tangent) else _Anything.ANYTHING
+def _change(tangent: Tangent) -> _Change:
+    if tangent is None or is_constant(tangent):
+        return tangent
+    lanes = lanes_of(tangent)
+    if lanes is None:
+        return _Anything.ANYTHING
+    return tuple(None if lane is None else _Anything.ANYTHING for lane in lanes)
+
+
+def _passed(tangent: Tangent, change: _Change) -> tuple[Expr, ...]:
+    """What a call passes of a tangent, after what the derivative function knows of it."""
+    if tangent is None or not isinstance(change, _Anything | tuple):
+        return ()
+    if isinstance(change, tuple):
+        return tuple(lane for lane in lanes_of(tangent) or () if lane is not None)
+    return (tangent,)
 
 
 def _parameter_tangents(
     param: Param, along: tuple[_Change, ...], names: Names, extra: list[Param]
 ) -> Lanes:
     """A parameter's tangents; those that are passed become parameters in ``extra``."""
-    found: list[Expr | None] = []
+    found: list[Tangent] = []
     for k, change in enumerate(along):
+        wish = tangent_name(param.name, k, len(along))
         if isinstance(change, _Anything):
-            name = names.fresh(tangent_name(param.name, k, len(along)))
-            extra.append(Param(name, param.type))
-            found.append(Read(name, param.type))
+            found.append(_parameter(wish, param.type, names, extra))
+        elif isinstance(change, tuple):
+            lanes = (
+                None if lane is None else _parameter(f"{wish}_{letter}", FLOAT, names, extra)
+                for lane, letter in zip(change, LETTERS, strict=False)
+            )
+            found.append(from_lanes(tuple(lanes), param.type))
         else:
             found.append(change)
     return tuple(found)
+
+
+def _parameter(wish: str, type: Type, names: Names, extra: list[Param]) -> Expr:
+    name = names.fresh(wish)
+    extra.append(Param(name, type))
+    return Read(name, type)
 
 
 def _returned(value_type: Type, form: _Form, directions: int, count: int) -> tuple[Type, Returned]:
