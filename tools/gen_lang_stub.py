@@ -44,6 +44,21 @@ _C = TypeVar("_C", bound=type)
 _Length = TypeVar("_Length", covariant=True)
 Floats = TypeVar("Floats", float, vec2, vec3, vec4)
 Vectors = TypeVar("Vectors", vec2, vec3, vec4)
+Numbers = TypeVar(
+    "Numbers",
+    float,
+    int,
+    uint,
+    vec2,
+    vec3,
+    vec4,
+    ivec2,
+    ivec3,
+    ivec4,
+    uvec2,
+    uvec3,
+    uvec4,
+)
 _Floats: TypeAlias = float | vec2 | vec3 | vec4
 _Ints: TypeAlias = ivec2 | ivec3 | ivec4 | uint | uvec2 | uvec3 | uvec4
 _Part: TypeAlias = _Floats | _Ints | bvec2 | bvec3 | bvec4 | Sequence[float]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.types import Type
-from distal.lang.annotations import Field2, Field3, Floats, Vectors, array
+from distal.lang.annotations import Field2, Field3, Floats, Numbers, Vectors, array
 from distal.lang.functions import Func, Image, func, image
 from distal.lang.names import (
     LangForm,
@@ -41,6 +41,7 @@ __all__ = [
     "Image",
     "LangForm",
     "LangFunction",
+    "Numbers",
     "Parameter",
     "Texture2D",
     "Texture3D",

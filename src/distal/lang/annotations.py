@@ -6,10 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from distal.ir.types import VEC2, VEC3, VEC4
-from distal.lang.values import VALUE_CLASSES
+from distal.ir.types import VEC2, VEC3, VEC4, Kind, vector_of
+from distal.lang.values import VALUE_CLASSES, uint
 
 _vec2, _vec3, _vec4 = (VALUE_CLASSES[t] for t in (VEC2, VEC3, VEC4))
+
+_numbers: list[Any] = [
+    float,
+    int,
+    uint,
+    *(VALUE_CLASSES[vector_of(k, n)] for k in (Kind.FLOAT, Kind.INT, Kind.UINT) for n in (2, 3, 4)),
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,4 +46,5 @@ Field3: Any = Callable[[_vec3], float]
 
 # A function with these is compiled for each type it is called with.
 Floats = TypeVar("Floats", float, _vec2, _vec3, _vec4)  # type: ignore[valid-type]
+Numbers = TypeVar("Numbers", *_numbers)  # type: ignore[misc]
 Vectors = TypeVar("Vectors", _vec2, _vec3, _vec4)  # type: ignore[valid-type]

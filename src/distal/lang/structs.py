@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 C = TypeVar("C", bound=type)
 
@@ -40,8 +40,8 @@ def _dataclass(cls: C) -> C:
     """
     annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(annotations, Any)
-    made: C = dataclass(cls)
+    made = cast("Any", dataclass)(cls)
     made.__annotations__ = annotations
     for field in fields(made):
         field.type = annotations.get(field.name, field.type)
-    return made
+    return cast("C", made)

@@ -218,7 +218,9 @@ class MatrixValue:
         return NotImplemented
 
     def __mul__(self, factor: float) -> Any:
-        return type(self)(*(c * factor for c in self)) if _is_number(factor) else NotImplemented
+        if not _is_number(factor):
+            return NotImplemented
+        return type(self)(*([n * factor for n in column] for column in self))
 
     __rmul__ = __mul__
 
