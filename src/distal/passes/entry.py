@@ -60,7 +60,7 @@ _FRAME_UNIFORMS: Final = {
 
 def run(module: Module, context: Context) -> Module:
     """Replace ``Frame`` and wrap an image."""
-    renamed = _renamed_parameters(module.uniforms)
+    renamed = renamed_parameters(module.uniforms)
     used: set[str] = set()
     functions = [_Body(f, renamed, used).function() for f in module.functions]
     entry = module.entry
@@ -80,7 +80,8 @@ def parameter_name(uniform: UniformDeclaration) -> str:
     return name
 
 
-def _renamed_parameters(uniforms: Iterable[UniformDeclaration]) -> dict[str, str]:
+def renamed_parameters(uniforms: Iterable[UniformDeclaration]) -> dict[str, str]:
+    """The new names of the parameters that are called like a value of the frame."""
     names = Names([*_FRAME_UNIFORMS, *(u.name for u in uniforms)])
     return {u.name: names.fresh(f"{u.name}_value") for u in uniforms if u.name in _FRAME_UNIFORMS}
 
