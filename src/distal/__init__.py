@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from distal.executor_hook import set_executor_loader
 from distal.version import __version__
 
 if TYPE_CHECKING:
@@ -38,6 +39,13 @@ __all__ = [
     "gallery",
     "load",
 ]
+
+
+def _executor() -> Any:
+    return importlib.import_module("distal.executor").PythonExecutor()
+
+
+set_executor_loader(_executor)
 
 
 def __getattr__(name: str) -> Any:

@@ -18,6 +18,7 @@ from distal.ir.target import Target
 from distal.ir.verify import verify
 from distal.lang.functions import Func
 
+from distal.passes.context import Context
 from distal.passes.pipeline import PASS_NAMES, PIPELINE
 from distal.prelude_library import PreludeLibrary
 

@@ -130,7 +130,7 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> Func:
     images = {
         key: value
         for key, value in found.items()
-        if isinstance(value, Image) and value.python_function.__module__ == module.__name__
+        if isinstance(value, Image) and value.__module__ == module.__name__
     }
     if len(images) == 1:
         return next(iter(images.values()))

@@ -10,6 +10,7 @@ import importlib
 from dataclasses import replace
 from functools import lru_cache
 
+from distal.diagnostics import CompileError
 from distal.frontend import lower_overload
 from distal.ir.nodes import Call, Expr, Function, Module
 from distal.ir.types import Type
@@ -21,7 +22,12 @@ def _lowered(name: str, args: tuple[Type, ...]) -> tuple[Function, ...]:
     """The overload and what it calls, callees first; empty when there is no such overload."""
     module, _, function = name.partition(".")
     func = getattr(importlib.import_module(f"distal.lang.prelude.{module}"), function)
-    return lower_overload(func, args) or ()
+    try:
+        return lower_overload(func, args)
+    except CompileError as error:
+        if error.diagnostics[0].message.startswith(f"'{func.name}' does not take"):
+            return ()
+        raise
 
 
 class PreludeLibrary:

@@ -152,7 +152,12 @@ class Program:
             raise CompileError.at(message, None, hint)
         if known is None:
             declaration = UniformDeclaration(
-                name, parameter.type, Origin.PARAMETER, parameter.default, parameter.interface
+                name,
+                parameter.type,
+                Origin.PARAMETER,
+                parameter.default,
+                parameter.interface,
+                parameter,
             )
             self._uniforms[name] = (parameter, declaration)
         return Uniform(name, parameter.type)

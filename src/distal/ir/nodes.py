@@ -516,6 +516,7 @@ class UniformDeclaration:
 
     ``default`` is a bool, int, float or a tuple of floats. ``interface`` holds what the JSON
     interface says of a parameter besides (label, kind, low, high, step, log, group, help, options).
+    ``source`` is the author's parameter, which checks values.
     """
 
     name: str
@@ -523,6 +524,7 @@ class UniformDeclaration:
     origin: Origin
     default: Any
     interface: tuple[tuple[str, Any], ...] = ()
+    source: Any = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

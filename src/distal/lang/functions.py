@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
-from distal.lang.executor import executor
+from distal.executor_hook import executor
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from distal.executor_hook import executor
 from distal.ir.intrinsics import Intrinsic
-from distal.lang.executor import executor
 
 
 @dataclass(frozen=True, slots=True)

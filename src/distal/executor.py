@@ -1,0 +1,207 @@
+"""What happens when Python calls scene code: ``f(points)`` and ``image.render()``.
+
+What flows in: recorded functions and plain values. What flows out: arrays and Pictures. This room
+joins the front end, the devices and the film; ``distal.lang`` reaches it through its one hook.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from distal.call_values import bind, choose_types, count, fits, is_many, lanes, single
+from distal.devices.base import Kernel
+from distal.film.picture import Picture, Provenance
+from distal.frontend import lower
+from distal.frontend.headers import read_header
+from distal.ir.nodes import Module, Origin
+from distal.ir.printer import print_module
+from distal.ir.types import Type
+from distal.lang.functions import Func, Image
+from distal.lang.names import LangFunction
+from distal.lang.parameters import Parameter
+from distal.passes.entry import renamed_parameters
+
+LARGEST_SIDE_PX: Final = 16384
+DEVICES: Final = {"cpu": "distal.devices.cpu", "reference": "distal.devices.reference"}
+
+
+class PythonExecutor:
+    """Runs scene code for Python; keeps compiled kernels for the life of the process.
+
+    A function is lowered anew for each call, since the constants it captures may have changed; a
+    kernel is found by what lowering gave.
+    """
+
+    def __init__(self) -> None:
+        self._kernels: dict[tuple[str, str, int], Kernel] = {}
+
+    def parameters(self, function: Func) -> list[Parameter]:
+        """The parameters that a function and what it calls read, by first use."""
+        return [u.source for u in lower(function).uniforms if u.origin is Origin.PARAMETER]
+
+    def render(
+        self,
+        image: Image,
+        *,
+        size: tuple[int, int],
+        time: float,
+        params: Mapping[str, Any] | None,
+        device: str,
+        threads: int | None,
+        progress: Callable[[float], Any] | None,
+        cancel: Any,
+    ) -> Picture:
+        """The picture of an image; see ``Image.render``."""
+        width, height = _checked_size(size)
+        seconds = _checked_time(time)
+        begin = _now()
+        module = lower(image)
+        values = parameter_values(module, params or {})
+        kernel, digest = self._kernel(module, device, 32)
+        compiled = _now()
+        frame = {
+            "resolution": (float(width), float(height)),
+            "time": seconds,
+            "mouse": (0.0, 0.0, 0.0, 0.0),
+            "index": 0,
+            "seed": 0,
+        }
+        renamed = renamed_parameters(module.uniforms)
+        pixels = kernel.render(
+            width,
+            height,
+            {**frame, **{renamed.get(name, name): value for name, value in values.items()}},
+            {r.name: r.source for r in module.resources},
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+        )
+        stats = {
+            "device": device,
+            **kernel.stats,
+            "compile_s": compiled - begin,
+            "render_s": _now() - compiled,
+        }
+        origin = Provenance(source=image.name, source_hash=digest, parameters=values, time=seconds)
+        return Picture(pixels, origin, stats)
+
+    def call(
+        self, function: Func | LangFunction, args: Sequence[Any], kwargs: Mapping[str, Any]
+    ) -> Any:
+        """The function's value for numbers, vectors, or arrays with one row for each point."""
+        types, values = _arguments(function, args, kwargs)
+        double = any(getattr(leaf, "dtype", None) == np.float64 for leaf in args)
+        dtype = np.dtype(np.float64 if double else np.float32)
+        rows = [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
+        many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
+        points = count(rows)
+        module = lower(function, types)
+        kernel, _ = self._kernel(module, "cpu", 64 if double else 32)
+        uniforms = parameter_values(module, {})
+        resources = {r.name: r.source for r in module.resources}
+        result_type = module.function(module.entry).result
+        if points == 0 or (points is None and many and not rows):
+            raise ValueError(f"{function.__name__}() was given no points")
+        result = kernel.evaluate(rows, uniforms, resources)
+        return result if many else single(result, result_type)
+
+    def _kernel(self, module: Module, device: str, precision: int) -> tuple[Kernel, str]:
+        """The kernel for a lowered module, and the hash of what it was made of."""
+        if device not in DEVICES:
+            raise ValueError(f"there is no device '{device}'; devices: {', '.join(DEVICES)}")
+        digest = hashlib.sha256(print_module(module).encode()).hexdigest()
+        key = (digest, device, precision)
+        kernel = self._kernels.get(key)
+        if kernel is None:
+            kernel = importlib.import_module(DEVICES[device]).prepare(module, precision=precision)
+            self._kernels[key] = kernel
+        return kernel, digest
+
+
+def parameter_values(module: Module, params: Mapping[str, Any]) -> dict[str, Any]:
+    """The value of each parameter of a module: as given, checked, or its default.
+
+    Keys are parameters' names or labels.
+
+    Raises:
+        ValueError: A name is unknown, or a value outside its range.
+        TypeError: A value is of another kind.
+    """
+    declared = [u.source for u in module.uniforms if u.origin is Origin.PARAMETER]
+    by_name = {key: p for p in declared for key in (p.label, p.name)}
+    values = {p.name: p.default for p in declared}
+    for key, value in params.items():
+        if key not in by_name:
+            known = ", ".join(values) or "none"
+            raise ValueError(f"there is no parameter '{key}'; parameters: {known}")
+        values[by_name[key].name] = by_name[key].check(value)
+    return values
+
+
+def _arguments(
+    function: Func | LangFunction, args: Sequence[Any], kwargs: Mapping[str, Any]
+) -> tuple[tuple[Type, ...], list[Any]]:
+    """The types of the overload that takes the arguments, and the arguments in its order."""
+    if isinstance(function, LangFunction):
+        if kwargs:
+            raise TypeError(f"{function.row.name}() takes no keyword arguments")
+        for signature in function.row.signatures:
+            for types, _ in signature.instances():
+                if len(types) == len(args) and all(map(fits, args, types)):
+                    return types, list(args)
+    else:
+        mistake: TypeError | None = None
+        for overload in function.overloads:
+            header = read_header(overload)
+            try:
+                values = bind(header, args, kwargs)
+            except TypeError as error:
+                mistake = error
+                continue
+            if header.problems:
+                lower(function)  # raises with the author's lines
+            types_found = choose_types(header, values)
+            if types_found is not None:
+                return types_found, values
+        if mistake is not None and len(function.overloads) == 1:
+            raise mistake
+    given = ", ".join(map(_described, [*args, *kwargs.values()]))
+    raise TypeError(f"{function.__name__}() does not take ({given})")
+
+
+def _described(value: Any) -> str:
+    shape = np.shape(value) if not isinstance(value, str) else ()
+    if shape:
+        return f"an array of shape {shape}"
+    return repr(value) if isinstance(value, int | float | str) else type(value).__name__
+
+
+def _checked_size(size: Any) -> tuple[int, int]:
+    try:
+        width, height = (int(side) for side in size)
+    except (TypeError, ValueError):
+        raise TypeError(f"size is (width, height) in pixels, not {size!r}") from None
+    if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
+        raise ValueError(f"each side has 1 to {LARGEST_SIDE_PX} pixels, not {width}x{height}")
+    return width, height
+
+
+def _checked_time(seconds: Any) -> float:
+    try:
+        value = float(seconds)
+    except (TypeError, ValueError):
+        raise TypeError(f"time is a number of seconds, not {seconds!r}") from None
+    if not math.isfinite(value):
+        raise ValueError(f"time is finite, not {value}")
+    return value
+
+
+def _now() -> float:
+    return time.perf_counter()
