@@ -52,7 +52,7 @@ from distal.passes.context import Context
 from distal.passes.decompose_indices import assignments, is_static_index, picked_element
 from distal.passes.decompose_limits import Blame, constant_loop, refuse_expression, refuse_statement
 from distal.passes.naming import Names, local_names, module_names
-from distal.passes.ranges import Ranges
+from distal.passes.ranges import Ranges, declared_ranges
 
 _SAMPLERS: Final = {
     TextureShape.FLAT: "textures.sample_2d",
@@ -135,7 +135,8 @@ class _Body:
         self._original = function
         self._blame = linker.blame(function.name)
         self._names = Names(local_names(function))
-        self._ranges = Ranges()
+        # A host that leaves a parameter's declared range gets a loop of that range's length.
+        self._ranges = Ranges(uniforms=declared_ranges(linker.module.uniforms))
         self._loops: set[str] = set()
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = function.span

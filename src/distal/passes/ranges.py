@@ -7,7 +7,7 @@ that could wrap gives the whole range. Var locals are not followed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Final, TypeAlias
 
 from distal.ir.nodes import (
@@ -24,6 +24,8 @@ from distal.ir.nodes import (
     Select,
     Unary,
     UnaryOp,
+    Uniform,
+    UniformDeclaration,
 )
 from distal.ir.types import BOOL, INT, UINT, Type
 
@@ -36,10 +38,16 @@ class Ranges:
     """Ranges of the locals of one function, entered in the order of its statements.
 
     ``meanings`` tells which module functions stand for an operation: a name to "clamp" or "%".
+    ``uniforms`` tells what is known of uniforms: nothing, where memory safety rests on the answer.
     """
 
-    def __init__(self, meanings: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        meanings: Mapping[str, str] | None = None,
+        uniforms: Mapping[str, Range] | None = None,
+    ) -> None:
         self._meanings = meanings or {}
+        self._uniforms = uniforms or {}
         self._locals: dict[str, Range] = {}
         self._memo: dict[Expr, Range] = {}
 
@@ -74,6 +82,8 @@ class Ranges:
                 return (int(value), int(value))
             case Read(name):
                 return self._locals.get(name)
+            case Uniform(name):
+                return self._uniforms.get(name)
             case Unary(UnaryOp.NEGATE, operand):
                 low, high = self.of(operand)
                 return (-high, -low)
@@ -136,3 +146,16 @@ def _remainder(divisor: Range) -> Range | None:
 
 def _both(choose: Callable[[int, int], int], a: Range, b: Range) -> Range:
     return (choose(a[0], b[0]), choose(a[1], b[1]))
+
+
+def declared_ranges(uniforms: Iterable[UniformDeclaration]) -> dict[str, Range]:
+    """What the author declared of whole-number parameters: a host keeps to it, or should."""
+    found: dict[str, Range] = {}
+    for uniform in uniforms:
+        told = dict(uniform.interface)
+        low, high, options = told.get("low"), told.get("high"), told.get("options")
+        if uniform.type is INT and options:
+            found[uniform.name] = (0, len(options) - 1)
+        elif uniform.type is INT and low is not None and high is not None:
+            found[uniform.name] = (int(low), int(high))
+    return found

@@ -16,6 +16,7 @@ from distal.lang import (
     clamp,
     func,
     image,
+    integer,
     ivec2,
     ivec3,
     max,
@@ -196,6 +197,23 @@ def test_loops_get_constant_bounds():
     text = print_module(same_as_reference(count, OLD, SMALL, SMALL[::-1].copy()))
     assert "for i step 1 from 0 to 7" in text
     assert "to 1\n" in text
+
+
+def test_a_parameter_s_range_bounds_a_loop_but_not_an_index():
+    steps = integer("Max steps", 64, low=1, high=96)
+
+    @func
+    def march(x: float) -> float:
+        values = [0.1 * x, 0.2 * x]
+        total = values[steps - 1]
+        for _ in range(steps):
+            total += x
+        return total
+
+    module = passed(march, target=OLD, precision=32)
+    assert "step 1 from 0 to 96" in print_module(module)
+    text = print_module(passed(march, target=ABLE, precision=32))
+    assert "values[(min (max (sub @max_steps 1) 0) 1)]" in text
 
 
 @pytest.mark.parametrize("name", ["loop", "spin", "hashed", "bits", "random", "texels"])
