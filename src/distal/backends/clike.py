@@ -21,6 +21,7 @@ from distal.ir.nodes import (
     BinaryOp,
     Break,
     Const,
+    Construct,
     Continue,
     Expr,
     Field,
@@ -39,7 +40,7 @@ from distal.ir.nodes import (
     Var,
     While,
 )
-from distal.ir.types import INT, UINT, Kind, Scalar, Type, Vector, kind_of
+from distal.ir.types import INT, UINT, Scalar, Type, Vector
 from distal.ir.walk import statements_in
 
 INT_MAX = 2**31 - 1
@@ -184,6 +185,9 @@ class FunctionWriter(ExpressionWriter):
     def bind(self, name: str, value: Expr, *, mutable: bool) -> None:
         """Append the binding of a local."""
         code = self.expression(value)
+        if not mutable and isinstance(value, Construct) and value in self.tables:
+            self.locals[name] = code.text  # the table itself serves
+            return
         self.line(self.declaration(self.locals[name], code, value.type, mutable=mutable))
 
     def write_return(self, value: Code, *, tail: bool) -> None:
@@ -193,7 +197,7 @@ class FunctionWriter(ExpressionWriter):
     def _assign_statement(self, target: Expr, value: Expr) -> None:
         match value:
             case Binary(op, lhs, rhs, Scalar() | Vector()) if lhs is target and op in _IN_PLACE:
-                if isinstance(target, Read) and kind_of(value.type) is not Kind.BOOL:
+                if isinstance(target, Read):
                     amount = self.expression(rhs.value if isinstance(rhs, Splat) else rhs)
                     self.line(f"{self.target(target)} {op.value}= {amount.text};")
                     return

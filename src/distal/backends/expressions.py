@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from enum import IntEnum
 from typing import NamedTuple, assert_never
 
+from distal.backends.constants import is_table
 from distal.backends.module_names import ModuleNames
 from distal.backends.names import Namer
 from distal.diagnostics import Span
@@ -50,7 +51,6 @@ from distal.ir.nodes import (
     Uniform,
 )
 from distal.ir.types import Array, Buffer, Kind, Struct, Type, Vector, kind_of
-from distal.ir.walk import nodes_in
 
 
 class Level(IntEnum):
@@ -107,7 +107,7 @@ def _needs_brackets(operand: Code, level: Level, op: str, *, right: bool) -> boo
     if inner is Level.PRIMARY:
         return False
     if inner is Level.UNARY:
-        return right and operand.text.startswith("-")
+        return right and level is not Level.RELATION and operand.text.startswith("-")
     if inner is Level.TERNARY:
         return True
     if level in (Level.SUM, Level.PRODUCT):
@@ -118,6 +118,13 @@ def _needs_brackets(operand: Code, level: Level, op: str, *, right: bool) -> boo
         return inner in (Level.AND, Level.OR, Level.BITS, Level.SHIFT) and inner is not level
     # Operands of bit operators: only a chain of the very same operator stands without.
     return not (level is Level.BITS and operand.op == op and not right)
+
+
+def literal_code(text: str) -> Code:
+    """A literal, which may have a sign, or be a difference."""
+    if " " in text:
+        return Code(text, Level.SUM)
+    return Code(text, Level.UNARY if text.startswith("-") else Level.PRIMARY)
 
 
 def infix(op: str, level: Level, lhs: Code, rhs: Code) -> Code:
@@ -342,11 +349,10 @@ class ExpressionWriter(Dialect):
 
     def array(self, e: Construct) -> Code:
         """An array; of literals it is a table that stands once, outside the functions."""
-        literal = (Const, Splat, Compose, Construct)
-        if not all(isinstance(part, literal) for part in nodes_in(*e.parts)):
+        if not is_table(e):
             return self.array_text(e)
         if e not in self.tables:
-            self.tables[e] = self.names.namer.name("table")
+            self.tables[e] = self.names.tables[len(self.tables)]
         return Code(self.tables[e])
 
     def table_part(self, e: Expr) -> Code:

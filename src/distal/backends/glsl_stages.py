@@ -197,7 +197,14 @@ def _start_main(program: Program, writer: GlslWriter, taken: Iterable[str]) -> N
     """Names for what main binds: nothing of module scope is hidden there."""
     names = program.names
     everything = {*names.uniforms.values(), *names.frame.values(), *names.functions.values()}
-    everything |= {*names.structs.values(), *names.resources.values(), *program.vectors, *taken}
+    everything |= {
+        *names.tables,
+        *names.constants,
+        *names.structs.values(),
+        *names.resources.values(),
+        *program.vectors,
+        *taken,
+    }
     writer.local_namer = Namer(names.reserved, frozenset(everything))
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import assert_never
 
 from distal.backends.clike import FunctionWriter
-from distal.backends.expressions import Code, Level, infix, tight
+from distal.backends.expressions import Code, Level, infix, literal_code, tight
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
 from distal.diagnostics import CompileError
@@ -121,7 +121,7 @@ class GlslWriter(FunctionWriter):
             text = f"{int(e.value)}u"
         else:
             text = int_literal(int(e.value))
-        return Code(text, Level.UNARY if text.startswith("-") else Level.PRIMARY)
+        return literal_code(text)
 
     def uniform(self, e: Uniform) -> Code:
         return Code(self.uniform_texts.get(e.name) or self.names.uniforms[e.name])

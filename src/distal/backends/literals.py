@@ -53,4 +53,4 @@ def _positional(digits: str, exponent: int) -> str:
 
 def int_literal(value: int) -> str:
     """A decimal int; the lowest one as a difference, since its magnitude is no int."""
-    return "(-2147483647 - 1)" if value == INT_MIN else str(value)
+    return "-2147483647 - 1" if value == INT_MIN else str(value)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from distal.backends.constants import is_literal_operation, is_table
 from distal.backends.names import Namer, safe_name
 from distal.ir.nodes import (
     Call,
@@ -32,6 +33,8 @@ class ModuleNames:
     samplers: dict[str, str] = field(default_factory=dict)
     frame: dict[str, str] = field(default_factory=dict)
     functions: dict[str, str] = field(default_factory=dict)
+    tables: list[str] = field(default_factory=list)  # free for tables of literals
+    constants: list[str] = field(default_factory=list)  # free for literals kept in variables
     structs: dict[Type, str] = field(default_factory=dict)
     fields: dict[tuple[Struct, str], str] = field(default_factory=dict)
 
@@ -76,7 +79,17 @@ def name_module(
             names.structs[type] = namer.name(_array_name(type))
     for function in module.functions:
         names.functions[function.name] = namer.name(function.name)
+    nodes = list(all_expressions(module))
+    names.tables = [namer.name("table") for e in nodes if is_table(e)]
+    names.constants = [namer.name("constant") for e in nodes if is_literal_operation(e)]
     return names
+
+
+def all_expressions(module: Module) -> Iterator[Expr]:
+    """Every expression of every function and of the per-frame part."""
+    yield from nodes_in(*(value for _, value in module.frame))
+    for function in module.functions:
+        yield from expressions_in(function.body)
 
 
 def _array_name(type: Type) -> str:
@@ -137,7 +150,8 @@ def _parts(type: Type, seen: set[Type]) -> Iterator[Type]:
 
 def globals_of(function: Function, names: ModuleNames) -> frozenset[str]:
     """The module-scope names that a function's text mentions: its locals keep clear of them."""
-    found: set[str] = {names.structs[t] for t in _mentioned_types(function) if t in names.structs}
+    found = {names.structs[t] for t in _mentioned_types(function) if t in names.structs}
+    found |= {*names.tables, *names.constants}
     for e in expressions_in(function.body):
         match e:
             case Call(callee):

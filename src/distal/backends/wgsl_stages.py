@@ -102,7 +102,8 @@ def _write_frame(
     # A value that was computed is read from its local.
     own.frame = dict(reads)
     taken = {*names.functions.values(), *names.structs.values(), *names.resources.values()}
-    own.local_namer = Namer(names.reserved, frozenset(taken) | OWN_NAMES)
+    taken |= {*names.tables, *names.constants, *OWN_NAMES}
+    own.local_namer = Namer(names.reserved, frozenset(taken))
     for name, value in module.frame:
         code = own.expression(value)
         local = own.local_namer.name(name)

@@ -14,17 +14,15 @@ from collections.abc import Iterable, Mapping
 from typing import assert_never
 
 from distal.backends.clike import FunctionWriter
-from distal.backends.expressions import Code, Level, infix, tight
+from distal.backends.constants import is_literal_operation, is_table
+from distal.backends.expressions import Code, Level, infix, literal_code, tight
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
-    Builtin,
     Call,
-    Cast,
     Compare,
-    Compose,
     Const,
     Construct,
     Expr,
@@ -32,8 +30,6 @@ from distal.ir.nodes import (
     For,
     Function,
     Index,
-    Logical,
-    MatMul,
     Module,
     PerFrame,
     Read,
@@ -62,16 +58,13 @@ from distal.ir.types import (
     kind_of,
     with_kind,
 )
-from distal.ir.walk import children, expressions_in, nodes_in, statements_in
+from distal.ir.walk import expressions_in, nodes_in, statements_in
 
 _SCALARS = {Kind.FLOAT: "f32", Kind.INT: "i32", Kind.UINT: "u32", Kind.BOOL: "bool"}
 _LETTERS = {Kind.FLOAT: "f", Kind.INT: "i", Kind.UINT: "u"}
 
-# A choice between values of at most this many operations evaluates both (measured: nothing; a
-# branch costs about as much on the drivers at hand).
+# Up to so many operations in a branch, both branches are computed and one is picked.
 EAGER_OPERATIONS = 40
-
-_OPERATIONS = Unary | Binary | MatMul | Compare | Logical | Select | Cast | Builtin
 
 
 class Expense:
@@ -168,7 +161,7 @@ class WgslWriter(FunctionWriter):
     # Leaves
 
     def expression(self, e: Expr) -> Code:
-        if isinstance(e, _OPERATIONS) and _is_innermost_constant(e):
+        if is_literal_operation(e):
             self._hide_next = True
         return super().expression(e)
 
@@ -176,7 +169,9 @@ class WgslWriter(FunctionWriter):
         if self._hide_next:
             self._hide_next = False
             if e not in self.variables_of_constants:
-                self.variables_of_constants[e] = self.names.namer.name("constant")
+                self.variables_of_constants[e] = self.names.constants[
+                    len(self.variables_of_constants)
+                ]
             return Code(self.variables_of_constants[e])
         return self.literal(e)
 
@@ -191,7 +186,7 @@ class WgslWriter(FunctionWriter):
             text = f"{int(e.value)}u"
         else:
             text = int_literal(int(e.value))
-        return Code(text, Level.UNARY if text.startswith("-") else Level.PRIMARY)
+        return literal_code(text)
 
     def uniform(self, e: Uniform) -> Code:
         return self.shared(f"uniforms.{self.names.uniforms[e.name]}", e.type)
@@ -234,7 +229,8 @@ class WgslWriter(FunctionWriter):
         return self.call("i32", [value])
 
     def bind(self, name: str, value: Expr, *, mutable: bool) -> None:
-        super().bind(name, value, mutable=mutable or name in self._indexed)
+        copied = name in self._indexed and not is_table(value)
+        super().bind(name, value, mutable=mutable or copied)
 
     def copy_parameters(self, fn: Function) -> None:
         self._indexed = {
@@ -360,11 +356,3 @@ class WgslWriter(FunctionWriter):
         assert isinstance(resource.type, Texture)
         extent = "vec3i" if resource.type.shape is TextureShape.VOLUME else "vec2i"
         return self.call(extent, [Code(f"textureDimensions({name})")])
-
-
-def _is_innermost_constant(e: Expr) -> bool:
-    """An operation on nothing but literals: WGSL computes it when it compiles, and may refuse."""
-    if isinstance(e, Unary) and isinstance(e.operand, Const):
-        return e.op is UnaryOp.NEGATE and kind_of(e.type) is Kind.UINT
-    below = nodes_in(*children(e))
-    return all(isinstance(node, Const | Compose | Splat | Swizzle) for node in below)
