@@ -49,7 +49,7 @@ from distal.ir.types import INT, Kind, Scalar, Texture, TextureShape, Type, Vect
 from distal.ir.walk import map_statement, rebuild, rewrite
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
-from distal.passes.decompose_indices import assignments, is_static_index, picked_element
+from distal.passes.decompose_indices import assignments, picked_element, settled_index
 from distal.passes.decompose_limits import Blame, constant_loop, refuse_expression, refuse_statement
 from distal.passes.naming import Names, local_names, module_names
 from distal.passes.ranges import Ranges, declared_ranges
@@ -137,7 +137,6 @@ class _Body:
         self._names = Names(local_names(function))
         # A host that leaves a parameter's declared range gets a loop of that range's length.
         self._ranges = Ranges(uniforms=declared_ranges(linker.module.uniforms))
-        self._loops: set[str] = set()
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = function.span
 
@@ -172,13 +171,11 @@ class _Body:
             before = [self._mapped(s) for s in before]
         if isinstance(stmt, Let | For):
             self._ranges.enter(stmt)
-        if isinstance(stmt, For):
-            self._loops.add(stmt.name)
         if isinstance(stmt, Assign):
             assign = Assign(self._path(stmt.target), self._expression(stmt.value), span=stmt.span)
             if self._target.dynamic_index:
                 return [assign]
-            return assignments(assign, self._static_index, self._names)
+            return assignments(assign, self._names)
         return [*before, self._mapped(stmt)]
 
     def _mapped(self, stmt: Stmt) -> Stmt:
@@ -188,7 +185,10 @@ class _Body:
         """An Assign's target: only the indices in it are computed."""
         match target:
             case Index(base, index):
-                return rebuild(target, (self._path(base), self._expression(index)))
+                path = rebuild(target, (self._path(base), self._expression(index)))
+                assert isinstance(path, Index)
+                able = self._target.dynamic_index
+                return path if able else settled_index(path, self._ranges)
             case Swizzle(base) | FieldNode(base):
                 return rebuild(target, (self._path(base),))
             case _:
@@ -212,13 +212,10 @@ class _Body:
                 return self._cast(e)
             case Sample(texture, coord) if not self._target.samples:
                 return self._sample(e, texture, coord)
-            case Index() if not self._target.dynamic_index and not self._static_index(e):
-                return picked_element(e)
+            case Index() if not self._target.dynamic_index:
+                return picked_element(settled_index(e, self._ranges))
             case _:
                 return e
-
-    def _static_index(self, e: Index) -> bool:
-        return is_static_index(e, self._ranges, self._loops)
 
     def _scene(self, e: Expr, name: str, args: tuple[Expr, ...], what: str) -> Expr:
         return self._linker.call(name, args, e.type, self._blamed(e, what))

@@ -1,4 +1,4 @@
-"""Indices for targets that only take constants and loop counters between brackets.
+"""Indices for targets that only take numbers between brackets (arrays are structs there).
 
 What flows in: an ``Index`` with any index, as a value or in an Assign's target. What flows out: a
 chain of choices among the elements, clamped at both ends as every index is in meaning.
@@ -6,13 +6,9 @@ chain of choices among the elements, clamped at both ends as every index is in m
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from distal.ir.build import compare, integer, select
 from distal.ir.nodes import (
     Assign,
-    Binary,
-    BinaryOp,
     CompareOp,
     Const,
     Expr,
@@ -23,38 +19,32 @@ from distal.ir.nodes import (
     Read,
     Stmt,
     Swizzle,
-    Unary,
 )
-from distal.ir.types import index_count
-from distal.ir.walk import nodes_in, rebuild
+from distal.ir.types import Buffer, index_count
+from distal.ir.walk import rebuild
 from distal.passes.naming import Names
 from distal.passes.ranges import Ranges
 
 
-def is_static_index(e: Index, ranges: Ranges, loops: set[str]) -> bool:
-    """True when the index is made of constants and loop counters, and in range."""
+def settled_index(e: Index, ranges: Ranges) -> Index:
+    """The same with the number in place of an index that can only be one."""
     count = index_count(e.base.type)
-    if count is None:
-        return True  # a buffer, which the backend reads its own way
-    low, high = ranges.of(e.index)
-    return low >= 0 and high < count and all(_is_static(n, loops) for n in nodes_in(e.index))
+    position = ranges.constant(e.index)
+    if count is None or position is None:
+        return e
+    inside = integer(min(max(position, 0), count - 1))
+    return Index(e.base, inside, e.type, span=e.span)
 
 
-def _is_static(e: Expr, loops: set[str]) -> bool:
-    """GLSL ES 1.00, appendix A.5: constant-index-expressions."""
-    match e:
-        case Const() | Unary():
-            return True
-        case Read(name):
-            return name in loops
-        case Binary(BinaryOp.ADD | BinaryOp.SUB | BinaryOp.MUL):
-            return True
-        case _:
-            return False
+def _is_settled(e: Index) -> bool:
+    """True for a number between the brackets, and for a buffer, which is the backend's matter."""
+    return isinstance(e.index, Const) or isinstance(e.base.type, Buffer)
 
 
 def picked_element(e: Index) -> Expr:
     """``base[index]`` as a chain of choices."""
+    if _is_settled(e):
+        return e
     count = index_count(e.base.type)
     assert count is not None
     chain: Expr = Index(e.base, integer(count - 1), e.type, span=e.span)
@@ -64,9 +54,9 @@ def picked_element(e: Index) -> Expr:
     return chain
 
 
-def assignments(assign: Assign, is_static: Callable[[Index], bool], names: Names) -> list[Stmt]:
+def assignments(assign: Assign, names: Names) -> list[Stmt]:
     """The statement, or a ladder of Ifs that assigns the element a dynamic index means."""
-    found = _outermost_dynamic(assign.target, is_static)
+    found = _outermost_dynamic(assign.target)
     if found is None:
         return [assign]
     count = index_count(found.base.type)
@@ -81,18 +71,18 @@ def assignments(assign: Assign, is_static: Callable[[Index], bool], names: Names
     for k in range(count - 1, -1, -1):
         element = Index(found.base, integer(k), found.type, span=found.span)
         target = _replaced(assign.target, found, element)
-        one = tuple(assignments(Assign(target, value, span=assign.span), is_static, names))
+        one = tuple(assignments(Assign(target, value, span=assign.span), names))
         condition = compare(CompareOp.LE, index, integer(k))
         ladder = one if k == count - 1 else (If(condition, one, ladder, span=assign.span),)
     return [*before, *ladder]
 
 
-def _outermost_dynamic(target: Expr, is_static: Callable[[Index], bool]) -> Index | None:
+def _outermost_dynamic(target: Expr) -> Index | None:
     match target:
         case Index(base):
-            return _outermost_dynamic(base, is_static) or (None if is_static(target) else target)
+            return _outermost_dynamic(base) or (None if _is_settled(target) else target)
         case Swizzle(base) | Field(base):
-            return _outermost_dynamic(base, is_static)
+            return _outermost_dynamic(base)
         case _:
             return None
 
