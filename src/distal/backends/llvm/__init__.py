@@ -31,10 +31,10 @@ TARGETS: tuple[Target, ...] = (TARGET,)
 def emit_for(module: Module, lanes: Lanes) -> Artifact:
     """The LLVM text of a module for one shape of vectors."""
     program = Program(module, lanes)
-    kernels(program)
+    frame_polls = kernels(program)
     interface = description(module)
     interface["target"] = TARGET.name
-    interface["polls"] = program.polls
+    interface["frame_polls"] = frame_polls
     return Artifact(program.text(module.entry), interface)
 
 

@@ -41,11 +41,35 @@ class Costs:
     """Costs within one module; a call costs what its function costs, a loop counts as endless."""
 
     LOOP = 1000
+    MANY_ROUNDS = 2**31
 
     def __init__(self, functions: tuple[Function, ...]) -> None:
         self._functions: dict[str, int] = {}
+        self._rounds: dict[str, int] = {}
         for function in functions:
-            self._functions[function.name] = 20 + self.block(function.body)
+            self._functions[function.name] = self.block(function.body)
+            self._rounds[function.name] = self.rounds(function.body)
+
+    def function(self, name: str) -> int:
+        """The cost of a function's body."""
+        return self._functions[name]
+
+    def rounds(self, block: tuple[Stmt, ...]) -> int:
+        """How often the innermost loop of a block may go round, calls included."""
+        most = 1
+        for stmt in block:
+            for e in nodes_in(*expressions(stmt)):
+                if isinstance(e, Call):
+                    most = max(most, self._rounds[e.function])
+            inside = max((self.rounds(b) for b in blocks(stmt)), default=1)
+            match stmt:
+                case For():
+                    own = constant_rounds(stmt)
+                    inside *= self.MANY_ROUNDS if own is None else own
+                case While():
+                    inside = self.MANY_ROUNDS
+            most = max(most, inside)
+        return min(most, self.MANY_ROUNDS)
 
     def expression(self, *roots: Expr) -> int:
         """The cost of expressions, what they share counted once."""
@@ -81,6 +105,15 @@ class Costs:
                 return _width(e)
             case _:
                 return 0
+
+
+def constant_rounds(stmt: For) -> int | None:
+    """How often a loop goes round, if that is known."""
+    match stmt.start, stmt.stop:
+        case Const(start), Const(stop):
+            return len(range(int(start), int(stop), stmt.step))
+        case _:
+            return None
 
 
 def _width(e: Expr) -> int:

@@ -21,14 +21,17 @@ from distal.ir.types import FLOAT, Kind, Scalar
 RENDER, FRAME, BATCH = "distal_render", "distal_frame", "distal_batch"
 
 
-def kernels(program: Program) -> None:
-    """Define every kernel that the module needs."""
+def kernels(program: Program) -> bool:
+    """Define every kernel that the module needs; whether the per-frame one may run for long."""
+    frame_polls = False
     if program.module.frame:
         _frame(program)
+        frame_polls = program.polls
     if program.module.kind is EntryKind.IMAGE:
         _render(program)
     else:
         _batch(program)
+    return frame_polls
 
 
 def _define(program: Program, name: str, writer: Writer) -> None:

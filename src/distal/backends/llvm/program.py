@@ -8,6 +8,8 @@ choice of arguments that vary.
 
 from __future__ import annotations
 
+from collections import Counter
+
 from distal.backends.llvm.arithmetic import Arithmetic
 from distal.backends.llvm.costs import Costs
 from distal.backends.llvm.expressions import Expressions
@@ -17,11 +19,14 @@ from distal.backends.llvm.statements import Statements
 from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import Writer
-from distal.ir.nodes import Expr, Function, Module
+from distal.ir.nodes import Call, Expr, Function, Module
 from distal.ir.types import Kind
+from distal.ir.walk import expressions_in
 
 # Widths that a level's registers hold at once, so that LLVM neither splits nor avoids them.
 _REGISTER_BITS = {"avx512": 512, "avx2": 256, "sse4.2": 128, "neon": 128}
+
+INLINE_COST = 120
 
 
 class Program:
@@ -35,6 +40,12 @@ class Program:
         self.declarations: set[str] = set()
         self.polls = False
         self._functions = {f.name: f for f in module.functions}
+        self._sites = Counter(
+            e.function
+            for f in module.functions
+            for e in expressions_in(f.body)
+            if isinstance(e, Call)
+        )
         self._variants: dict[tuple[str, tuple[bool, ...], bool], tuple[str, bool]] = {}
         self._definitions: list[str] = []
         self._tables: dict[Leaves, str] = {}
@@ -77,6 +88,9 @@ class Program:
             for v, vary in zip(values, varying, strict=True)
         ]
         masked = any(varying) and caller.mask is not None
+        if self._inlined(name):
+            mask = caller.mask if any(varying) else None
+            return self.run(caller.arithmetic, function, values, varying, mask)
         symbol, result_varies = self._variant(function, varying, masked)
         operands = ["ptr %job"]
         if masked:
@@ -89,6 +103,13 @@ class Program:
         returned = self._result_type(kinds, uniform=not result_varies)
         result = caller.writer.value(f"call {returned} {symbol}({', '.join(operands)})")
         return self._unpacked(caller.writer, result, returned, kinds, uniform=not result_varies)
+
+    def _inlined(self, name: str) -> bool:
+        """Small functions and functions called at one place are written where they are called.
+
+        Vector registers do not survive a call, so a small one costs more than its body.
+        """
+        return self.costs.function(name) <= INLINE_COST or self._sites[name] == 1
 
     def _result_type(self, kinds: tuple[Kind, ...], *, uniform: bool) -> str:
         per_leaf = 1 if uniform else self.lanes.chunks

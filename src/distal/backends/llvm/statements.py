@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import assert_never
 
+from distal.backends.llvm.costs import constant_rounds
 from distal.backends.llvm.expressions import Expressions
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored, field_offset
 from distal.backends.llvm.uniformity import reads_in
@@ -40,7 +41,7 @@ from distal.ir.walk import expressions_in, root_of, statements_in
 
 # A block of at least this cost is branched around when no lane wants it.
 SKIP_COST = 40
-# Loops that may go round more often than this ask whether to stop.
+# Loops that may go round more often than this, inner loops included, ask whether to stop.
 POLL_ROUNDS = 65536
 
 _INT_MAX = 2**31 - 1
@@ -69,7 +70,6 @@ class Statements:
         self.indexed = _dynamically_indexed(function)
         self.level = 0  # how many loops we are in
         self.levels: dict[str, int] = {}
-        self.rounds = 1
         self.result: Leaves = ()
 
     def block(self, block: tuple[Stmt, ...]) -> None:
@@ -282,16 +282,13 @@ class Statements:
 
     def _for(self, stmt: For) -> None:
         start, stop = self.expressions.scalar(stmt.start), self.expressions.scalar(stmt.stop)
-        rounds = _rounds(stmt)
+        rounds = constant_rounds(stmt)
         if rounds == 0:
             return
         if not (start.uniform and stop.uniform):
             self._for_apart(stmt, start, stop)
             return
-        outer_rounds = self.rounds
-        self.rounds = min(_INT_MAX, self.rounds * (rounds or POLL_ROUNDS + 1))
         self._for_together(stmt, start, stop, certain=rounds is not None)
-        self.rounds = outer_rounds
 
     def _for_together(self, stmt: For, start: Leaf, stop: Leaf, *, certain: bool) -> None:
         """The count is the same in all lanes, though they may leave one by one."""
@@ -313,7 +310,9 @@ class Statements:
         expressions.environment[stmt.name] = (Leaf(Kind.INT, (count,), True),)
         leave = self._body(stmt.body)
         ahead = self._kept(loop, live, stmt.body)
-        tests = self._polled()
+        tests = []
+        if expressions.program.costs.rounds((stmt,)) > POLL_ROUNDS:
+            tests.append(self._polled())
         if live is not None:
             remaining, test = self._remaining(live[0], leave)
             tests.append(test)
@@ -380,8 +379,7 @@ class Statements:
             arithmetic.invert(more), leave
         )  # fmt: skip
         remaining, test = self._remaining(live[0], leave)
-        for other in self._polled(always=True):
-            test = writer.value(f"and i1 {test}, {other}")
+        test = writer.value(f"and i1 {test}, {self._polled()}")
         end = writer.block
         writer.branch(test, loop.header, done)
         arithmetic.leave()
@@ -398,7 +396,6 @@ class Statements:
         writer, expressions, arithmetic = self.writer, self.expressions, self.arithmetic
         before, outer = dict(expressions.environment), expressions.mask
         diverges = id(stmt) in self.uniformity.divergent_loops
-        outer_rounds, self.rounds = self.rounds, _INT_MAX
         loop = self._begin_loop(stmt.body, before)
         live = self._begin_mask(outer) if diverges else None
         arithmetic.enter()
@@ -411,8 +408,7 @@ class Statements:
             test = arithmetic.any_lane(live[0])
         else:
             test = holds.names[0]
-        for other in self._polled(always=True):
-            test = writer.value(f"and i1 {test}, {other}")
+        test = writer.value(f"and i1 {test}, {self._polled()}")
         inside, done = writer.label("inside"), writer.label("done")
         top = writer.block
         writer.branch(test, inside, done)
@@ -437,7 +433,7 @@ class Statements:
             self._fill_mask(live, outer, loop.before, remaining, end)
         self._fill(loop, ahead, end)
         writer.begin(done)
-        expressions.mask, self.rounds = outer, outer_rounds
+        expressions.mask = outer
         self._join(before, ends)
 
     def _begin_loop(self, body: tuple[Stmt, ...], before: dict[str, Leaves | Stored]) -> _Loop:
@@ -538,22 +534,11 @@ class Statements:
             live = self.arithmetic.both(live, self.arithmetic.invert(leave))
         return live.names, self.arithmetic.any_lane(live)
 
-    def _polled(self, *, always: bool = False) -> list[str]:
-        """In loops that may be long: a test that nobody asked to stop."""
-        if not always and self.rounds <= POLL_ROUNDS:
-            return []
+    def _polled(self) -> str:
+        """A test, in loops that may be long, that nobody asked to stop."""
         self.expressions.program.polls = True
         flag = self.writer.value("load volatile i32, ptr %stop")
-        return [self.writer.value(f"icmp eq i32 {flag}, 0")]
-
-
-def _rounds(stmt: For) -> int | None:
-    """How often a loop goes round, if that is known."""
-    match stmt.start, stmt.stop:
-        case Const(start), Const(stop):
-            return len(range(int(start), int(stop), stmt.step))
-        case _:
-            return None
+        return self.writer.value(f"icmp eq i32 {flag}, 0")
 
 
 def _picks_several(target: Expr) -> bool:

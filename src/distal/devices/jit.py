@@ -1,0 +1,63 @@
+"""LLVM text to machine code. The only module that loads LLVM.
+
+What flows in: a module's text and a feature level. What flows out: a linked image.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+from typing import Any, Final
+
+from distal.devices.features import Level
+from distal.devices.link import Image, link
+
+_TRIPLES: Final = {
+    "x86_64": "x86_64-unknown-linux-gnu",
+    "aarch64": "aarch64-unknown-linux-gnu",
+}
+
+
+def version() -> str:
+    """The version of llvmlite, found without loading it."""
+    return importlib.metadata.version("llvmlite")
+
+
+def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:
+    """What is left for LLVM to do: the IR's own passes have inlined, folded and shared."""
+    options = llvm.create_pipeline_tuning_options(speed_level=2)
+    builder = llvm.create_pass_builder(machine, options)
+    manager = llvm.create_new_module_pass_manager()
+    manager.add_simplify_cfg_pass()
+    manager.add_sroa_pass()
+    manager.add_instruction_combine_pass()
+    manager.add_new_gvn_pass()
+    manager.add_simplify_cfg_pass()
+    manager.add_instruction_combine_pass()
+    manager.add_aggressive_dce_pass()
+    return manager, builder
+
+
+def compile_object(text: str, level: Level, *, assembly: bool = False) -> Any:
+    """The object file of a module, or its assembly text."""
+    # Loaded only when something must be compiled: it takes longer than to find it compiled.
+    llvm = importlib.import_module("llvmlite.binding")
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    triple = _TRIPLES[level.architecture]
+    # Reserved on macOS; elsewhere one register of thirty is no loss.
+    features = "+reserve-x18" if level.architecture == "aarch64" else ""
+    machine = llvm.Target.from_triple(triple).create_target_machine(
+        cpu=level.cpu, features=features, opt=2, reloc="pic", codemodel="small"
+    )
+    module = llvm.parse_assembly(text)
+    module.triple = triple
+    module.data_layout = str(machine.target_data)
+    manager, builder = _passes(llvm, machine)
+    manager.run(module, builder)
+    return machine.emit_assembly(module) if assembly else machine.emit_object(module)
+
+
+def compile_image(text: str, level: Level) -> Image:
+    """A module as an image that can be stored and run."""
+    return link(compile_object(text, level))
