@@ -15,6 +15,7 @@ import platform
 import shutil
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
@@ -74,6 +75,7 @@ PACKAGES: Final = (
     Package("anywidget", "notebook", "sliders in notebooks"),
 )
 
+_PROBE: Final = "doctor-probe"
 _GPU_TIMEOUT_S: Final = 30  # a driver that hangs must not take the doctor along
 _GPU_QUESTION: Final = """
 import json, wgpu
@@ -116,6 +118,17 @@ def _cpu() -> Iterator[Finding]:
     yield Finding("cpu", "model", State.READY, _cpu_model())
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     yield Finding("cpu", "threads", State.READY, f"{usable} usable of {os.cpu_count()}")
+    from distal.devices.features import FEATURES_VARIABLE, chosen_level, host_levels
+
+    possible = ", ".join(level.name for level in host_levels())
+    try:
+        level = chosen_level()
+    except ValueError as error:  # an old processor, or a wish that it cannot grant
+        remedy = f"unset {FEATURES_VARIABLE}" if FEATURES_VARIABLE in os.environ else ""
+        yield Finding("cpu", "feature level", State.BROKEN, str(error), remedy)
+    else:
+        detail = f"{level.name} of {possible}; {level.lanes(32).count} lanes"
+        yield Finding("cpu", "feature level", State.READY, detail)
 
 
 def _cpu_model() -> str:
@@ -128,7 +141,31 @@ def _cpu_model() -> str:
 
 
 def _cache() -> Iterator[Finding]:
-    yield from ()
+    """The kernel cache: tried by storing something, since many things can forbid it."""
+    from distal.devices.cache import FOLDER_VARIABLE, Cache, default_folder
+
+    folder = default_folder()
+    if folder is None:
+        detail = "off: every start compiles anew"
+        yield Finding("cache", "folder", State.OPTIONAL, detail, f"unset {FOLDER_VARIABLE}")
+        return
+    if not folder.exists():
+        yield Finding("cache", "folder", State.READY, f"{folder} (the first render makes it)")
+        return
+    cache = Cache(folder)
+    kernels, size = cache.size()
+    with warnings.catch_warnings(record=True) as complaints:
+        warnings.simplefilter("always")
+        usable = cache.store(_PROBE, b"probe") and cache.load(_PROBE) == b"probe"
+    for left in folder.glob(f"{_PROBE}.*"):
+        left.unlink()
+    if usable:
+        detail = f"{folder}: {kernels} kernels, {size / 2**20:.1f} MiB"
+        yield Finding("cache", "folder", State.READY, detail)
+    else:
+        reason = str(complaints[0].message) if complaints else f"{folder} cannot be written"
+        remedy = f"chmod go-w '{folder}', or set {FOLDER_VARIABLE} to a folder of your own"
+        yield Finding("cache", "folder", State.OPTIONAL, reason, remedy)
 
 
 def _packages() -> Iterator[Finding]:

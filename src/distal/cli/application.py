@@ -134,11 +134,14 @@ def render(
     ] = False,
 ) -> None:
     """Render a scene to a picture."""
-    width_height, seconds = read_size(size), read_time(at)
     from distal.cli.report import ProgressBar, say, stages
+    from distal.executor import LARGEST_SIDE_PX
     from distal.film.picture import Picture, check_savable
 
+    width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     check_savable(output)
+    if device is Device.CPU:
+        _check_processor()
     begin = time.perf_counter()
     obj = _load(scene)
     run = getattr(obj, "render", None)
@@ -239,6 +242,15 @@ def doctor() -> None:
 def _load(scene: str) -> Func:
     path, name = read_scene(scene)
     return distal.load(path, name)
+
+
+def _check_processor() -> None:
+    from distal.devices.features import chosen_level
+
+    try:
+        chosen_level()
+    except ValueError as error:  # a processor too old, or a wish in DISTAL_CPU it cannot grant
+        raise UsageError(str(error)) from None
 
 
 def _check_pass(name: str) -> None:

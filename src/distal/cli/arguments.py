@@ -16,7 +16,6 @@ from typing import Final
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
 
-LARGEST_SIDE: Final = 16384  # of a picture in pixels: 4 GiB as a square of float32 RGBA
 EXAMPLE_PREFIX: Final = "example:"
 
 
@@ -37,14 +36,14 @@ def read_scene(text: str) -> tuple[str, str | None]:
     return prefix + file, name or None
 
 
-def read_size(text: str) -> tuple[int, int]:
-    """Width and height from WIDTHxHEIGHT."""
+def read_size(text: str, largest: int) -> tuple[int, int]:
+    """Width and height from WIDTHxHEIGHT, each from 1 to ``largest``."""
     match = re.fullmatch(r"\s*([0-9]{1,9})\s*[xX]\s*([0-9]{1,9})\s*", text)
     if match is None:
         raise UsageError(f"a size is WIDTHxHEIGHT in pixels, like 640x480, not '{text:.40}'")
     width, height = int(match[1]), int(match[2])
-    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
-        raise UsageError(f"each side has 1 to {LARGEST_SIDE} pixels, not {width}x{height}")
+    if not (1 <= width <= largest and 1 <= height <= largest):
+        raise UsageError(f"each side has 1 to {largest} pixels, not {width}x{height}")
     return width, height
 
 

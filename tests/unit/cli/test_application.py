@@ -125,6 +125,13 @@ def test_wrong_usage_is_exit_2_and_renders_nothing(scene, run, words):
     assert not Path("a.png").exists()
 
 
+def test_a_processor_that_cannot_is_one_line(scene, run, monkeypatch):
+    monkeypatch.setenv("DISTAL_CPU", "mmx")
+    result = run("render", "s.py", "-o", "a.png")
+    assert result.exit_code == 2
+    assert "there is no CPU feature level 'mmx'" in result.stderr
+
+
 def test_output_is_needed_and_checked_before_any_work(scene, run):
     assert run("render", "s.py").exit_code == 2
     for name in ("a.bmp", "nowhere/a.png"):

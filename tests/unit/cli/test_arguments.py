@@ -45,7 +45,7 @@ def test_no_file_is_refused(text):
     ("text", "size"), [("640x480", (640, 480)), ("1X1", (1, 1)), (" 17x16384 ", (17, 16384))]
 )
 def test_size(text, size):
-    assert read_size(text) == size
+    assert read_size(text, 16384) == size
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_size(text, size):
 )
 def test_bad_size_is_one_short_message(text):
     with pytest.raises(UsageError) as caught:
-        read_size(text)
+        read_size(text, 16384)
     assert len(str(caught.value)) < 120
 
 

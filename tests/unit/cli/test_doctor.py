@@ -58,3 +58,29 @@ def test_a_failing_look_is_a_finding_and_the_rest_goes_on(monkeypatch):
     findings = examine()
     assert find(findings, "examination").detail == "RuntimeError: no clock"
     assert find(findings, "numpy").state is State.READY
+
+
+def test_processor_level_is_told_and_a_wish_it_cannot_grant_is_a_finding(monkeypatch):
+    monkeypatch.delenv("DISTAL_CPU", raising=False)
+    assert "lanes" in find(doctor._cpu(), "feature level").detail
+    monkeypatch.setenv("DISTAL_CPU", "mmx")
+    level = find(doctor._cpu(), "feature level")
+    assert level.state is State.BROKEN
+    assert "mmx" in level.detail
+    assert level.remedy == "unset DISTAL_CPU"
+
+
+def test_cache_is_tried_and_left_as_it_was(tmp_path, monkeypatch):
+    folder = tmp_path / "kernels"
+    monkeypatch.setenv("DISTAL_CACHE_DIR", str(folder))
+    assert "first render makes it" in find(doctor._cache(), "folder").detail
+    folder.mkdir(mode=0o700)
+    assert "0 kernels" in find(doctor._cache(), "folder").detail
+    assert list(folder.iterdir()) == []
+    folder.chmod(0o777)
+    unsafe = find(doctor._cache(), "folder")
+    assert unsafe.state is State.OPTIONAL
+    assert "can be written by others" in unsafe.detail
+    assert "chmod go-w" in unsafe.remedy
+    monkeypatch.setenv("DISTAL_CACHE_DIR", "off")
+    assert find(doctor._cache(), "folder").remedy == "unset DISTAL_CACHE_DIR"
