@@ -176,12 +176,15 @@ def _field(cls: type, field: dataclasses.Field[Any], names: StructNames) -> tupl
     annotation = field.type
     if isinstance(annotation, str):
         annotation = evaluate(annotation, names.enclosing, names.module)
+    where = f"field '{field.name}' of '{cls.__name__}'"
     try:
         found = to_type(annotation)
     except UnboundVariableError:
-        raise AnnotationError(f"field '{field.name}' of '{cls.__name__}' has no type") from None
+        raise AnnotationError(f"{where} has no type") from None
+    except AnnotationError as error:
+        raise AnnotationError(f"{where}: {error.message}", error.hint) from None
     if is_static(found):
-        raise AnnotationError(f"field '{field.name}' of '{cls.__name__}' cannot be {found}")
+        raise AnnotationError(f"{where} cannot be {found}")
     return field.name, found
 
 

@@ -108,6 +108,7 @@ class Body:
         self.result: Type | None = None
         self.returned: list[tuple[Value, ast.Return]] = []
         self.failed = False
+        self.whole_starts: dict[str, int] = {}  # locals that are ints because a literal began them
         self._taken: set[str] = set()
         self._depths: dict[Expr, int] = {}
         self._expression: Callable[[Body, ast.expr], Value] = program.expression

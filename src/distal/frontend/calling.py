@@ -63,8 +63,6 @@ def _choose(
 ) -> tuple[Header, list[Argument]]:
     if len(headers) == 1:
         (only,) = headers
-        if only.problems and not only.slots:
-            raise FollowupError
         return only, pair(body, only, args, keywords, node)
     best: tuple[int, Header, list[Argument]] | None = None
     for header in headers:

@@ -15,15 +15,36 @@ from distal.frontend.body import Body, Variable
 from distal.frontend.calls import arguments, lower_call
 from distal.frontend.constructors import repeated
 from distal.frontend.fitting import constant_int, fit, settle, unify
-from distal.frontend.objects import RefusedError, float_constant, value_of
+from distal.frontend.objects import RefusedError, value_of
 from distal.frontend.operators import binary, compare, condition, unary
 from distal.frontend.problems import did_you_mean
 from distal.frontend.refusals import refusal
-from distal.frontend.values import FALSE, TRUE, Closure, Display, Static, Value, Whole
+from distal.frontend.values import (
+    FALSE,
+    LARGEST_FLOAT,
+    TRUE,
+    Closure,
+    Display,
+    Static,
+    Value,
+    Whole,
+)
 from distal.ir.build import element_type, integer
-from distal.ir.nodes import Expr, Field, Index, Logical, LogicalOp, Select, Swizzle, Unary, UnaryOp
+from distal.ir.nodes import (
+    Const,
+    Expr,
+    Field,
+    Index,
+    Logical,
+    LogicalOp,
+    Select,
+    Swizzle,
+    Unary,
+    UnaryOp,
+)
 from distal.ir.types import (
     BOOL,
+    FLOAT,
     INT,
     Array,
     Buffer,
@@ -54,10 +75,10 @@ def _constant(body: Body, node: ast.Constant) -> Value:
         case int():
             return Whole(node.value)
         case float():
-            try:
-                return float_constant(node.value, ast.unparse(node))
-            except RefusedError as refused:
-                raise body.problem(refused.message, node, refused.hint) from None
+            if abs(node.value) <= LARGEST_FLOAT:
+                return Const(node.value, FLOAT)
+            hint = "the largest is 3.4e38"
+            raise body.problem("this number is larger than a 32-bit float can be", node, hint)
         case _:
             raise refusal(body, node)
 

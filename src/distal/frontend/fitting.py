@@ -175,11 +175,24 @@ def fit_or_refuse(
     fitted = fit(body, value, type, node)
     if fitted is not None:
         return fitted
+    if isinstance(type, FunctionType) and is_callable(value):
+        raise body.problem(
+            f"{what} is {type}, not {shown_type(value)}", node, callable_hint(body, value)
+        )
     if isinstance(value, Static):
         raise not_a_value(body, value.object, value.text, node)
     raise body.problem(
         f"{what} is {type}, not {shown_type(value)}", node, conversion_hint(value, type)
     )
+
+
+def callable_hint(body: Body, value: Value) -> str | None:
+    """What a function takes, where another one is wanted."""
+    match value:
+        case Static(Func() as function):
+            return " or ".join(body.program.signature(o) for o in function.overloads)
+        case _:
+            return None
 
 
 def shown_type(value: Value) -> str:

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any, Final
 
-from distal.diagnostics import Diagnostic, Span
+from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.body import Names
 from distal.frontend.problems import SceneError, did_you_mean
 from distal.frontend.source import SourceMap, parse_definition
 from distal.lang.functions import Overload
+from distal.lang.source import capture
 
 MISSING: Final = object()
 
@@ -46,6 +47,7 @@ class Header:
     result: Any
     overload: Overload
     problems: list[Diagnostic] = field(default_factory=list)
+    hopeless: bool = False  # not a function that could be scene code at all
 
     @property
     def span(self) -> Span:
@@ -66,16 +68,30 @@ def read_header(overload: Overload) -> Header:
     if _is_method(python):
         message = f"'{python.__qualname__}' is a method; scene code is plain functions"
         header.problems.append(Diagnostic(message, header.span, "move it out of the class"))
+        header.hopeless = True
         return header
-    if node.decorator_list and hasattr(python, "__wrapped__"):
+    if hasattr(python, "__wrapped__"):
         message = f"'{header.name}' is changed by another decorator first"
         hint = "put @func directly above def"
-        header.problems.append(Diagnostic(message, header.span, hint))
+        header.problems.append(Diagnostic(message, _wrapped_span(python, header), hint))
+        header.hopeless = True
         return header
     header.slots = tuple(_slots(header, python))
     if node.returns is not None:
         header.result = _evaluated(header, node.returns)
     return header
+
+
+def _wrapped_span(python: FunctionType, header: Header) -> Span:
+    """The place of the ``def`` that the author decorated."""
+    inner = getattr(python, "__wrapped__", None)
+    if not isinstance(inner, FunctionType):
+        return header.span
+    try:
+        node, source = parse_definition(capture(inner), inner.__code__.co_name)
+    except CompileError:
+        return header.span
+    return source.header(node)
 
 
 def _is_method(python: FunctionType) -> bool:

@@ -103,7 +103,7 @@ def _header_value(
     if instance.result is None:
         raise FollowupError
     if instance.result is not type.result:
-        message = f"'{header.name}' gives {instance.result} where {type} is wanted"
+        message = f"'{header.name}' gives {instance.result} where {type.result} is wanted"
         raise body.problem(message, node)
     return FunctionRef(instance.name, captures, type)
 

@@ -20,6 +20,7 @@ from distal.frontend.annotations import (
 )
 from distal.frontend.body import Body
 from distal.frontend.fitting import (
+    callable_hint,
     conversion_hint,
     fit,
     is_callable,
@@ -59,7 +60,9 @@ def signature_of(header: Header) -> str:
     for slot in header.slots:
         annotation = ast_annotation(header, slot.name)
         parts.append(f"{slot.name}: {annotation}" if annotation else slot.name)
-    return f"{header.name}({', '.join(parts)})"
+    returns = header.node.returns
+    result = f" -> {ast.unparse(returns)}" if returns is not None else ""
+    return f"{header.name}({', '.join(parts)}){result}"
 
 
 def ast_annotation(header: Header, name: str) -> str:
@@ -154,9 +157,8 @@ def _fit_argument(body: Body, header: Header, slot: Slot, type: Type, argument: 
     if isinstance(value, Static) and not (isinstance(type, FunctionType) and is_callable(value)):
         raise not_a_value(body, value.object, value.text, node)
     what = f"argument '{slot.name}' of '{header.name}'"
-    raise body.problem(
-        f"{what} is {type}, not {shown_type(value)}", node, conversion_hint(value, type)
-    )
+    hint = conversion_hint(value, type) or callable_hint(body, value)
+    raise body.problem(f"{what} is {type}, not {shown_type(value)}", node, hint)
 
 
 def _bind(body: Body, header: Header, args: Sequence[Argument]) -> dict[TypeVar, Type]:

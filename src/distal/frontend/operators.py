@@ -19,11 +19,13 @@ from distal.ir.build import builtin, cast, number, splat
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
+    Cast,
     Compare,
     CompareOp,
     Const,
     Expr,
     MatMul,
+    Read,
     Splat,
     Unary,
     UnaryOp,
@@ -72,6 +74,7 @@ _LITERAL: Final[dict[BinaryOp, Callable[[int, int], int]]] = {
     BinaryOp.XOR: operator.xor,
 }
 _BITWISE = {BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR}
+_DIVISIONS = {BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD}
 _SHIFTS = {BinaryOp.SHL, BinaryOp.SHR}
 _LARGEST_LITERAL = 1 << 64
 
@@ -130,7 +133,7 @@ def meet(
             return splat(left, right.type), right
         if isinstance(right.type, Scalar) and symbol in _widening(left.type):
             return left, splat(right, left.type)
-    raise _do_not_mix(body, left.type, right.type, node, symbol)
+    raise _do_not_mix(body, left, right, node, symbol)
 
 
 _EVERY_SYMBOL: Final = frozenset(
@@ -165,8 +168,9 @@ def _literal_beside(body: Body, literal: Whole, other: Expr, node: ast.expr | as
 
 
 def _do_not_mix(
-    body: Body, left: Type, right: Type, node: ast.expr | ast.stmt, symbol: str
+    body: Body, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt, symbol: str
 ) -> SceneError:
+    left, right = lhs.type, rhs.type
     message = f"{left} and {right} do not mix in '{symbol}'"
     hint = None
     kinds = {kind_of(left), kind_of(right)}
@@ -175,7 +179,7 @@ def _do_not_mix(
     ):
         hint = "the product of matrices is written @"
     elif kinds == {Kind.INT, Kind.FLOAT}:
-        hint = "convert the int: float(i), or vec3(v) of an ivec3"
+        hint = _int_hint(body, lhs if kind_of(left) is Kind.INT else rhs)
     elif kinds == {Kind.INT, Kind.UINT}:
         hint = "convert one side: int(...) or uint(...)"
     elif Kind.BOOL in kinds and None not in kinds:
@@ -184,6 +188,16 @@ def _do_not_mix(
         wide, narrow = (left, right) if left.size > right.size else (right, left)
         hint = f"pick {narrow.size} components of the {wide}, such as .{'xyzw'[: narrow.size]}"
     return body.problem(message, node, hint)
+
+
+def _int_hint(body: Body, value: Expr) -> str:
+    """How an int meets a float."""
+    if isinstance(value, Read) and value.name in body.whole_starts:
+        start = body.whole_starts[value.name]
+        return f"'{value.name}' is an int because it starts as {start}: write {start}.0"
+    if isinstance(value.type, Vector):
+        return f"write vec{value.type.size}(...) around the {value.type}"
+    return "write float(...) around the int"
 
 
 def _arithmetic(body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt) -> Expr:
@@ -203,9 +217,15 @@ def _arithmetic(body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr |
     elif op is BinaryOp.DIV and kind is not Kind.FLOAT:
         lhs, rhs = cast(lhs, Kind.FLOAT), cast(rhs, Kind.FLOAT)
         type = lhs.type
-    if op in (BinaryOp.FLOOR_DIV, BinaryOp.MOD) and rhs is Const(0, Scalar(kind)):
+    if op in _DIVISIONS and _is_zero(rhs):
         raise body.problem("division by zero", node)
     return Binary(op, lhs, rhs, type, span=span)
+
+
+def _is_zero(value: Expr) -> bool:
+    if isinstance(value, Splat | Cast):
+        value = value.value
+    return isinstance(value, Const) and value.value == 0
 
 
 def _check_matrix(
@@ -243,7 +263,7 @@ def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | as
     elif isinstance(count.type, Scalar):
         count = splat(count, value.type)
     if value.type is not count.type:
-        raise _do_not_mix(body, value.type, count.type, node, op.value)
+        raise _do_not_mix(body, value, count, node, op.value)
     return Binary(op, value, count, value.type, span=body.span(node))
 
 

@@ -17,6 +17,7 @@ from distal.frontend.body import Body
 from distal.frontend.expressions import lower_expression
 from distal.frontend.headers import Header, read_header
 from distal.frontend.instances import Instance
+from distal.frontend.matching import signature_of
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.values import Closure, Value
 from distal.ir.nodes import (
@@ -89,7 +90,13 @@ class Program:
             for diagnostic in header.problems:
                 self.report(diagnostic)
             self._headers[overload] = header
+        if header.hopeless:
+            raise FollowupError
         return header
+
+    def signature(self, overload: Overload) -> str:
+        """``name(p: vec3) -> float`` as the author wrote it."""
+        return signature_of(self.header(overload))
 
     def unique_name(self, name: str, suffix: str = "") -> str:
         """A module-wide name: plain, else with the suffix, else numbered."""

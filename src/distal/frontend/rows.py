@@ -41,6 +41,17 @@ PYTHON_FUNCTIONS: Final[dict[Any, Intrinsic]] = {
 _LITERAL_SCORES: Final[dict[Type, int]] = {INT: 2, FLOAT: 1, UINT: 0}
 
 
+# What a result is called that depends on the type variable T.
+_RESULTS: Final[dict[object, str]] = {
+    Follows.T: "T",
+    Follows.AS_BOOL: "a bool for each component",
+    Follows.AS_INT: "an int for each component",
+    Follows.AS_UINT: "a uint for each component",
+    Follows.AS_FLOAT: "a float for each component",
+    Follows.SQUARE: "the matrix with columns T",
+}
+
+
 @cache
 def exact_instances(name: str) -> dict[tuple[Type, ...], Type]:
     """Every instance of a row: argument types to result."""
@@ -165,24 +176,13 @@ def _mismatch(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr)
 
 
 def signature_text(row: Intrinsic) -> str:
-    """A row's first signature in an author's words: ``length(v) -> float, v: vec2 | vec3``."""
+    """A row in an author's words: ``length(v) -> float, v: vec2 | vec3 | vec4``."""
     signature = row.signatures[0]
-    head = f"{row.name}({', '.join(row.args)})"
     over = " | ".join(dict.fromkeys(str(t) for s in row.signatures for t in s.over))
-    followers = [n for n, p in zip(row.args, signature.params, strict=True) if p is Follows.T]
-    fixed = [
-        f"{n}: {p}"
-        for n, p in zip(row.args, signature.params, strict=True)
-        if not isinstance(p, Follows)
-    ]
-    words: dict[object, str] = {
-        Follows.T: f"the type of {followers[0]}" if followers else "",
-        Follows.AS_BOOL: "a bool for each component",
-        Follows.AS_INT: "an int for each component",
-        Follows.AS_UINT: "a uint for each component",
-        Follows.AS_FLOAT: "a float for each component",
-        Follows.SQUARE: "a matrix",
-    }
-    result = words.get(signature.result, str(signature.result))
-    rest = [f"{', '.join(followers)}: {over}"] if followers else []
-    return ", ".join([f"{head} -> {result}", *fixed, *rest])
+    result = _RESULTS.get(signature.result, str(signature.result))
+    if len(row.args) == 1 and result != "T":
+        (only,) = row.args
+        return f"{row.name}({only}) -> {result}, {only}: {over}"
+    patterns = zip(row.args, signature.params, strict=True)
+    params = ", ".join(f"{n}: {'T' if p is Follows.T else p}" for n, p in patterns)
+    return f"{row.name}({params}) -> {result}, T: {over}"

@@ -59,7 +59,8 @@ def scan(statements: list[ast.stmt], parameters: set[str]) -> Plan:
     """Plan the locals of a function with this body."""
     captures: dict[str, set[str]] = {}
     root = _collect(statements, captures, None)
-    stored = _stored(root)
+    # A part assigned does not make a name local: in Python it changes the outer object.
+    stored = _stored(root) | (_partly_stored(root) & parameters)
     blocks: dict[int, list[LocalPlan]] = defaultdict(list)
     for name in sorted(stored - parameters):
         _place(root, name, blocks)
@@ -92,6 +93,8 @@ def _collect(
             case ast.For(target, iterable, body):
                 _uses(iterable, block, captures)
                 name = target.id if isinstance(target, ast.Name) else None
+                if name is None:
+                    _uses(target, block, captures)
                 block.inner.append(_collect(body, captures, name))
             case ast.FunctionDef(name):
                 free = free_names(stmt)
@@ -177,9 +180,16 @@ def free_names(function: ast.FunctionDef | ast.Lambda) -> set[str]:
 
 
 def _stored(block: _Block) -> set[str]:
-    names = set(block.whole) | block.partial
+    names = set(block.whole)
     for inner in block.inner:
         names |= _stored(inner) - ({inner.hidden} if inner.hidden else set())
+    return names
+
+
+def _partly_stored(block: _Block) -> set[str]:
+    names = set(block.partial)
+    for inner in block.inner:
+        names |= _partly_stored(inner)
     return names
 
 

@@ -55,8 +55,7 @@ def _give_up(body: Body, stmt: ast.stmt) -> None:
         variable = body.lookup(name)
         if variable is not None:
             body.assigned.add(variable)
-            if variable.type is None and variable.static is None:
-                variable.failed = True
+            variable.failed = True
 
 
 def _stores(node: ast.Name) -> bool:
@@ -268,7 +267,8 @@ def _return(body: Body, stmt: ast.Return) -> None:
 
 def _returned(body: Body, value: Value, node: ast.expr) -> Expr:
     if body.result is not None:
-        return fit_or_refuse(body, value, body.result, node, f"the value of '{body.name}'")
+        whose = "the lambda" if body.name == "lambda" else f"'{body.name}'"
+        return fit_or_refuse(body, value, body.result, node, f"the value of {whose}")
     expr = settle(body, value, node)
     if is_static(expr.type):
         raise body.problem(f"a function returns a value, not {expr.type}", node)

@@ -64,7 +64,10 @@ def _assign_name(body: Body, target: ast.Name, value: Value, stmt: ast.stmt) -> 
         if fitted is None:
             raise _changed_type(body, variable.name, variable.type, value, stmt)
         expr = fitted
+    starts = not variable.ir_name
     body.store(variable, expr, stmt)
+    if starts and isinstance(value, Whole):
+        body.whole_starts[variable.ir_name] = value.value
 
 
 def value_node(stmt: ast.stmt) -> ast.expr | ast.stmt:

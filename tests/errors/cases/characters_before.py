@@ -1,0 +1,6 @@
+from distal.lang import func
+
+
+@func
+def scene(größe: float) -> float:
+    ä = größe * größe; return ä + größ
