@@ -38,7 +38,7 @@ def run_passes(
     for name, run in PIPELINE:
         module = run(module, context)
         if VERIFY:
-            verify(module)
+            verify(module, name)
         if name == after:
             break
     return module

@@ -11,14 +11,17 @@ import importlib
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from distal.call_values import bind, choose_types, count, fits, is_many, lanes, single
 from distal.devices.base import Kernel
 from distal.film.picture import Picture, Provenance
-from distal.frontend import lower
+from distal.frontend import lower, lower_captured
+from distal.frontend.freshness import Captured
 from distal.frontend.headers import read_header
 from distal.ir.nodes import Module, Origin
 from distal.ir.printer import print_module
@@ -32,19 +35,40 @@ LARGEST_SIDE_PX: Final = 16384
 DEVICES: Final = {"cpu": "distal.devices.cpu", "reference": "distal.devices.reference"}
 
 
+Types: TypeAlias = tuple[Type, ...] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Lowered:
+    """A lowered function, the hash of its text, and what it captured."""
+
+    module: Module
+    digest: str
+    captured: Captured
+
+    @staticmethod
+    def of(function: Func | LangFunction, types: Types) -> Lowered:
+        """Lower a function for argument types."""
+        module, captured = lower_captured(function, types)
+        digest = hashlib.sha256(print_module(module).encode()).hexdigest()
+        return Lowered(module, digest, captured)
+
+
 class PythonExecutor:
     """Runs scene code for Python; keeps compiled kernels for the life of the process.
 
-    A function is lowered anew for each call, since the constants it captures may have changed; a
-    kernel is found by what lowering gave.
+    A function is lowered again when a constant it captured has changed; a kernel is found by what
+    lowering gave.
     """
 
     def __init__(self) -> None:
         self._kernels: dict[tuple[str, str, int], Kernel] = {}
+        self._lowered: WeakKeyDictionary[Func, dict[Types, Lowered]] = WeakKeyDictionary()
 
     def parameters(self, function: Func) -> list[Parameter]:
         """The parameters that a function and what it calls read, by first use."""
-        return [u.source for u in lower(function).uniforms if u.origin is Origin.PARAMETER]
+        uniforms = self._lower(function, None).module.uniforms
+        return [u.source for u in uniforms if u.origin is Origin.PARAMETER]
 
     def render(
         self,
@@ -62,9 +86,10 @@ class PythonExecutor:
         width, height = _checked_size(size)
         seconds = _checked_time(time)
         begin = _now()
-        module = lower(image)
+        lowered = self._lower(image, None)
+        module, digest = lowered.module, lowered.digest
         values = parameter_values(module, params or {})
-        kernel, digest = self._kernel(module, device, 32)
+        kernel = self._kernel(lowered, device, 32)
         compiled = _now()
         frame = {
             "resolution": (float(width), float(height)),
@@ -102,8 +127,9 @@ class PythonExecutor:
         rows = [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
         many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
         points = count(rows)
-        module = lower(function, types)
-        kernel, _ = self._kernel(module, "cpu", 64 if double else 32)
+        lowered = self._lower(function, types)
+        module = lowered.module
+        kernel = self._kernel(lowered, "cpu", 64 if double else 32)
         uniforms = parameter_values(module, {})
         resources = {r.name: r.source for r in module.resources}
         result_type = module.function(module.entry).result
@@ -112,17 +138,25 @@ class PythonExecutor:
         result = kernel.evaluate(rows, uniforms, resources)
         return result if many else single(result, result_type)
 
-    def _kernel(self, module: Module, device: str, precision: int) -> tuple[Kernel, str]:
-        """The kernel for a lowered module, and the hash of what it was made of."""
+    def _lower(self, function: Func | LangFunction, types: Types) -> Lowered:
+        """The lowered function, remembered while what it captured is the same."""
+        if isinstance(function, LangFunction):
+            return Lowered.of(function, types)
+        known = self._lowered.setdefault(function, {})
+        lowered = known.get(types)
+        if lowered is None or not lowered.captured.is_fresh():
+            lowered = known[types] = Lowered.of(function, types)
+        return lowered
+
+    def _kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
         if device not in DEVICES:
             raise ValueError(f"there is no device '{device}'; devices: {', '.join(DEVICES)}")
-        digest = hashlib.sha256(print_module(module).encode()).hexdigest()
-        key = (digest, device, precision)
+        key = (lowered.digest, device, precision)
         kernel = self._kernels.get(key)
         if kernel is None:
-            kernel = importlib.import_module(DEVICES[device]).prepare(module, precision=precision)
-            self._kernels[key] = kernel
-        return kernel, digest
+            room = importlib.import_module(DEVICES[device])
+            kernel = self._kernels[key] = room.prepare(lowered.module, precision=precision)
+        return kernel
 
 
 def parameter_values(module: Module, params: Mapping[str, Any]) -> dict[str, Any]:

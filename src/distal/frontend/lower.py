@@ -8,6 +8,7 @@ from typing import TypeVar
 from distal.diagnostics import CompileError, Diagnostic
 from distal.frontend.annotations import AnnotationError, UnboundVariableError, admits, to_type
 from distal.frontend.calling import instantiate
+from distal.frontend.freshness import Captured
 from distal.frontend.headers import MISSING, Header
 from distal.frontend.instances import Instance
 from distal.frontend.lifting import lower_row
@@ -34,7 +35,21 @@ def lower(obj: Func | Image | LangFunction, arg_types: tuple[Type, ...] | None =
     Raises:
         CompileError: All mistakes in the function and in what it calls.
     """
+    return _lower(Program(), obj, arg_types)
+
+
+def lower_captured(
+    obj: Func | LangFunction, arg_types: tuple[Type, ...] | None = None
+) -> tuple[Module, Captured]:
+    """As ``lower``; also tells whether the module still stands for the function later on."""
     program = Program()
+    module = _lower(program, obj, arg_types)
+    return module, Captured(program.overloads())
+
+
+def _lower(
+    program: Program, obj: Func | LangFunction, arg_types: tuple[Type, ...] | None
+) -> Module:
     if isinstance(obj, LangFunction):
         return _lower_builtin(program, obj, arg_types)
     if isinstance(obj, Image):

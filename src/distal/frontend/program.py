@@ -98,6 +98,10 @@ class Program:
         """``name(p: vec3) -> float`` as the author wrote it."""
         return signature_of(self.header(overload))
 
+    def overloads(self) -> tuple[Overload, ...]:
+        """Every Python function that was looked at so far."""
+        return tuple(self._headers)
+
     def unique_name(self, name: str, suffix: str = "") -> str:
         """A module-wide name: plain, else with the suffix, else numbered."""
         base = name.strip("_") or "function"
@@ -189,6 +193,7 @@ class Program:
         error = self.error()
         if error is not None:
             raise error
+        assert any(f.name == entry.name for f in self.functions), f"{entry.name} was lost"
         uniforms = tuple(declaration for _, declaration in self._uniforms.values())
         resources = tuple(self._resources.values())
         return Module(tuple(self.functions), entry.name, kind, uniforms, resources)
