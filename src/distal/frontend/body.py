@@ -235,13 +235,13 @@ class Body:
         if variable.failed:
             raise FollowupError
         owner = variable.owner
-        if variable not in owner.assigned and owner.reachable:
+        unknown = variable.type is None and variable.static is None
+        if variable not in owner.assigned and (owner.reachable or unknown):
             message = f"'{variable.name}' may be read before it has a value"
             raise self.problem(message, node, "give it a value before the if or the loop")
         if variable.static is not None:
             return variable.static
-        if variable.type is None:
-            raise FollowupError
+        assert variable.type is not None
         if owner is self:
             return Read(variable.ir_name, variable.type, span=self.span(node))
         return self.capture(variable)

@@ -258,7 +258,17 @@ def _subscript(body: Body, node: ast.Subscript) -> Value:
         position = constant_int(body.expression(node.slice))
         if position is not None:
             return base.items[in_range(body, position, len(base.items), node)]
+        return element(body, body.bind(array_name(node.value), settle(body, base, node)), node)
     return element(body, settle(body, base, node.value), node)
+
+
+def array_name(node: ast.expr) -> str:
+    """What a local that holds an array is called: as the author calls it."""
+    match node:
+        case ast.Name(name) | ast.Attribute(_, name):
+            return name
+        case _:
+            return "values"
 
 
 def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:

@@ -33,6 +33,7 @@ from distal.ir.nodes import (
 from distal.ir.types import (
     BOOL,
     FLOAT,
+    UINT,
     Kind,
     Matrix,
     Scalar,
@@ -121,10 +122,10 @@ def meet(
     """Both sides as one type: a literal takes the other side's kind, a scalar is splatted."""
     if isinstance(lhs, Whole) and not isinstance(rhs, Whole):
         right = _firm(body, rhs, lhs, node)
-        return _literal_beside(body, lhs, right, node), right
+        return _literal_beside(body, lhs, right, node, symbol), right
     if isinstance(rhs, Whole) and not isinstance(lhs, Whole):
         left = _firm(body, lhs, rhs, node)
-        return left, _literal_beside(body, rhs, left, node)
+        return left, _literal_beside(body, rhs, left, node, symbol)
     left, right = _firm(body, lhs, rhs, node), _firm(body, rhs, lhs, node)
     if left.type is right.type:
         return left, right
@@ -157,11 +158,13 @@ def _firm(body: Body, value: Value, other: Value, node: ast.expr | ast.stmt) -> 
     return settle(body, value, node)
 
 
-def _literal_beside(body: Body, literal: Whole, other: Expr, node: ast.expr | ast.stmt) -> Expr:
+def _literal_beside(
+    body: Body, literal: Whole, other: Expr, node: ast.expr | ast.stmt, symbol: str
+) -> Expr:
     """The literal as the other side's kind; a scalar, or splatted beside a vector or matrix."""
     kind = kind_of(other.type)
     if kind is None or kind is Kind.BOOL:
-        return settle(body, literal, node)
+        raise _do_not_mix(body, other, settle(body, literal, node), node, symbol)
     scalar = fit(body, literal, Scalar(kind), node)
     assert scalar is not None
     return splat(scalar, other.type)
@@ -250,8 +253,12 @@ def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | as
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
         shifted = lhs.value << rhs.value if op is BinaryOp.SHL else lhs.value >> rhs.value
         return Whole(shifted)
-    value, count = settle(body, lhs, node), settle(body, rhs, node)
+    value = settle(body, lhs, node)
     kind = kind_of(value.type)
+    if isinstance(rhs, Whole) and kind is Kind.UINT:
+        count: Expr = Const(rhs.value, UINT)
+    else:
+        count = settle(body, rhs, node)
     if kind not in (Kind.INT, Kind.UINT) or isinstance(value.type, Matrix):
         raise body.problem(f"'{op.value}' does not take {value.type}", node)
     if kind_of(count.type) not in (Kind.INT, Kind.UINT):

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from distal.frontend.body import Body, Loop, Variable
-from distal.frontend.expressions import arguments_of_range, make_closure
+from distal.frontend.expressions import arguments_of_range, array_name, make_closure
 from distal.frontend.fitting import constant_int, fit_or_refuse, natural_type, settle
 from distal.frontend.operators import condition
 from distal.frontend.problems import FollowupError, SceneError
@@ -21,7 +21,7 @@ from distal.frontend.targets import assign, augment, value_node
 from distal.frontend.values import TRUE, Closure, Display, Static, Value, Whole
 from distal.ir.build import index as element_at
 from distal.ir.build import integer, negation
-from distal.ir.nodes import Break, Const, Continue, Expr, For, If, Let, Read, Return, Stmt, While
+from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
 from distal.ir.types import INT, Array, Type, is_static
 
 
@@ -216,7 +216,7 @@ def _iteration(body: Body, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr 
     if not isinstance(value.type, Array):
         hint = "write for i in range(n)" if value.type is INT else None
         raise body.problem(f"a loop goes over range(...) or an array, not {value.type}", node, hint)
-    array = body.hold("values", value) if not isinstance(value, Const) else value
+    array = body.hold(array_name(node), value)
     return (integer(0), integer(value.type.length), 1), array
 
 

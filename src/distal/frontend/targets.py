@@ -22,6 +22,7 @@ from distal.ir.types import (
     Vector,
     is_static,
 )
+from distal.ir.walk import nodes_in
 
 
 def assign(body: Body, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
@@ -140,7 +141,7 @@ def _unpack(
     body: Body, target: ast.expr, elements: list[ast.expr], value: Value, stmt: ast.stmt
 ) -> None:
     items = _items(body, value, len(elements), target, stmt)
-    if len(items) > 1 and any(_may_change(body, e) for e in elements):
+    if len(items) > 1 and _depend(body, items, elements):
         # All values are taken before the first target changes: a, b = b, a.
         items = [_held(body, i) for i in items]
     for element_target, item in zip(elements, items, strict=True):
@@ -157,11 +158,22 @@ def _held(body: Body, value: Value) -> Value:
             return body.hold("value", value)
 
 
-def _may_change(body: Body, target: ast.expr) -> bool:
-    if not isinstance(target, ast.Name):
-        return True
-    variable = body.lookup(target.id)
-    return variable is not None and variable.changes
+def _depend(body: Body, items: list[Value], targets: list[ast.expr]) -> bool:
+    """Whether a value reads a local that an assignment before it may have changed."""
+    names = {n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)}
+    variables = (body.lookup(name) for name in names)
+    changing = {v.ir_name for v in variables if v is not None and v.changes}
+    return bool(changing) and any(_reads(i, changing) for i in items)
+
+
+def _reads(value: Value, names: set[str]) -> bool:
+    match value:
+        case Whole() | Static() | Closure():
+            return False
+        case Display(items):
+            return any(_reads(i, names) for i in items)
+        case _:
+            return any(isinstance(e, Read) and e.name in names for e in nodes_in(value))
 
 
 def _items(body: Body, value: Value, count: int, target: ast.expr, stmt: ast.stmt) -> list[Value]:

@@ -3,4 +3,5 @@ from distal.lang import func
 
 @func
 def scene(größe: float) -> float:
-    ä = größe * größe; return ä + größ
+    ä = größe * größe
+    return ä + größ

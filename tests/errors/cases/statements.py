@@ -6,6 +6,7 @@ def scene(x: float) -> float:
     assert x > 0.0
     global y
     import math
+
     try:
         x = 1.0
     except ValueError:
