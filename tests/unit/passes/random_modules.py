@@ -81,7 +81,13 @@ class Generator:
         self.used: dict[Expr, list[Expr]] = {}
         self.result = result
         body = self.block(scope, [], depth=0, in_loop=False)
-        body.append(Return(self.expr(result, scope, 3)))
+        value = self.expr(result, scope, 3)
+        if result is FLOAT:
+            # Every local of the body has a part in it: else most of the body would be dead.
+            reads = [build.read(s.name, s.value.type) for s in body if isinstance(s, Let | Var)]
+            for part in (*scope, *reads):
+                value = build.add(value, as_float(part))
+        body.append(Return(value))
         self.functions.append(Function(name, params, result, tuple(body), name))
 
     # Statements
@@ -171,6 +177,8 @@ class Generator:
     # Expressions
 
     def expr(self, type: Type, scope: list[Expr], depth: int) -> Expr:
+        if depth > 1 and self.random.random() < 0.15:
+            scope = []  # of uniforms and constants only
         known = [e for e in self.used if e.type is type and set(self.used[e]) <= set(scope)]
         if known and self.random.random() < 0.35:
             return self.random.choice(known)
@@ -272,6 +280,25 @@ class Generator:
         kinds = {INT: FLOAT}
         source = self.expr(kinds[type], scope, depth)
         return build.cast(held(source, build.number(-9), build.number(9)), Kind.INT)
+
+
+def as_float(value: Expr) -> Expr:
+    """A float that every part of the value has a part in."""
+    match value.type:
+        case Struct(_, fields):
+            parts = [as_float(build.field(value, name)) for name, _ in fields]
+        case Array(_, length):
+            parts = [build.index(value, build.integer(i)) for i in range(length)]
+        case _:
+            if value.type is BOOL:
+                return build.select(value, build.number(1.0), build.number(-2.0))
+            if value.type is INT:
+                return build.cast(build.binary(BinaryOp.AND, value, build.integer(255)), Kind.FLOAT)
+            parts = list(build.components(value))
+    total = parts[0]
+    for part in parts[1:]:
+        total = build.subtract(total, part)
+    return total
 
 
 def held(value: Expr, low: Expr, high: Expr) -> Expr:
