@@ -7,6 +7,7 @@ flows out: an overload's types, and arrays with one row for each point; and back
 from __future__ import annotations
 
 import dataclasses
+from collections import namedtuple
 from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any, TypeVar, assert_never
@@ -214,10 +215,43 @@ def single(result: Any, type: Type) -> Any:
                 *(VALUE_CLASSES[Vector(Kind.FLOAT, type.size)](*c) for c in result[0].T.tolist())
             )
         case Struct(_, fields):
-            return tuple(single(r, t) for r, (_, t) in zip(result, fields, strict=True))
+            return with_names(
+                tuple(single(r, t) for r, (_, t) in zip(result, fields, strict=True)), type
+            )
         case Array(element, length):
             if isinstance(result, tuple):
                 return [single(r, element) for r in result]
             return [single(result[:, i], element) for i in range(length)]
         case _:
             raise AssertionError(f"{type} is no result")
+
+
+def with_names(result: Any, type: Type) -> Any:
+    """A struct's values with its fields as attributes; anything else as it is."""
+    if not isinstance(type, Struct) or type.is_tuple:
+        return result
+    return namedtuple(type.name, [name for name, _ in type.fields])(*result)
+
+
+def empty(type: Type, dtype: np.dtype[Any]) -> Any:
+    """The result for no points at all."""
+    match type:
+        case Scalar(kind):
+            return np.empty(0, _dtype(kind, dtype))
+        case Vector(kind, size):
+            return np.empty((0, size), _dtype(kind, dtype))
+        case Matrix(size):
+            return np.empty((0, size, size), dtype)
+        case Array(Scalar() | Vector() as element, length):
+            return np.empty((0, length, *empty(element, dtype).shape[1:]), dtype)
+        case Array(element, length):
+            return tuple(empty(element, dtype) for _ in range(length))
+        case Struct(_, fields):
+            return tuple(empty(t, dtype) for _, t in fields)
+        case _:
+            raise AssertionError(f"{type} is no result")
+
+
+def _dtype(kind: Kind, dtype: np.dtype[Any]) -> np.dtype[Any]:
+    plain = {Kind.INT: np.int32, Kind.UINT: np.uint32, Kind.BOOL: np.bool_}
+    return dtype if kind is Kind.FLOAT else np.dtype(plain[kind])

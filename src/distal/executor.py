@@ -17,12 +17,23 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from distal.call_values import bind, choose_types, count, fits, is_many, lanes, single
+from distal.call_values import (
+    bind,
+    choose_types,
+    count,
+    empty,
+    fits,
+    is_many,
+    lanes,
+    single,
+    with_names,
+)
 from distal.devices.base import Kernel
 from distal.film.picture import Picture, Provenance
 from distal.frontend import lower, lower_captured
 from distal.frontend.freshness import Captured
 from distal.frontend.headers import read_header
+from distal.frontend.matching import signature_of
 from distal.ir.nodes import Module, Origin
 from distal.ir.printer import print_module
 from distal.ir.types import Type
@@ -133,10 +144,10 @@ class PythonExecutor:
         uniforms = parameter_values(module, {})
         resources = {r.name: r.source for r in module.resources}
         result_type = module.function(module.entry).result
-        if points == 0 or (points is None and many and not rows):
-            raise ValueError(f"{function.__name__}() was given no points")
+        if points == 0:
+            return with_names(empty(result_type, dtype), result_type)
         result = kernel.evaluate(rows, uniforms, resources)
-        return result if many else single(result, result_type)
+        return with_names(result, result_type) if many else single(result, result_type)
 
     def _lower(self, function: Func | LangFunction, types: Types) -> Lowered:
         """The lowered function, remembered while what it captured is the same."""
@@ -207,7 +218,19 @@ def _arguments(
         if mistake is not None and len(function.overloads) == 1:
             raise mistake
     given = ", ".join(map(_described, [*args, *kwargs.values()]))
-    raise TypeError(f"{function.__name__}() does not take ({given})")
+    raise TypeError(f"{function.__name__}() does not take ({given}); {_takes(function)}")
+
+
+def _takes(function: Func | LangFunction) -> str:
+    if isinstance(function, LangFunction):
+        overloads = [
+            f"({', '.join(map(str, types))})"
+            for signature in function.row.signatures
+            for types, _ in signature.instances()
+        ]
+    else:
+        overloads = [signature_of(read_header(o)) for o in function.overloads]
+    return f"it takes {' or '.join(overloads)}, or arrays with a row for each point"
 
 
 def _described(value: Any) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import linecache
 import sys
 import types
+from collections.abc import Mapping
 from pathlib import Path
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
@@ -142,7 +143,7 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> Func:
     raise LoadError(f"{file} defines several images; say which: {file}:NAME; {_listed(images)}")
 
 
-def _listed(found: dict[str, Func]) -> str:
+def _listed(found: Mapping[str, Func]) -> str:
     if not found:
         return "it has no scene code at all"
     return f"it has: {', '.join(found)}"
