@@ -31,7 +31,6 @@ _FLOAT_OPS = {
     BinaryOp.ADD: "fadd",
     BinaryOp.SUB: "fsub",
     BinaryOp.MUL: "fmul",
-    BinaryOp.DIV: "fdiv",
 }
 _INTEGER_OPS = {
     BinaryOp.ADD: "add",
@@ -181,12 +180,18 @@ class Arithmetic:
     def _float_binary(self, op: BinaryOp, lhs: Leaf, rhs: Leaf) -> Leaf:
         if op in _FLOAT_OPS:
             return self.apply(Kind.FLOAT, f"{_FLOAT_OPS[op]} {FLAGS} {{t0}} {{0}}, {{1}}", lhs, rhs)
-        quotient = self.binary(BinaryOp.DIV, lhs, rhs)
+        quotient = self.divide(lhs, rhs)
+        if op is BinaryOp.DIV:
+            return quotient
         floored = self.intrinsic("floor", Kind.FLOAT, quotient)
         if op is BinaryOp.FLOOR_DIV:
             return floored
         assert op is BinaryOp.MOD
         return self.binary(BinaryOp.SUB, lhs, self.binary(BinaryOp.MUL, rhs, floored))
+
+    def divide(self, lhs: Leaf, rhs: Leaf) -> Leaf:
+        """``lhs / rhs`` of floats, correctly rounded."""
+        return self.apply(Kind.FLOAT, f"fdiv {FLAGS} {{t0}} {{0}}, {{1}}", lhs, rhs)
 
     def _floored(self, lhs: Leaf, rhs: Leaf) -> tuple[Leaf, Leaf]:
         """``lhs // rhs`` and ``lhs % rhs`` of ints; x // 0 = x, x % 0 = 0."""

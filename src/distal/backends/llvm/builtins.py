@@ -11,6 +11,7 @@ import math
 
 from distal.backends.llvm.arithmetic import Arithmetic
 from distal.backends.llvm.lanes import Leaf, Leaves, leaf_count
+from distal.backends.llvm.roots import inverse_square_root, square_root
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind, Matrix, Type
 
@@ -45,15 +46,6 @@ def builtin(
             # A scalar beside a vector of another argument does not occur: rows are componentwise.
             assert all(leaf_count(t) == len(first) for t in types)
             return tuple(_component(arithmetic, name, row) for row in zip(*args, strict=True))
-
-
-def square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
-    """The correctly rounded square root.
-
-    An estimate refined by Newton's method is no faster here: in the distance field of the first
-    example both take the same time, since the vector divider works beside the multipliers.
-    """
-    return arithmetic.intrinsic("sqrt", Kind.FLOAT, x)
 
 
 def _dot(arithmetic: Arithmetic, a: Leaves, b: Leaves) -> Leaf:
@@ -98,8 +90,7 @@ def _component(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
         case "sqrt":
             return square_root(arithmetic, x)
         case "inversesqrt":
-            one = arithmetic.constant(1.0, kind)
-            return arithmetic.binary(BinaryOp.DIV, one, square_root(arithmetic, x))
+            return inverse_square_root(arithmetic, x)
         case "isnan":
             return arithmetic.apply(Kind.BOOL, "fcmp uno {t0} {0}, {1}", x, x)
         case "isinf":

@@ -34,7 +34,7 @@ from distal.ir.types import component_count, is_static, kind_of
 from distal.ir.walk import blocks, children, expressions, nodes_in
 
 _DIVISION = 8  # also of a square root: vector dividers take about eight multiplications' time
-_HEAVY = frozenset(("sqrt", "inversesqrt", "length"))
+_HEAVY = frozenset(("sqrt", "inversesqrt"))
 
 
 class Costs:
@@ -96,7 +96,10 @@ class Costs:
             case Binary(op) if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD):
                 return _DIVISION * _width(e)
             case Builtin(name):
-                return (_DIVISION if name in _HEAVY else 1) * max(map(_width, children(e)))
+                width = max(map(_width, children(e)))
+                if name == "length":
+                    return _DIVISION + width
+                return width * (_DIVISION if name in _HEAVY else 1)
             case MatMul():
                 return 16
             case Index(base):

@@ -14,6 +14,7 @@ from distal.backends.llvm.arithmetic import Arithmetic
 from distal.backends.llvm.builtins import builtin
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored, field_offset, leaf_count, leaf_kinds
 from distal.backends.llvm.layout import RESOURCE_BYTES
+from distal.backends.llvm.roots import quotient
 from distal.backends.llvm.storage import Mask, Storage
 from distal.backends.llvm.uniformity import Uniformity
 from distal.ir.nodes import (
@@ -116,11 +117,13 @@ class Expressions:
                 change = arithmetic.negate if op is UnaryOp.NEGATE else arithmetic.invert
                 return tuple(change(leaf) for leaf in self.value(operand))
             case Binary(op, lhs, rhs):
-                pairs = zip(self.value(lhs), self.value(rhs), strict=True)
-                return tuple(arithmetic.binary(op, a, b) for a, b in list(pairs))
+                pairs = list(zip(self.value(lhs), self.value(rhs), strict=True))
+                if op is BinaryOp.DIV:
+                    return tuple(quotient(arithmetic, a, b) for a, b in pairs)
+                return tuple(arithmetic.binary(op, a, b) for a, b in pairs)
             case Compare(op, lhs, rhs):
-                pairs = zip(self.value(lhs), self.value(rhs), strict=True)
-                return tuple(arithmetic.compare(op, a, b) for a, b in list(pairs))
+                pairs = list(zip(self.value(lhs), self.value(rhs), strict=True))
+                return tuple(arithmetic.compare(op, a, b) for a, b in pairs)
             case Logical():
                 return (self._logical(e),)
             case MatMul(lhs, rhs):
