@@ -157,7 +157,12 @@ class EglShader:
 
     def _vertex_array(self) -> moderngl.VertexArray:
         members = ((name, self._program[name]) for name in self._program)
-        inputs = [name for name, member in members if isinstance(member, moderngl.Attribute)]
+        # gl_VertexID is listed as well; with the quad's indices it would draw a second triangle.
+        inputs = [
+            name
+            for name, member in members
+            if isinstance(member, moderngl.Attribute) and not name.startswith("gl_")
+        ]
         if not inputs:
             array = context().vertex_array(self._program, [])
             array.vertices = 3
