@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,6 @@ from distal.ir.nodes import (
     BinaryOp,
     Call,
     CompareOp,
-    Construct,
     EntryKind,
     Expr,
     Field,
@@ -29,6 +29,8 @@ from distal.ir.nodes import (
     Module,
     Param,
     Read,
+    Resource,
+    ResourceDeclaration,
     Return,
     Stmt,
 )
@@ -39,7 +41,7 @@ from distal.ir.types import (
     UINT,
     VEC2,
     VEC4,
-    Array,
+    Buffer,
     Kind,
     Matrix,
     Scalar,
@@ -51,6 +53,8 @@ from distal.ir.types import (
 from tests.parity.sampling import COMPONENT_STRIDE, SAMPLES, Bits, component
 
 Numbers = NDArray[np.float64]
+SAMPLES_NAME: Final = "samples"
+SAMPLES_TYPE: Final = Buffer(UINT)
 
 
 @dataclass(frozen=True)
@@ -101,11 +105,13 @@ class Program:
 
     Attributes:
         module: An image module, before all passes.
+        buffers: The data of its one buffer, which holds the samples.
         width: Its width in pixels; its height is ``SAMPLES``.
         places: For each case its first column and its result's type.
     """
 
     module: Module
+    buffers: dict[str, NDArray[np.uint32]]
     width: int
     places: tuple[tuple[Case, int, Type], ...]
 
@@ -125,7 +131,8 @@ class Program:
 
 def program(cases: Sequence[Case]) -> Program:
     """Pack cases into one picture."""
-    functions: dict[str, Function] = {}
+    functions: list[Function] = []
+    samples: dict[bytes, int] = {}  # a list of samples -> where it begins in the buffer
     body: list[Stmt] = [
         Let("coord", Field(Read("frame", FRAME), "coord", VEC2)),
         Let("column", build.cast(swizzle(Read("coord", VEC2), "x"), Kind.INT)),
@@ -133,26 +140,35 @@ def program(cases: Sequence[Case]) -> Program:
     ]
     places, width = [], 0
     for number, case in enumerate(cases):
-        value = case.expression([_argument(case, i, functions) for i in range(len(case.args))])
+        value = case.expression([_argument(case, i, samples) for i in range(len(case.args))])
         places.append((case, width, value.type))
-        for part in range(_pixels(value.type)):
-            name = f"case_{number}_{part}"
-            pixel = _pixel(Read("result", value.type), part)
-            functions[name] = Function(
-                name,
-                (Param("row", INT),),
-                VEC4,
-                (Let("result", value), Return(pixel)),
-                name,
-            )
-            here = compare(CompareOp.EQ, Read("column", INT), integer(width))
-            call = Call(name, (Read("row", INT),), VEC4)
-            body.append(If(here, (Return(call),), ()))
-            width += 1
+        name = f"case_{number}"
+        functions.append(_case_function(name, value))
+        part = build.subtract(Read("column", INT), integer(width))
+        width += _pixels(value.type)
+        here = compare(CompareOp.LT, Read("column", INT), integer(width))
+        body.append(If(here, (Return(Call(name, (Read("row", INT), part), VEC4)),), ()))
     body.append(Return(build.number(0.0, VEC4)))
     picture = Function("picture", (Param("frame", FRAME),), VEC4, tuple(body), "picture")
-    module = Module((*functions.values(), picture), "picture", EntryKind.IMAGE)
-    return Program(module, width, tuple(places))
+    data = np.frombuffer(b"".join(samples), np.uint32)
+    declaration = ResourceDeclaration(SAMPLES_NAME, SAMPLES_TYPE, data)
+    module = Module((*functions, picture), "picture", EntryKind.IMAGE, (), (declaration,))
+    return Program(module, {SAMPLES_NAME: data}, width, tuple(places))
+
+
+def _case_function(name: str, value: Expr) -> Function:
+    """The function that computes a case and gives one of its pixels."""
+    result, last = Read("result", value.type), _pixels(value.type) - 1
+    choices = [
+        If(
+            compare(CompareOp.EQ, Read("part", INT), integer(part)),
+            (Return(_pixel(result, part)),),
+            (),
+        )
+        for part in range(last)
+    ]
+    body = (Let("result", value), *choices, Return(_pixel(result, last)))
+    return Function(name, (Param("row", INT), Param("part", INT)), VEC4, body, name)
 
 
 def _pixels(type: Type) -> int:
@@ -161,13 +177,13 @@ def _pixels(type: Type) -> int:
     return -(-channels // 4)
 
 
-def _argument(case: Case, position: int, functions: dict[str, Function]) -> Expr:
+def _argument(case: Case, position: int, samples: dict[bytes, int]) -> Expr:
     """The argument of a case in sample ``row``."""
     type, bits = case.args[position], case.samples[position]
-    name = _sample_function(bits, functions)
+    begin = samples.setdefault(bits.tobytes(), len(samples) * SAMPLES)
     kind = kind_of(type)
     assert kind is not None
-    parts = [_component(name, i, kind) for i in range(component_count(type))]
+    parts = [_component(begin, i, kind) for i in range(component_count(type))]
     match type:
         case Scalar():
             return parts[0]
@@ -179,23 +195,11 @@ def _argument(case: Case, position: int, functions: dict[str, Function]) -> Expr
             return build.compose(type, *parts)
 
 
-def _sample_function(bits: Bits, functions: dict[str, Function]) -> str:
-    """The function that gives a sample's bits; one for equal lists."""
-    type = Array(UINT, SAMPLES)
-    table = Construct(tuple(unsigned(int(b)) for b in bits), type)
-    body = (Let("table", table), Return(build.index(Read("table", type), Read("i", INT))))
-    for known in functions.values():
-        if known.body == body:
-            return known.name
-    name = f"sample_{len(functions)}"
-    functions[name] = Function(name, (Param("i", INT),), UINT, body, name)
-    return name
-
-
-def _component(function: str, number: int, kind: Kind) -> Expr:
+def _component(begin: int, number: int, kind: Kind) -> Expr:
     shifted = build.add(Read("row", INT), integer(COMPONENT_STRIDE * number % SAMPLES))
     position = build.binary(BinaryOp.AND, shifted, integer(SAMPLES - 1))
-    bits = Call(function, (position,), UINT)
+    buffer = Resource(SAMPLES_NAME, SAMPLES_TYPE)
+    bits = build.index(buffer, build.add(position, integer(begin)))
     match kind:
         case Kind.FLOAT:
             return builtin("uint_bits_to_float", bits)

@@ -38,7 +38,7 @@ BATCHES = range(-(-len(_cases()) // CASES_AT_ONCE))
 def _batch(number: int) -> tuple[Program, NDArray[np.float32]]:
     first = number * CASES_AT_ONCE
     packed = program(_cases()[first : first + CASES_AT_ONCE])
-    return packed, targets.reference(packed.module, packed.width, SAMPLES)
+    return packed, targets.reference(packed.module, packed.width, SAMPLES, packed.buffers)
 
 
 @pytest.mark.parametrize("batch", BATCHES)
@@ -46,7 +46,7 @@ def _batch(number: int) -> tuple[Program, NDArray[np.float32]]:
 def test_agrees_with_reference(target: str, batch: int) -> None:
     packed, expected = _batch(batch)
     try:
-        actual = targets.TARGETS[target](packed.module, packed.width, SAMPLES)
+        actual = targets.TARGETS[target](packed.module, packed.width, SAMPLES, packed.buffers)
     except targets.Unavailable as reason:
         pytest.skip(f"{target} does not run here: {reason}")
     found = [

@@ -51,9 +51,9 @@ TARGETS: Final = (
     ),
 )
 
-# Arrays of so many lanes stay in a core's second-level cache: rendering in one piece took 1.6
-# times as long at 320x240.
-LANES_AT_ONCE = 16384
+# A picture is made in pieces of so many lanes, so that memory stays bounded and progress is seen.
+# Fewer cost time: the raymarcher at 320x240 takes 0.27 s in one piece, 0.42 s in pieces of 16384.
+LANES_AT_ONCE = 131072
 
 
 Ways = NDArray[np.int8]
