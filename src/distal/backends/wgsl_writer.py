@@ -270,6 +270,9 @@ class WgslWriter(FunctionWriter):
     def unary_special(self, e: Unary) -> Code | None:
         if e.op is UnaryOp.NEGATE and kind_of(e.type) is Kind.UINT:
             return infix("-", Level.SUM, Code("0u"), self.expression(e.operand))
+        if isinstance(e.type, Matrix):
+            # The language has no minus before a matrix (WGSL, "Arithmetic Expressions").
+            return infix("*", Level.PRODUCT, Code("-1.0"), self.expression(e.operand))
         return None
 
     def matrix_scale(self, e: Binary) -> Code | None:
