@@ -54,8 +54,8 @@ class Level:
 LEVELS: Final = (
     Level("avx512", "x86_64", "x86-64-v4", 16, 4, 8,
           ("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl", "avx2", "fma", "bmi2")),
-    Level("avx2", "x86_64", "x86-64-v3", 8, 2, 4, ("avx2", "fma", "bmi1", "bmi2", "f16c", "movbe")),
-    Level("sse4.2", "x86_64", "x86-64-v2", 4, 2, 4, ("sse4_2", "ssse3", "popcnt")),
+    Level("avx2", "x86_64", "x86-64-v3", 8, 4, 8, ("avx2", "fma", "bmi1", "bmi2", "f16c", "movbe")),
+    Level("sse4.2", "x86_64", "x86-64-v2", 4, 8, 8, ("sse4_2", "ssse3", "popcnt")),
     Level("neon", "aarch64", "generic", 4, 4, 4, ("asimd",)),
 )  # fmt: skip
 
