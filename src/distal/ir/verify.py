@@ -48,14 +48,14 @@ DEEPEST = 200
 # The passes in order (``distal.passes.pipeline``), and what each leaves behind for good.
 _STAGES = (
     *("entry", "specialise", "gradient", "decompose", "specialise-prelude", "bounds"),
-    *("inline", "fold", "share", "frequency", "predicate"),
+    *("fold", "frequency", "inline", "fold-inlined", "share", "predicate"),
 )
 _NO_FRAME = frozenset(_STAGES)
 _NO_FUNCTION_VALUES = frozenset(_STAGES[1:])
 _NO_STATIC_PARAMETERS = frozenset(_STAGES[1:]) - {"decompose"}  # which brings in prelude functions
 _NO_GRADIENT = frozenset(_STAGES[2:])
 _INDICES_IN_RANGE = frozenset(_STAGES[5:])
-_PER_FRAME = frozenset(("frequency", "predicate"))
+_PER_FRAME = frozenset(_STAGES[_STAGES.index("frequency") :])
 
 
 def verify(module: Module, stage: str | None = None) -> None:
