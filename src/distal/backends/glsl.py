@@ -102,7 +102,7 @@ def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
     if packing is None:
         return []
     count = packing.float_vectors + packing.int_vectors
-    return [names.namer.name(f"frame_{i}") for i in range(count)]
+    return [names.namer.name(f"packed_{i}") for i in range(count)]
 
 
 def _interface(program: Program, target: Target) -> dict[str, Any]:
@@ -123,6 +123,7 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
     result["stages"] = {"fragment": result["entry"]}
     if program.packing is not None:
         result["stages"]["vertex"] = "main"
+        result["vertices"] = 6  # drawn as triangles, without buffers
     result["frame"] = {
         "place": target.frame.value,
         "values": [
