@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from distal.backends.expressions import Line
+from distal.backends.wrapping import wrapped
 from distal.ir.nodes import EntryKind, Expr, Function, Module, PerFrame, UniformDeclaration
 from distal.ir.walk import expressions_in, map_expressions, nodes_in, substitute
 
@@ -53,7 +54,7 @@ def uniform_comment(uniform: UniformDeclaration) -> str:
 
 def joined(lines: Iterable[Line]) -> tuple[str, tuple[tuple[str, int] | None, ...]]:
     """The text, and for each of its lines the author's file and line."""
-    kept = list(lines)
+    kept = list(wrapped(lines))
     while kept and not kept[0].text:
         kept.pop(0)
     while kept and not kept[-1].text:

@@ -14,7 +14,7 @@ from distal.backends.base import Artifact
 from distal.backends.interface import interface
 from distal.backends.keywords import WGSL_KEYWORDS, WGSL_PREDECLARED
 from distal.backends.module_names import name_module
-from distal.backends.module_text import joined, without_frame
+from distal.backends.module_text import joined, per_frame_reads, without_frame
 from distal.backends.wgsl_layout import lay_out
 from distal.backends.wgsl_resources import texture_binding
 from distal.backends.wgsl_stages import OWN_NAMES, Program, program_lines
@@ -53,7 +53,9 @@ def _with_resolution(module: Module) -> Module:
 def _program(module: Module, target: Target) -> Program:
     names = name_module(module, _RESERVED, WGSL_KEYWORDS, OWN_NAMES)
     uniforms = lay_out(tuple((u.name, u.type) for u in module.uniforms))
-    frame = lay_out(tuple((name, value.type) for name, value in module.frame))
+    # A value that only later values are made of stays a local of frame_main.
+    read = per_frame_reads(module.functions)
+    frame = lay_out(tuple((name, value.type) for name, value in module.frame if name in read))
     size = next((u.name for u in module.uniforms if _is_resolution(u)), "")
     resolution = names.uniforms.get(size, "")
     return Program(module, names, resolution, uniforms, frame, target.name == "wgsl-compute")

@@ -33,9 +33,9 @@ class Layout:
     members: tuple[Member, ...]
     size: int
 
-    def member(self, name: str) -> Member:
-        """The member of that name."""
-        return next(m for m in self.members if m.name == name)
+    def has(self, name: str) -> bool:
+        """Whether there is a member of that name."""
+        return any(m.name == name for m in self.members)
 
 
 def _alignment(type: Type) -> int:

@@ -108,7 +108,9 @@ def _write_frame(
         code = own.expression(value)
         local = own.local_namer.name(name)
         own.line(own.declaration(local, code, value.type, mutable=isinstance(value.type, Struct)))
-        own.line(f"frame_output.{names.frame[name]} = {_to_shared(Code(local), value.type)};")
+        if program.frame.has(name):
+            shared = _to_shared(Code(local), value.type)
+            own.line(f"frame_output.{names.frame[name]} = {shared};")
         own.frame = {**own.frame, name: local}
     own.depth = 0
     own.line("}")
@@ -169,8 +171,9 @@ def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line
     if module.frame:
         lines += ["", "// Values that are the same in all pixels, computed by frame_main."]
         lines.append("struct Frame {")
-        for name, value in module.frame:
-            lines.append(f"    {names.frame[name]}: {writer.type_name(shared_type(value.type))},")
+        for member in program.frame.members:
+            type = writer.type_name(shared_type(member.type))
+            lines.append(f"    {names.frame[member.name]}: {type},")
         lines += [
             "}",
             "",
