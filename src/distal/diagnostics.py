@@ -47,15 +47,16 @@ class Diagnostic:
                 lines.append(f"  = hint: {self.hint}")
             return "\n".join(lines)
         span = self.span
-        gutter = " " * len(str(span.line))
+        number = f"{span.line:>2}"
+        gutter = " " * len(number)
         # Tabs stay tabs under a tab, so that the caret stands where the editor shows the mistake.
         lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
         carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
         lines = [
             f"error: {self.message}",
-            f"{gutter} --> {span.file}:{span.line}:{span.col + 1}",
+            f"{gutter}--> {span.file}:{span.line}:{span.col + 1}",
             f"{gutter} |",
-            f"{span.line} | {span.text}",
+            f"{number} | {span.text}",
             f"{gutter} | {lead}{carets}",
         ]
         if self.hint:

@@ -147,7 +147,7 @@ def test_output_is_needed_and_checked_before_any_work(scene, run):
         (
             CompileError.at("'x' is not defined", Span("s.py", 1, 4, 5, "y = x")),
             1,
-            "error: 'x' is not defined\n  --> s.py:1:5\n  |\n1 | y = x\n  |     ^\n",
+            "error: 'x' is not defined\n  --> s.py:1:5\n   |\n 1 | y = x\n   |     ^\n",
         ),
         (LoadError("there is no file s.py"), 1, "error: there is no file s.py\n"),
         (KeyboardInterrupt(), 130, ""),
