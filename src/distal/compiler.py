@@ -31,7 +31,22 @@ IR_TARGET = "ir"  # the IR as the CPU's passes leave it, printed
 def run_passes(
     module: Module, target: Target, precision: int = 32, after: str | None = None
 ) -> Module:
-    """Shape a lowered module for a target, up to and including the pass ``after``."""
+    """Shape a lowered module for a target, up to and including the pass ``after``.
+
+    Raises:
+        CompileError: The scene code says what the target cannot do.
+    """
+    try:
+        return _run_passes(module, target, precision, after)
+    except RecursionError:
+        # A ladder of hundreds of elif is as many blocks inside one another.
+        entry = module.function(module.entry)
+        hint = "put parts of it into functions of their own"
+        message = f"'{entry.source_name}' or what it calls is too deeply nested"
+        raise CompileError.at(message, entry.span, hint) from None
+
+
+def _run_passes(module: Module, target: Target, precision: int, after: str | None) -> Module:
     context = Context(target, PreludeLibrary(), precision)
     if VERIFY:
         verify(module)

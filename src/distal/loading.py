@@ -69,6 +69,8 @@ def _run(file: Path) -> types.ModuleType:
         code = compile(text, filename, "exec", dont_inherit=True)
     except SyntaxError as error:
         raise _syntax_error(error, filename) from None
+    except (RecursionError, MemoryError):
+        raise LoadError(f"{file} is too deeply nested for Python itself") from None
     except ValueError as error:  # a NUL byte
         raise LoadError(f"{file} is not Python source: {error}") from None
     # Decorators look their module up; neighbours of the file can be imported, as in a script.

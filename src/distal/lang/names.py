@@ -5,11 +5,13 @@ The front end finds these objects behind the author's names; nothing is decided 
 
 from __future__ import annotations
 
+import builtins
 from dataclasses import dataclass
 from typing import Any
 
 from distal.executor_hook import executor
 from distal.ir.intrinsics import Intrinsic
+from distal.lang.values import VectorValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +28,20 @@ class LangFunction:
     def __doc__(self) -> str:  # type: ignore[override]  # a property, where object has a text
         return self.row.doc
 
-    def __call__(self, *args: Any) -> Any:
-        """The value for numbers, vectors or arrays."""
-        return executor().call(self, args, {})
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """The value for numbers, vectors or arrays.
+
+        ``round(x, 2)``, ``max(numbers, key=…)`` and the like in a scene's module mean Python's own.
+        """
+        python = getattr(builtins, self.row.name, None)
+        if python is not None and (kwargs or all(map(_is_plain, args))):
+            return python(*args, **kwargs)
+        return executor().call(self, args, kwargs)
+
+
+def _is_plain(value: object) -> bool:
+    """Neither a vector nor an array."""
+    return not isinstance(value, VectorValue) and not hasattr(value, "dtype")
 
 
 @dataclass(frozen=True, slots=True)
