@@ -21,6 +21,7 @@ import numpy as np
 
 import distal
 from benchmarks.rivals.llvmpipe import use_threads
+from tests.egl import EglShader, context, renderer
 
 SIZE = (640, 480)
 THREADS = 2
@@ -46,8 +47,6 @@ def cpu_device() -> tuple[Draw, Callable[[float], np.ndarray]]:
 
 def shader(fragment: str, vertex: str | None, names: dict[str, str]) -> tuple[Draw, Callable]:
     """A GLSL text on llvmpipe, drawn into 8 bits and finished."""
-    from tests.egl import EglShader, context, renderer
-
     if "llvmpipe" not in renderer():
         sys.exit(f"the driver is {renderer()}, not llvmpipe: the ratios would mean another thing")
     program = EglShader(fragment, vertex_text=vertex)
@@ -97,7 +96,7 @@ def main() -> None:
     pictures = {name: picture(seconds)[..., :3] for name, (_, picture) in runners.items()}
     names = list(runners)
     base = statistics.median(times[names[0]])
-    print(f"{'640x480, 2 threads':32} {'median ms':>10} {'fastest':>8} {'speed-up':>9} {'differs':>9}")
+    print(f"{'640x480, 2 threads':32}  median ms  fastest  speed-up   differs")
     for name in names:
         median = statistics.median(times[name])
         off = np.abs(np.clip(pictures[name], 0, 1) - np.clip(pictures[names[0]], 0, 1)).mean() * 255

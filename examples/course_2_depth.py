@@ -1,4 +1,4 @@
-"""Course, step 2: march along the ray by the distance to the nearest surface; show how far it got."""
+"""Course, step 2: march along the ray by the distance to the nearest surface; show how far."""
 
 from distal.lang import Frame, func, image, length, min, normalize, vec3
 

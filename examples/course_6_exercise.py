@@ -1,4 +1,4 @@
-"""Course, step 6, the exercise: one sphere circles another above a checkered floor, in light fog."""
+"""Course, step 6, the exercise: one sphere circles another above a checkered floor, in fog."""
 
 from distal.lang import (
     Frame,

@@ -23,7 +23,7 @@ from distal.lang import (
 )
 
 blend = slider("Blend softness", 0.3, low=0.0, high=1.0, help="How far the two shapes melt.")
-steps = integer("Max steps", 64, low=1, high=96, help="How often a ray may step before it gives up.")
+steps = integer("Max steps", 64, low=1, high=96, help="How often a ray steps before it gives up.")
 
 FAR = 12.0
 SKY = vec3(0.07, 0.06, 0.10)

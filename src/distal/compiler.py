@@ -17,7 +17,6 @@ from distal.ir.printer import print_module
 from distal.ir.target import Target
 from distal.ir.verify import verify
 from distal.lang.functions import Func
-
 from distal.passes.context import Context
 from distal.passes.pipeline import PASS_NAMES, PIPELINE
 from distal.prelude_library import PreludeLibrary

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache
 
 from distal.diagnostics import CompileError
 from distal.frontend import lower_overload
@@ -17,7 +17,7 @@ from distal.ir.types import Type
 from distal.ir.walk import map_expressions, rewrite
 
 
-@lru_cache(maxsize=None)
+@cache
 def _lowered(name: str, args: tuple[Type, ...]) -> tuple[Function, ...]:
     """The overload and what it calls, callees first; empty when there is no such overload."""
     module, _, function = name.partition(".")

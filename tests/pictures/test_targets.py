@@ -1,4 +1,4 @@
-"""The gallery, at several times: what the drivers make of the emitted texts is the CPU's picture."""
+"""The gallery, at several times: what drivers make of the emitted texts is the CPU's picture."""
 
 from __future__ import annotations
 

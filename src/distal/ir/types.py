@@ -61,7 +61,7 @@ class Matrix(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Struct(metaclass=Interned):
-    """Named fields, a value. A returned tuple is a struct with ``is_tuple`` and fields item0, item1."""
+    """Named fields, a value. A returned tuple is a struct with ``is_tuple`` and fields item0 on."""
 
     name: str
     fields: tuple[tuple[str, Type], ...]
