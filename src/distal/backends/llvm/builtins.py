@@ -152,7 +152,11 @@ def _library(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
     if name in _LIBRARY_UNARY:
         return arithmetic.intrinsic(name, Kind.FLOAT, args[0])
     if name in ("atan2", "raw_atan2"):
-        return arithmetic.intrinsic("atan2", Kind.FLOAT, *args)
+        # (0, 0) has the angle 0, whatever its signs; the library turns by pi for x = -0.
+        zero = arithmetic.constant(0.0, Kind.FLOAT)
+        flat, level = (arithmetic.compare(CompareOp.EQ, a, zero) for a in args)
+        angle = arithmetic.intrinsic("atan2", Kind.FLOAT, *args)
+        return arithmetic.select(_joined(arithmetic, "and", (flat, level)), zero, angle)
     if name in ("pow", "raw_power"):
         zero = arithmetic.constant(0.0, Kind.FLOAT)
         below = arithmetic.compare(CompareOp.LT, zero, args[0])
