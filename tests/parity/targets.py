@@ -31,15 +31,18 @@ class Unavailable(Exception):  # noqa: N818 (a reason to skip, not an error)
     """This machine cannot run the target."""
 
 
-def reference(module: Module, width: int, height: int, buffers: Buffers) -> Picture:
+def reference(
+    module: Module, width: int, height: int, buffers: Buffers, precision: int = 32
+) -> Picture:
     """NumPy, which the others are held against."""
-    module = run_passes(module, get_target("numpy"))
-    return reference_backend.render(module, width, height, {}, buffers)
+    module = run_passes(module, get_target("numpy"), precision)
+    return reference_backend.render(module, width, height, {}, buffers, precision)
 
 
-def cpu(module: Module, width: int, height: int, buffers: Buffers) -> Picture:
+def cpu(module: Module, width: int, height: int, buffers: Buffers, precision: int = 32) -> Picture:
     """Vector code through LLVM."""
-    return cpu_device.prepare(module, cache=Cache(None)).render(width, height, {}, buffers)
+    kernel = cpu_device.prepare(module, precision=precision, cache=Cache(None))
+    return kernel.render(width, height, {}, buffers)
 
 
 def glsl(name: str) -> Runner:

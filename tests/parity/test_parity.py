@@ -44,6 +44,8 @@ def _batch(number: int) -> tuple[Program, NDArray[np.float32]]:
 @pytest.mark.parametrize("batch", BATCHES)
 @pytest.mark.parametrize("target", targets.TARGETS)
 def test_agrees_with_reference(target: str, batch: int) -> None:
+    if target == "glsl-330" and batch % 4:
+        pytest.skip("glsl-330 shares its writer with glsl-es300: a quarter of the cases are run")
     packed, expected = _batch(batch)
     try:
         actual = targets.TARGETS[target](packed.module, packed.width, SAMPLES, packed.buffers)

@@ -187,6 +187,8 @@ class Maker:
         places = self.places(type)
         if places and self.chance(75):
             return Piece(self.pick(places), VARIABLE)
+        if not places and self.chance(50):
+            return Piece(self.varying("", type), VARIABLE)
         return self.literal(type)
 
     def places(self, type: str, *, writable: bool = False) -> list[str]:
@@ -222,7 +224,7 @@ class Maker:
         if type == "uint":
             return Piece(f"uint({self.pick(UINT_LITERALS)})")
         if type == "bool":
-            return Piece(self.pick(("False", "True")))
+            return Piece(self.pick(("(p0 > 0)", "(p0 % 2 == 0)", "(p0 < -3)", "False", "True")))
         parts = [self.literal(SCALAR_OF[type]).text for _ in range(SIZES[type])]
         return Piece(f"{type}({', '.join(parts)})", Bound(8.0, 3))
 
@@ -484,6 +486,7 @@ class Maker:
             return f"{self.pick(('any', 'all'))}({a} {self.comparison()} {b})"
         type = self.pick(("int", "float", "uint"))
         a, b = (self.expression(type, depth - 1).text for _ in range(2))
+        a = self.varying(a, type)
         if kind == "chain":
             c = self.expression(type, depth - 1).text
             return f"({a} {self.comparison()} {b} {self.comparison()} {c})"

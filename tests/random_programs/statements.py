@@ -13,13 +13,12 @@ from hypothesis import strategies as st
 
 from tests.random_programs.grammar import (
     ARRAYS,
-    FLOATS,
     PREAMBLE,
     SCALAR_OF,
     SIZES,
     STRUCTS,
     VALUES,
-    VARIABLE,
+    Bound,
     Local,
     Maker,
     Piece,
@@ -69,7 +68,9 @@ class FunctionMaker(Maker):
         self.locals = [Local(f"p{i}", t, writable=False) for i, t in enumerate(params)]
         self.cost, self.rounds, self.loops, self.names = 0, 1, 0, 0
         self.left, self.budget = MOST_STATEMENTS, 120
-        lines = self.block(2, may_leave=False)
+        lines = ["v0 = p0"]
+        self.locals.append(Local("v0", "int", writable=False))
+        lines += self.block(2, may_leave=False)
         lines.append(self.returned())
         heading = ", ".join(f"p{i}: {t}" for i, t in enumerate(params))
         result = self.results[0] if count == 1 else f"tuple[{', '.join(self.results)}]"
@@ -81,14 +82,29 @@ class FunctionMaker(Maker):
         return "return " + ", ".join(self.gathered(t) for t in self.results)
 
     def gathered(self, type: str) -> str:
-        """A value to return that what was computed last has a part in, so that little is dead."""
+        """A value to return that everything told by ``mixed_in`` has a part in."""
         value = self.reduced(self.expression(type, 2), type)
-        last = [p for p in self.places(type) if not p.endswith(".zx")][-5:]
-        if type in FLOATS:
-            for place in last:
-                value = self.arithmetic(value, Piece(place, VARIABLE), type, product=False)
-            return self.reduced(value, type).text
-        return f" {'!=' if type == 'bool' else '^'} ".join([value.text, *last])
+        scalar, size = SCALAR_OF.get(type, type), SIZES.get(type, 1)
+        if scalar == "float":
+            part = "float(v0 & 63)" if size == 1 else f"{type}({', '.join(['v0 & 63'] * size)})"
+            return self.reduced(Piece(f"({value.text} + {part})", Bound(127.0, 3)), type).text
+        if scalar == "bool":
+            return f"{value.text} != ((v0 & 1) == 1)"
+        part = "v0" if type == "int" else f"{type}({', '.join(['v0'] * size)})"
+        return f"{value.text} ^ {part}"
+
+    def mixed_in(self, known: int) -> list[str]:
+        """Take a value bound or changed here into ``v0``, which every result depends on."""
+        hashes = {"int": "{}", "uint": "int({})", "float": "int({} * 8.0)", "bool": "int({})"}
+        recent = self.locals[max(known - 2, 0) :]
+        places = [
+            hashes[type].format(place)
+            for local in recent
+            if local.name != "v0"
+            for type in hashes
+            for place in self.parts(local.name, local.type, type)
+        ]
+        return [f"v0 = v0 * 31 + {self.pick(places)}"] if places else []
 
     def block(self, depth: int, *, may_leave: bool) -> list[str]:
         """Some statements; what they bind is forgotten after them."""
@@ -98,6 +114,8 @@ class FunctionMaker(Maker):
             if self.left <= 0:
                 break
             lines += self.statement(depth)
+            if self.chance(70):
+                lines += self.mixed_in(known)
         if may_leave and self.chance(30):
             lines.append(self.leaving())
         if depth < 2:
@@ -112,7 +130,7 @@ class FunctionMaker(Maker):
 
     def statement(self, depth: int) -> list[str]:
         self.left -= 1
-        kinds = ["local", "assign", "assign", "part", "unpack"]
+        kinds = ["local", "assign", "assign", "part", "part", "unpack"]
         if depth > 0:
             kinds += ["if", "if", "for", "while", "each"]
         kind = self.pick(kinds)
