@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -43,6 +44,8 @@ REFUSED = {
     ("integers", "glsl-es100"): "glsl-es100 has no bit operations",
     ("per_frame", "glsl-es100"): "glsl-es100 has no unsigned integers",
     ("textures", "glsl-es100"): "glsl-es100 has no single texels",
+    ("crowded", "glsl-es100"): "glsl-es100 has no unsigned integers",
+    ("far_loops", "glsl-es100"): "glsl-es100 needs loop bounds",
     ("buffers", "glsl-es100"): "GLSL ES 1.00 has no buffers",
     ("buffers", "shadertoy"): "Shadertoy has no buffers",
 }
@@ -59,7 +62,7 @@ def scene_file(path: Path) -> ModuleType:
 
 TORTURE = scene_file(HERE / "torture.py")
 IMAGES: dict[str, Image] = {n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)}
-for example in sorted(EXAMPLES.glob("*.py")):
+for example in (*sorted(EXAMPLES.glob("*.py")), HERE.parent / "golden" / "scene.py"):
     images = [v for v in vars(scene_file(example)).values() if isinstance(v, Image)]
     IMAGES[example.stem] = images[-1]
 
@@ -176,3 +179,38 @@ def test_text_is_plain(name: str, target: str) -> None:
     assert len(artifact.lines) == artifact.text.count("\n")
     places = [place for place in artifact.lines if place is not None]
     assert any(file.endswith(".py") for file, _ in places)
+
+
+def broken(target: str) -> tuple[Artifact, str]:
+    """The golden scene with a mistake put into its text, and the author's line for that place."""
+    artifact = compiled("scene", target)
+    lines = artifact.text.splitlines()
+    number = next(i for i, line in enumerate(lines) if "ring(p - center" in line)
+    lines[number] = lines[number].replace("ring(", "nothing(")
+    place = artifact.lines[number]
+    assert place is not None
+    return replace(artifact, text="\n".join(lines) + "\n"), f"{place[0]}:{place[1]}"
+
+
+def test_mesa_and_glslang_name_the_authors_line(tmp_path: Path) -> None:
+    artifact, place = broken("glsl-es300")
+    assert place.endswith("scene.py:53")
+    glsl = pytest.importorskip("tests.glsl")
+    with pytest.raises(glsl.egl.ShaderRejectedError) as refused:
+        drawn(artifact)
+    assert place in map_message(artifact, str(refused.value))
+    validator = shutil.which("glslangValidator")
+    if validator is None:
+        pytest.skip("no glslangValidator (Debian: glslang-tools)")
+    path = tmp_path / "scene.frag"
+    path.write_text(artifact.text)
+    done = subprocess.run([validator, path], capture_output=True, text=True, check=False)
+    assert f"ERROR: {place}" in map_message(artifact, done.stdout)
+
+
+def test_naga_names_the_authors_line() -> None:
+    artifact, place = broken("wgsl")
+    gpu = pytest.importorskip("tests.gpu")
+    with pytest.raises(gpu.wgpu.GPUValidationError) as refused:
+        drawn(artifact)
+    assert place in map_message(artifact, str(refused.value))

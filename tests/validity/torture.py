@@ -304,3 +304,43 @@ def buffers(frame: Frame) -> vec3:
     i = int(p.x * 14.0) - 2
     total = heights[i] + float(counts[int(p.y * 5.0)]) * 0.1 + float(size(heights)) * 0.01
     return places[i] * total
+
+
+@func
+def wave(i: int, time: float) -> vec4:
+    """Four per-frame numbers, and their number alone is what differs."""
+    return vec4(sin(time + float(i)), cos(time * float(i)), exp(-time * float(i)), sqrt(time))
+
+
+@image
+def crowded(frame: Frame) -> vec3:
+    p = vec4(frame.coord / frame.resolution, 0.5, 1.0)
+    t = frame.time
+    turn = mat3(wave(1, t).xyz, wave(2, t).yzw, wave(3, t).xzw)
+    total = dot(p, wave(4, t)) + dot(p, wave(5, t)) + dot(p, wave(6, t)) + dot(p, wave(7, t))
+    total += dot(p, wave(8, t)) + dot(p, wave(9, t)) + dot(p, wave(10, t)) + dot(p, wave(11, t))
+    total += dot(p, wave(12, t)) + dot(p, wave(13, t)) + dot(p, wave(14, t))
+    beat = int(sin(t) * 1000.0) // 3
+    seed = pcg(uint(beat)) ^ uint(frame.index)
+    signs = wave(15, t).xyz < wave(16, t).xyz
+    pattern = float((int(frame.coord.x) ^ beat) & 7) + float((uint(frame.coord.y) ^ seed) & uint(7))
+    shade = select(signs, vec3(total * 0.125), turn @ p.xyz)
+    return abs(shade) * 0.25 + pattern * 0.03125
+
+
+@image
+def far_loops(frame: Frame) -> vec3:
+    p = frame.coord / frame.resolution
+    x = int(p.x * 4.0)
+    total = 0
+    for i in range(2147483640 + x, 2147483647, 3):
+        total += i & 15
+    for i in range(-2147483640 + x, -2147483647, -5):
+        if i & 1 == 0:
+            continue
+        total += i & 31
+    for i in range(x, 40 + x, 7):
+        total += i
+    for _ in range(5, x):
+        total += 1000
+    return vec3(float(total & 255), float(total >> 8), p.y) / 255.0

@@ -10,7 +10,8 @@ from abc import abstractmethod
 from pathlib import PurePath
 from typing import assert_never
 
-from distal.backends.expressions import Code, ExpressionWriter, Level, Line, infix, prefix
+from distal.backends.code import Code, Level, Line, infix, prefix
+from distal.backends.expressions import ExpressionWriter
 from distal.backends.literals import INT_MIN
 from distal.backends.module_names import globals_of
 from distal.backends.names import Namer
@@ -159,7 +160,9 @@ class FunctionWriter(ExpressionWriter):
 
     def statement(self, stmt: Stmt, *, tail: bool) -> None:
         """Append one statement."""
-        self.span = stmt.span or self.span
+        here = stmt.span
+        if here is not None and (self.span is None or here.file == self.span.file):
+            self.span = here
         match stmt:
             case Let(name, value):
                 self.bind(name, value, mutable=False)

@@ -3,18 +3,18 @@
 In: IR expressions. Out: text with as few brackets as both grammars take. Where a language cannot
 say something inside an expression, it stands in a local of its own before the statement: the
 writer appends those lines to ``lines`` itself. What differs between the languages is left to the
-methods of ``Dialect``.
+methods of ``distal.backends.dialect``.
 """
 
 from __future__ import annotations
 
 import re
-from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from enum import IntEnum
-from typing import NamedTuple, assert_never
+from typing import assert_never
 
+from distal.backends.code import Code, Level, Line, infix, prefix, tight
 from distal.backends.constants import is_table
+from distal.backends.dialect import Dialect
 from distal.backends.module_names import ModuleNames
 from distal.backends.names import Namer
 from distal.diagnostics import Span
@@ -52,37 +52,6 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import Array, Buffer, Kind, Struct, Type, Vector, kind_of
 
-
-class Level(IntEnum):
-    """How tightly the outermost operator of a text binds."""
-
-    TERNARY = 0
-    OR = 1
-    AND = 2
-    BITS = 3
-    RELATION = 4
-    SHIFT = 5
-    SUM = 6
-    PRODUCT = 7
-    UNARY = 8
-    PRIMARY = 9
-
-
-class Code(NamedTuple):
-    """An expression's text, and its outermost operator."""
-
-    text: str
-    level: Level = Level.PRIMARY
-    op: str = ""
-
-
-class Line(NamedTuple):
-    """One line of output and the author's place it comes from."""
-
-    text: str
-    span: Span | None = None
-
-
 INFIX = {
     BinaryOp.ADD: Level.SUM,
     BinaryOp.SUB: Level.SUM,
@@ -99,141 +68,6 @@ INFIX = {
 _MIXED = (BinaryOp.ADD, BinaryOp.SUB, BinaryOp.MUL, BinaryOp.DIV)
 
 _PLAIN_CALL = re.compile(r"[\w<>{}]+\((\{\d\}(, \{\d\})*)?\)")
-
-
-def _needs_brackets(operand: Code, level: Level, op: str, *, right: bool) -> bool:
-    """Whether an operand of an infix operator is bracketed: WGSL's grammar, the stricter one."""
-    inner = operand.level
-    if inner is Level.PRIMARY:
-        return False
-    if inner is Level.UNARY:
-        return right and level is not Level.RELATION and operand.text.startswith("-")
-    if inner is Level.TERNARY:
-        return True
-    if level in (Level.SUM, Level.PRODUCT):
-        return inner < level or (right and inner is level)
-    if level is Level.RELATION:
-        return inner not in (Level.SUM, Level.PRODUCT)
-    if level in (Level.AND, Level.OR):
-        return inner in (Level.AND, Level.OR, Level.BITS, Level.SHIFT) and inner is not level
-    # Operands of bit operators: only a chain of the very same operator stands without.
-    return not (level is Level.BITS and operand.op == op and not right)
-
-
-def literal_code(text: str) -> Code:
-    """A literal, which may have a sign, or be a difference."""
-    if " " in text:
-        return Code(text, Level.SUM)
-    return Code(text, Level.UNARY if text.startswith("-") else Level.PRIMARY)
-
-
-def infix(op: str, level: Level, lhs: Code, rhs: Code) -> Code:
-    """``lhs op rhs``."""
-    left, right = (
-        f"({side.text})" if _needs_brackets(side, level, op, right=at_right) else side.text
-        for side, at_right in ((lhs, False), (rhs, True))
-    )
-    return Code(f"{left} {op} {right}", level, op)
-
-
-def tight(code: Code) -> str:
-    """The text as an operand of the tightest operators: dots, indices, signs."""
-    return code.text if code.level is Level.PRIMARY else f"({code.text})"
-
-
-def prefix(op: str, operand: Code) -> Code:
-    """``op operand``."""
-    return Code(f"{op}{tight(operand)}", Level.UNARY)
-
-
-class Dialect(ABC):
-    """What a language writes in its own way. ``family`` is its column of the intrinsic table."""
-
-    family: str
-
-    @abstractmethod
-    def type_name(self, type: Type) -> str:
-        """A value type."""
-
-    @abstractmethod
-    def constant(self, e: Const) -> Code:
-        """A literal."""
-
-    @abstractmethod
-    def uniform(self, e: Uniform) -> Code:
-        """A read of a uniform."""
-
-    @abstractmethod
-    def per_frame(self, e: PerFrame) -> Code:
-        """A read of a per-frame value."""
-
-    @abstractmethod
-    def declaration(self, name: str, value: Code, type: Type, *, mutable: bool) -> str:
-        """The binding of a local to a value."""
-
-    @abstractmethod
-    def unset_declaration(self, name: str, type: Type) -> str:
-        """The binding of a local that is assigned in each branch that follows."""
-
-    @abstractmethod
-    def arguments(self, args: list[Code]) -> str:
-        """Arguments of a call."""
-
-    @abstractmethod
-    def chosen(self, e: Select, condition: Code, yes: Code, no: Code) -> Code | None:
-        """A choice by a bool as an expression, or None where only ``if`` will do."""
-
-    @abstractmethod
-    def chosen_by_components(self, e: Select) -> Code:
-        """A choice by a bvec."""
-
-    @abstractmethod
-    def vector_compare(self, e: Compare) -> Code:
-        """A comparison of vectors."""
-
-    @abstractmethod
-    def bool_vector_binary(self, op: BinaryOp, lhs: Code, rhs: Code, type: Type) -> Code:
-        """AND, OR, XOR of bvecs."""
-
-    @abstractmethod
-    def unary_special(self, e: Unary) -> Code | None:
-        """A sign or inversion that has no plain prefix operator here."""
-
-    @abstractmethod
-    def shift(self, e: Binary) -> Code:
-        """A shift; the count is below 32 in the IR, or is a constant."""
-
-    @abstractmethod
-    def matrix_scale(self, e: Binary) -> Code | None:
-        """A matrix beside a splat where the plain operator does not exist."""
-
-    @abstractmethod
-    def scalar_arguments(self, name: str) -> tuple[int, ...]:
-        """Arguments of a built-in that may stay scalar beside vectors."""
-
-    @abstractmethod
-    def array_text(self, e: Construct) -> Code:
-        """An array's constructor, written where it stands."""
-
-    @abstractmethod
-    def element(self, e: Index) -> Code:
-        """An element of an array, a column or a component, as a value."""
-
-    @abstractmethod
-    def buffer_element(self, resource: Resource, index: Code) -> Code:
-        """An element of a buffer, the index clamped."""
-
-    @abstractmethod
-    def sample(self, resource: Resource, coord: Code) -> Code:
-        """A filtered texture value at level 0."""
-
-    @abstractmethod
-    def texel(self, resource: Resource, index: Code) -> Code:
-        """One texel, the index clamped."""
-
-    @abstractmethod
-    def size(self, resource: Resource) -> Code:
-        """Extent of a texture or count of a buffer."""
 
 
 class ExpressionWriter(Dialect):

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from distal.backends.clike import place
-from distal.backends.expressions import Code, Line
+from distal.backends.code import Code, Line
 from distal.backends.glsl_resources import accessor_lines, resource_lines
 from distal.backends.glsl_writer import Glsl100Writer, GlslWriter
 from distal.backends.literals import float_literal, int_literal

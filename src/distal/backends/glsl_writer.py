@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from typing import assert_never
 
 from distal.backends.clike import FunctionWriter
-from distal.backends.expressions import Code, Level, infix, literal_code, tight
+from distal.backends.code import Code, Level, infix, literal_code, tight
+from distal.backends.constants import is_table
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
 from distal.diagnostics import CompileError
@@ -252,7 +253,7 @@ class GlslWriter(FunctionWriter):
 
     def element(self, e: Index) -> Code:
         base = self.expression(e.base)
-        if isinstance(e.base, Construct):
+        if isinstance(e.base, Construct) and not is_table(e.base):
             base = self.temporary("items", base, e.base.type)
         return Code(self._element_text(tight(base), e))
 

@@ -109,8 +109,7 @@ WGSL_PREDECLARED: Final = (
     _words(
         """
         bool f16 f32 i32 u32 array atomic ptr sampler sampler_comparison read write read_write
-        function private workgroup uniform storage handle perspective linear flat center centroid
-        sample first either vertex fragment compute binding group location builtin
+        function private workgroup uniform storage handle
 
         bitcast all any select arrayLength abs acos acosh asin asinh atan atanh atan2 ceil clamp
         cos cosh countLeadingZeros countOneBits countTrailingZeros cross degrees determinant

@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Iterable
 from dataclasses import replace
 
-from distal.backends.expressions import Line
+from distal.backends.code import Line
 from distal.backends.wrapping import wrapped
 from distal.ir.nodes import EntryKind, Expr, Function, Module, PerFrame, UniformDeclaration
 from distal.ir.walk import expressions_in, map_expressions, nodes_in, substitute

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from distal.backends.expressions import Code, Line
+from distal.backends.code import Code, Line
 from distal.backends.module_names import ModuleNames, called_by, reachable, types_in
 from distal.backends.module_text import per_frame_reads, uniform_comment
 from distal.backends.names import Namer

@@ -14,8 +14,8 @@ from collections.abc import Iterable, Mapping
 from typing import assert_never
 
 from distal.backends.clike import FunctionWriter
+from distal.backends.code import Code, Level, infix, literal_code, tight
 from distal.backends.constants import is_literal_operation, is_table
-from distal.backends.expressions import Code, Level, infix, literal_code, tight
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
 from distal.ir.nodes import (

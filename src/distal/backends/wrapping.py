@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from distal.backends.expressions import Line
+from distal.backends.code import Line
 
 WIDTH = 100
 _INDENT = " " * 8

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from distal.backends.expressions import Line
+from distal.backends.code import Line
 from distal.backends.wrapping import WIDTH, wrapped
 
 TERM = "scene(p + vec3(0.001, 0.0, 0.0), time) - here"
