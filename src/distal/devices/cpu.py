@@ -20,9 +20,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.backends.llvm import BATCH, FRAME, RENDER, TARGET, emit_for
+from distal.backends.llvm import TARGET, emit_for
 from distal.backends.llvm.layout import (
+    BATCH,
+    FRAME,
     JOB_FIELDS,
+    RENDER,
     RESOURCE_BYTES,
     TILE_BLOCKS,
     TILE_HEIGHT,
@@ -34,7 +37,7 @@ from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
 from distal.devices.features import Level, chosen_level
-from distal.devices.jit import compile_image, version
+from distal.devices.jit import compile_image, compiler_fingerprint
 from distal.devices.link import Image
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
@@ -100,7 +103,7 @@ def prepare(
 
 def _key(module: Module, level: Level, precision: int) -> str:
     """Names everything that machine code depends on, but not how the passes go about it."""
-    told = (print_module(module), __version__, _sources(), level, precision, version())
+    told = (print_module(module), __version__, _sources(), level, precision, compiler_fingerprint())
     return hashlib.sha256(repr(told).encode()).hexdigest()
 
 

@@ -105,7 +105,10 @@ def pack_points(
     slots = _slots(max(1, len(kinds)) * stride, precision)
     leaves = [leaf for shape, arg in zip(shapes, args, strict=True) for leaf in _leaves(shape, arg)]
     for i, (kind, leaf) in enumerate(zip(kinds, leaves, strict=True)):
-        _put(slots, slice(i * stride, i * stride + points), kind, leaf)
+        run = slots[i * stride : (i + 1) * stride]
+        _put(run, slice(None, points), kind, leaf)
+        # Lanes beyond the last point do what it does: no loop of theirs goes on for longer.
+        run[points:] = run[points - 1]
     return slots
 
 

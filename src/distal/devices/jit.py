@@ -6,7 +6,8 @@ What flows in: a module's text and a feature level. What flows out: a linked ima
 from __future__ import annotations
 
 import importlib
-import importlib.metadata
+import importlib.util
+import os
 from typing import Any, Final
 
 from distal.devices.features import Level
@@ -19,9 +20,13 @@ _TRIPLES: Final = {
 }
 
 
-def version() -> str:
-    """The version of llvmlite, found without loading it."""
-    return importlib.metadata.version("llvmlite")
+def compiler_fingerprint() -> tuple[int, int] | None:
+    """Tells one installed LLVM from another, without loading it."""
+    spec = importlib.util.find_spec("llvmlite")
+    if spec is None or spec.origin is None:
+        return None
+    info = os.stat(spec.origin)
+    return info.st_size, info.st_mtime_ns
 
 
 def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:

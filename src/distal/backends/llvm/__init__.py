@@ -8,10 +8,8 @@ machine code is a device's business.
 from __future__ import annotations
 
 from distal.backends.base import Artifact
-from distal.backends.llvm.kernels import BATCH, FRAME, RENDER, kernels
 from distal.backends.llvm.lanes import Lanes
 from distal.backends.llvm.layout import description
-from distal.backends.llvm.program import Program
 from distal.ir.nodes import Module
 from distal.ir.target import FramePlace, Target
 
@@ -30,6 +28,10 @@ TARGETS: tuple[Target, ...] = (TARGET,)
 
 def emit_for(module: Module, lanes: Lanes) -> Artifact:
     """The LLVM text of a module for one shape of vectors."""
+    # A kernel found in the cache is run without any of this.
+    from distal.backends.llvm.kernels import kernels  # noqa: PLC0415
+    from distal.backends.llvm.program import Program  # noqa: PLC0415
+
     program = Program(module, lanes)
     frame_polls = kernels(program)
     interface = description(module)
@@ -44,4 +46,4 @@ def emit(module: Module, target: Target) -> Artifact:
     return emit_for(module, Lanes())
 
 
-__all__ = ["BATCH", "FRAME", "RENDER", "TARGET", "TARGETS", "Lanes", "emit", "emit_for"]
+__all__ = ["TARGET", "TARGETS", "Lanes", "emit", "emit_for"]

@@ -10,15 +10,21 @@ from __future__ import annotations
 from distal.backends.llvm.arithmetic import Arithmetic
 from distal.backends.llvm.expressions import Expressions
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, Stored, leaf_kinds
-from distal.backends.llvm.layout import JOB_OFFSET, TILE_BLOCKS, TILE_HEIGHT, TILE_WIDTH
+from distal.backends.llvm.layout import (
+    BATCH,
+    FRAME,
+    JOB_OFFSET,
+    RENDER,
+    TILE_BLOCKS,
+    TILE_HEIGHT,
+    TILE_WIDTH,
+)
 from distal.backends.llvm.program import Program, prologue
 from distal.backends.llvm.storage import Storage
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import Writer
 from distal.ir.nodes import EntryKind, Function, PerFrame
 from distal.ir.types import FLOAT, Kind, Scalar
-
-RENDER, FRAME, BATCH = "distal_render", "distal_frame", "distal_batch"
 
 
 def kernels(program: Program) -> bool:
@@ -135,7 +141,7 @@ def _render(program: Program) -> None:
     rows = _Count(writer, top, bottom, block_height)
     columns = _Count(writer, left, right, lanes.block_width)
     arithmetic.enter()
-    color = _pixels(program, arithmetic, columns.index, rows.index, height)
+    color = _pixels(program, arithmetic, columns.index, rows.index, (width, height))
     _write(arithmetic, color, (columns.index, rows.index), (width, height), output, spare)
     arithmetic.leave()
     columns.end()
@@ -144,13 +150,19 @@ def _render(program: Program) -> None:
     _define(program, RENDER, writer)
 
 
-def _pixels(program: Program, arithmetic: Arithmetic, x: str, y: str, height: str) -> Leaves:
+def _pixels(
+    program: Program, arithmetic: Arithmetic, x: str, y: str, size: tuple[str, str]
+) -> Leaves:
     """The colours of a block whose upper left pixel is at column x, row y from the top."""
     lanes, writer = program.lanes, arithmetic.writer
     whole = lanes.vector(Kind.INT)
     number = lanes.vector(Kind.FLOAT)
     half = f"splat ({lanes.scalar(Kind.FLOAT)} {lanes.literal(0.5, Kind.FLOAT)})"
+    width, height = size
     last = writer.value(f"sub i32 {height}, 1")
+    # Lanes beyond the picture do what its edge does: no loop of theirs goes on for longer.
+    edge = arithmetic.broadcast(writer.value(f"sub i32 {width}, 1"), Kind.INT)
+    edges = ("slt", edge), ("sgt", "zeroinitializer")
     coordinates: list[Leaf] = []
     for axis, first in ((0, x), (1, writer.value(f"sub i32 {last}, {y}"))):
         spread, chunks = arithmetic.broadcast(first, Kind.INT), []
@@ -161,6 +173,7 @@ def _pixels(program: Program, arithmetic: Arithmetic, x: str, y: str, height: st
             ]
             constant = ", ".join(f"i32 {n}" for n in steps)
             position = writer.value(f"add {whole} {spread}, <{constant}>")
+            position = _within(writer, whole, position, edges[axis])
             as_float = writer.value(f"sitofp {whole} {position} to {number}")
             chunks.append(writer.value(f"fadd {number} {as_float}, {half}"))
         coordinates.append(Leaf(Kind.FLOAT, tuple(chunks), False))
@@ -169,6 +182,14 @@ def _pixels(program: Program, arithmetic: Arithmetic, x: str, y: str, height: st
     if len(result) == 3:
         result = (*result, arithmetic.constant(1.0, Kind.FLOAT))
     return arithmetic.spread_all(result)
+
+
+def _within(writer: Writer, type: str, position: str, edge: tuple[str, str]) -> str:
+    """Positions that compare rightly with an edge; the edge instead of others."""
+    order, limit = edge
+    bools = type.replace("i32", "i1")
+    inside = writer.value(f"icmp {order} {type} {position}, {limit}")
+    return writer.value(f"select {bools} {inside}, {type} {position}, {type} {limit}")
 
 
 def _write(

@@ -14,6 +14,11 @@ from distal.backends.llvm.lanes import leaf_kinds
 from distal.ir.nodes import EntryKind, Module
 from distal.ir.types import Array, Buffer, Kind, Matrix, Scalar, Struct, Texture, Type, Vector
 
+# The exported functions; each takes a job.
+RENDER: Final = "distal_render"
+FRAME: Final = "distal_frame"
+BATCH: Final = "distal_batch"
+
 # The job that a kernel is called with: eight-byte fields, in this order.
 JOB_FIELDS: Final = (
     "counter",  # pointer: the next tile
