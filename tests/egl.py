@@ -70,7 +70,7 @@ class EglShader:
         version: What to write after ``#version`` where a text has no such line of its own.
         vertex_text: The vertex stage, or None for one that only covers the screen. It has either
             a single ``vec2`` input (of any name), fed with the corners of the clip-space quad, or
-            no input at all: then it is run for two triangles, by ``gl_VertexID`` from 0 to 5.
+            no input at all: then it is run for one triangle, by ``gl_VertexID``.
 
     Raises:
         ShaderRejectedError: if the driver does not compile or link the texts.
@@ -165,7 +165,7 @@ class EglShader:
         ]
         if not inputs:
             array = context().vertex_array(self._program, [])
-            array.vertices = 6
+            array.vertices = 3
             return array
         if len(inputs) > 1:
             raise ValueError(f"the vertex stage has more than one input: {', '.join(inputs)}")

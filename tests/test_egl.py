@@ -51,8 +51,8 @@ def test_flat_varyings_carry_exact_values(version: str, corners: str) -> None:
         vertex = "in vec2 corner;\n"
         position = "corner"
     else:
-        vertex = "int number() { return gl_VertexID % 3 + gl_VertexID / 3; }\n"
-        position = "vec2(number() % 2, number() / 2) * 2.0 - 1.0"
+        vertex = ""
+        position = "vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0"
     vertex += (
         "uniform float time;\nflat out vec4 frame[2];\n"
         "void main() {\n  frame[0] = vec4(time, time * 3.0, 0.1, 7.0);\n  frame[1] = vec4(-time);\n"

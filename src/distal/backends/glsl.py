@@ -123,7 +123,7 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
     result["stages"] = {"fragment": result["entry"]}
     if program.packing is not None:
         result["stages"]["vertex"] = "main"
-        result["vertices"] = 6  # drawn as triangles, without buffers
+        result["vertices"] = 3  # drawn as triangles, without buffers
     result["frame"] = {
         "place": target.frame.value,
         "values": [

@@ -30,7 +30,7 @@ from distal.ir.nodes import (
     Uniform,
     UniformDeclaration,
 )
-from distal.ir.types import FLOAT, INT, UINT, VEC2, Array, Buffer, Struct
+from distal.ir.types import FLOAT, UINT, VEC2, Array, Buffer, Struct
 from distal.ir.walk import expressions_in, nodes_in
 
 
@@ -151,7 +151,7 @@ def fragment_lines(program: Program) -> list[Line]:
 
 
 def vertex_lines(program: Program) -> list[Line]:
-    """The vertex stage: six corners, two triangles over the picture, and the per-frame part."""
+    """The vertex stage: one triangle over the whole picture, and the per-frame part."""
     module = program.module
     writer = program.writer()
     frame = [value for _, value in module.frame]
@@ -162,14 +162,12 @@ def vertex_lines(program: Program) -> list[Line]:
     writer.line("void main() {")
     writer.depth = 1
     _start_main(program, writer, ())
-    # 0 1 2, then 1 2 3: a quad is drawn up to 1.5 times as fast by llvmpipe as one large triangle.
-    number = writer.temporary("number", Code("gl_VertexID % 3 + gl_VertexID / 3"), INT)
     corner = writer.temporary(
         "corner",
-        Code(f"vec2(float({number.text} % 2), float({number.text} / 2))"),
+        Code("vec2(float(gl_VertexID % 2), float(gl_VertexID / 2))"),
         VEC2,
     )
-    writer.line(f"gl_Position = vec4(2.0 * {corner.text} - 1.0, 0.0, 1.0);")
+    writer.line(f"gl_Position = vec4(4.0 * {corner.text} - 1.0, 0.0, 1.0);")
     _write_frame(program, writer, in_functions)
     if program.packing is not None:
         texts = vector_texts(program.packing, program.names.frame)
