@@ -38,7 +38,7 @@ GROUND = 1
 def smooth_union(a: float, b: float, k: float) -> float:
     """Cubic smooth minimum: the surfaces melt where they are within k of each other."""
     overlap = max(k - abs(a - b), 0.0) / k
-    return min(a, b) - overlap**3 * k / 6.0
+    return min(a, b) - overlap**3 * k * (1.0 / 6.0)
 
 
 @func
