@@ -185,7 +185,7 @@ def _arithmetic() -> Iterator[Case]:
     for type in FLOATS:
         yield _binary(BinaryOp.DIV, type, rtol=1e-6, defined=_divisible)
         yield _binary(BinaryOp.FLOOR_DIV, type, defined=_off_whole_quotients)
-        yield _binary(BinaryOp.MOD, type, rtol=1e-4, atol=1e-4, defined=_off_whole_quotients)
+        yield _binary(BinaryOp.MOD, type, rtol=2e-6, atol=1e-5, defined=_off_whole_quotients)
 
 
 def _matrices() -> Iterator[Case]:
@@ -202,7 +202,7 @@ def _matrices() -> Iterator[Case]:
             yield _case(f"{op.value} splat", (type, FLOAT), scaled, rtol=tolerance, defined=defined)
         yield _case("negate", (type,), lambda a: build.negate(a[0]))
         for args in ((type, type), (type, vector), (vector, type)):
-            yield _case("@", args, lambda a: build.matmul(a[0], a[1]), rtol=1e-5, atol=2e-2)
+            yield _case("@", args, lambda a: build.matmul(a[0], a[1]), rtol=1e-6, atol=5e-3)
 
         def column(a: Sequence[Expr], size: int = size) -> Expr:
             return build.index(a[0], _within(a[1], size))
