@@ -39,10 +39,15 @@ class Executable:
         self._entries = image.entries
 
     def function(self, name: str) -> Callable[[int], None]:
-        """An exported function that takes one pointer."""
+        """An exported function that takes one pointer; it keeps the image in memory."""
         prototype = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
         function = prototype(self._base + self._entries[name])
-        return function
+
+        def call(pointer: int) -> None:
+            assert self._memory is not None
+            function(pointer)
+
+        return call
 
     def __contains__(self, name: str) -> bool:
         return name in self._entries
