@@ -25,7 +25,18 @@ from distal.lang import (
 
 Numbers = TypeVar(
     "Numbers",
-    *(float, int, uint, vec2, vec3, vec4, ivec2, ivec3, ivec4, uvec2, uvec3, uvec4),
+    float,
+    int,
+    uint,
+    vec2,
+    vec3,
+    vec4,
+    ivec2,
+    ivec3,
+    ivec4,
+    uvec2,
+    uvec3,
+    uvec4,
 )
 
 RADIANS_PER_DEGREE = 0.017453292519943295
