@@ -179,7 +179,7 @@ class CpuKernel:
             raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
         picture = PICTURES.take((height, width, 4))
         across, down = -(-width // TILE_WIDTH), -(-height // TILE_HEIGHT)
-        job = _Job(self, uniforms, resources)
+        job = _Job(self, uniforms, resources, picture)
         job.set(output=picture.ctypes.data, width=width, height=height)
         job.set(tiles_across=across, tiles=across * down)
         self._run(job, across * down, threads, progress, cancel)
@@ -205,7 +205,7 @@ class CpuKernel:
         runs = max(1, len(kinds_in(shape)))
         target = np.empty(runs * stride, cpu_memory.float_type(self._precision))
         tiles = -(-stride // (TILE_BLOCKS * self._lanes))
-        job = _Job(self, uniforms, resources)
+        job = _Job(self, uniforms, resources, source, target)
         job.set(input=source.ctypes.data, output=target.ctypes.data, width=stride)
         job.set(tiles=tiles, stride=stride)
         if stride:
@@ -221,31 +221,35 @@ class CpuKernel:
         cancel: Cancel | None,
     ) -> None:
         started = time.perf_counter()
-        address = job.words.ctypes.data
         if self._frame is not None:
             self._run_frame(job, cancel)
         work = threads.Work(job.counter, job.stop, pieces)
-        used = threads.run(work, lambda: self._main(address), count, progress, cancel)
+        used = threads.run(work, lambda: self._main(job.address()), count, progress, cancel)
         self.stats["threads"] = used
         self.stats["render_s"] = time.perf_counter() - started
 
     def _run_frame(self, job: _Job, cancel: Cancel | None) -> None:
-        """The per-frame part: at once, or watched when a loop in it may be long."""
-        frame, address = self._frame, job.words.ctypes.data
+        """The per-frame part: at once, or watched in a thread when it may be long or large."""
+        frame = self._frame
         assert frame is not None
-        if self._interface["frame_polls"]:
+        if self._interface["frame_apart"]:
             work = threads.Work(job.counter, job.stop, 1)
-            threads.run(work, lambda: frame(address), 1, None, cancel)
+            threads.run(work, lambda: frame(job.address()), 1, None, cancel)
         else:
-            frame(address)
+            frame(job.address())
 
 
 class _Job:
-    """The memory of one run, alive until it is over."""
+    """The memory of one run, alive as long as a thread may touch it."""
 
     def __init__(
-        self, kernel: CpuKernel, uniforms: Mapping[str, Any], resources: Mapping[str, Any]
+        self,
+        kernel: CpuKernel,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *held: NDArray[Any],
     ) -> None:
+        self._held = held
         interface, precision = kernel._interface, kernel._precision
         self.words = np.zeros(len(JOB_FIELDS), np.int64)
         self.counter = np.zeros(1, np.int32)
@@ -269,6 +273,10 @@ class _Job:
             frame=self._frame.ctypes.data,
             resources=self._resources.ctypes.data,
         )
+
+    def address(self) -> int:
+        """What a kernel is called with."""
+        return int(self.words.ctypes.data)
 
     def set(self, **fields: int) -> None:
         """Fill in fields of the job."""

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from distal.devices.base import Cancel, Cancelled, Progress, cancel_test
 
 _WATCH_S: Final = 0.02  # how long a request to end may wait
+_STACK_BYTES: Final = 16 * 2**20  # twice what the LLVM backend gives to arrays
 
 
 def usable_threads() -> int:
@@ -67,9 +68,7 @@ def run(
     workers = [threading.Thread(target=worker, daemon=True) for _ in range(count)]
     started: list[threading.Thread] = []
     try:
-        for thread in workers:
-            thread.start()
-            started.append(thread)
+        _start(workers, started)
         _watch(workers, work, progress, cancel)
     except BaseException:
         work.stop[0] = 1
@@ -83,6 +82,16 @@ def run(
     if progress is not None:
         progress(1.0)
     return count
+
+
+def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> None:
+    previous = threading.stack_size(_STACK_BYTES)
+    try:
+        for thread in workers:
+            thread.start()
+            started.append(thread)
+    finally:
+        threading.stack_size(previous)
 
 
 def _watch(

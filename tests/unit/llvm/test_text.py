@@ -5,9 +5,25 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import pytest
+
 from distal.backends.llvm import TARGET, Lanes, emit, emit_for
 from distal.compiler import run_passes
+from distal.diagnostics import CompileError
 from distal.frontend import lower
+from distal.ir.nodes import (
+    Assign,
+    Construct,
+    EntryKind,
+    Function,
+    Index,
+    Module,
+    Param,
+    Read,
+    Return,
+    Var,
+)
+from distal.ir.types import FLOAT, INT, Array
 from distal.lang import Frame, func, image, length, sin, slider, vec2, vec3, vec4
 
 count = slider("Count", 3.0, low=1.0, high=9.0)
@@ -88,3 +104,20 @@ def test_interface_tells_how_to_call() -> None:
     assert interface["kind"] == "function"
     assert interface["params"] == [["p", {"kind": "float", "size": 2}], ["turns", {"kind": "int"}]]
     assert interface["result"] == {"kind": "float"}
+
+
+def test_arrays_that_no_stack_holds_are_refused() -> None:
+    """Built by hand: no author writes 50,000 elements."""
+    elements = 50_000
+    kind = Array(FLOAT, elements)
+    filled = Construct((Read("x", FLOAT),) * elements, kind)
+    at = Read("i", INT)
+    body = (
+        Var("a", filled),
+        Assign(Index(Read("a", kind), at, FLOAT), Read("x", FLOAT)),
+        Return(Index(Read("a", kind), at, FLOAT)),
+    )
+    function = Function("f", (Param("x", FLOAT), Param("i", INT)), FLOAT, body, "f")
+    module = Module((function,), "f", EntryKind.FUNCTION)
+    with pytest.raises(CompileError, match="arrays of 'f' are too large for the CPU"):
+        emit_for(module, Lanes(16, 4))

@@ -33,10 +33,10 @@ def emit_for(module: Module, lanes: Lanes) -> Artifact:
     from distal.backends.llvm.program import Program  # noqa: PLC0415
 
     program = Program(module, lanes)
-    frame_polls = kernels(program)
+    frame_apart = kernels(program)
     interface = description(module)
     interface["target"] = TARGET.name
-    interface["frame_polls"] = frame_polls
+    interface["frame_apart"] = frame_apart
     return Artifact(program.text(module.entry), interface)
 
 

@@ -393,10 +393,15 @@ class Expressions:
         leaves = self.value(e)
         if all(leaf.constant for leaf in leaves):
             return Stored(e.type, self.program.table(leaves), True)
-        uniform = all(leaf.uniform for leaf in leaves)
-        stored = self.storage.allocate(e.type, uniform=uniform)
-        self.storage.store(stored, leaves, 0, None, None)
-        return stored
+        return self.stored(e.type, leaves, uniform=all(leaf.uniform for leaf in leaves))
+
+    def stored(self, type: Type, leaves: Leaves, *, uniform: bool) -> Stored:
+        """Put a value into memory of its own."""
+        size = self.storage.size(type, uniform=uniform)
+        self.program.take_memory(size, self.uniformity.function)
+        place = self.storage.allocate(type, uniform=uniform)
+        self.storage.store(place, leaves, 0, None, None)
+        return place
 
     # Textures and buffers
 

@@ -28,16 +28,16 @@ from distal.ir.types import FLOAT, Kind, Scalar
 
 
 def kernels(program: Program) -> bool:
-    """Define every kernel that the module needs; whether the per-frame one may run for long."""
-    frame_polls = False
+    """Define every kernel that the module needs; whether the per-frame one needs a thread."""
+    frame_apart = False
     if program.module.frame:
         _frame(program)
-        frame_polls = program.polls
+        frame_apart = program.may_be_long()
     if program.module.kind is EntryKind.IMAGE:
         _render(program)
     else:
         _batch(program)
-    return frame_polls
+    return frame_apart
 
 
 def _define(program: Program, name: str, writer: Writer) -> None:

@@ -19,6 +19,7 @@ from distal.backends.llvm.statements import Statements
 from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import Writer
+from distal.diagnostics import CompileError
 from distal.ir.nodes import Call, Expr, Function, Module
 from distal.ir.types import Kind
 from distal.ir.walk import expressions_in
@@ -27,6 +28,9 @@ from distal.ir.walk import expressions_in
 _REGISTER_BITS = {"avx512": 512, "avx2": 256, "sse4.2": 128, "neon": 128}
 
 INLINE_COST = 120
+# Arrays live on a thread's stack, a value for each lane; ``devices.threads`` makes it larger.
+ARRAY_BYTES = 8 * 2**20
+_SMALL_ARRAY_BYTES = 2**18
 
 
 class Program:
@@ -39,6 +43,7 @@ class Program:
         self.costs = Costs(module.functions)
         self.declarations: set[str] = set()
         self.polls = False
+        self._array_bytes = 0
         self._functions = {f.name: f for f in module.functions}
         self._sites = Counter(
             e.function
@@ -50,7 +55,26 @@ class Program:
         self._definitions: list[str] = []
         self._tables: dict[Leaves, str] = {}
 
+    def may_be_long(self) -> bool:
+        """Whether what was written so far has long loops, or much memory on the stack."""
+        return self.polls or self._array_bytes > _SMALL_ARRAY_BYTES
+
     # What the writers of functions ask for
+
+    def take_memory(self, size: int, function: Function) -> None:
+        """Count memory for an array.
+
+        Raises:
+            CompileError: All arrays together are too large.
+        """
+        self._array_bytes += size
+        if self._array_bytes > ARRAY_BYTES:
+            raise CompileError.at(
+                f"the arrays of '{function.source_name}' are too large for the CPU, which keeps "
+                f"{self.lanes.count} of each",
+                function.span,
+                "put constant numbers into a Buffer",
+            )
 
     def arithmetic(self) -> Arithmetic:
         """For a new function."""
@@ -199,8 +223,7 @@ class Program:
         for param, leaves in zip(function.params, args, strict=True):
             if param.name in statements.indexed:
                 uniform = param.name not in names
-                stored = expressions.storage.allocate(param.type, uniform=uniform)
-                expressions.storage.store(stored, leaves, 0, None, None)
+                stored = expressions.stored(param.type, leaves, uniform=uniform)
                 expressions.environment[param.name] = stored
             else:
                 expressions.environment[param.name] = leaves

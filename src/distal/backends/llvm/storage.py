@@ -29,12 +29,15 @@ class Storage:
 
     # Arrays
 
+    def size(self, type: Type, *, uniform: bool) -> int:
+        """The bytes that a stored value takes."""
+        count = max(1, len(leaf_kinds(type)))
+        return (count if uniform else count * self.lanes.count) * self.lanes.slot
+
     def allocate(self, type: Type, *, uniform: bool) -> Stored:
         """Memory for a value, its content not yet set."""
-        count = max(1, len(leaf_kinds(type)))
-        slots = count if uniform else count * self.lanes.count
-        pointer = self.writer.allocate(f"[{slots * self.lanes.slot} x i8]", 64)
-        return Stored(type, pointer, uniform)
+        size = self.size(type, uniform=uniform)
+        return Stored(type, self.writer.allocate(f"[{size} x i8]", 64), uniform)
 
     def load(
         self, place: Stored, type: Type, offset: int, index: Leaf | None, mask: Mask

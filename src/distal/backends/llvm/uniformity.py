@@ -39,6 +39,7 @@ class Uniformity:
     """The analysis of one function for one choice of varying parameters."""
 
     def __init__(self, function: Function, varying: frozenset[str]) -> None:
+        self.function = function
         self.varying = set(varying)
         self.result_varies = False
         self.divergent_loops: set[int] = set()  # ids of statements
