@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from distal.executor_hook import set_executor_loader
+from distal.executor_hook import set_calculator_loader, set_executor_loader
 from distal.version import __version__
 
 if TYPE_CHECKING:
@@ -45,7 +45,12 @@ def _executor() -> Any:
     return importlib.import_module("distal.executor").PythonExecutor()
 
 
+def _calculator() -> Any:
+    return importlib.import_module("distal.constant_values").compute
+
+
 set_executor_loader(_executor)
+set_calculator_loader(_calculator)
 
 
 def __getattr__(name: str) -> Any:

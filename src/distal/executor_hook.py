@@ -6,10 +6,11 @@ here, and the loader is called the first time something is really run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
+    from distal.ir.intrinsics import Intrinsic
     from distal.lang.functions import Func, Image
     from distal.lang.names import LangFunction
     from distal.lang.parameters import Parameter
@@ -33,6 +34,10 @@ class Executor(Protocol):
         ...
 
 
+# The value of a built-in of plain numbers and vectors, without a device; None where unknown.
+Calculator: TypeAlias = "Callable[[Intrinsic, Sequence[Any]], Any | None]"
+
+_calculator: Callable[[], Calculator] | None = None
 _loader: Callable[[], Executor] | None = None
 _executor: Executor | None = None
 
@@ -41,6 +46,17 @@ def set_executor_loader(loader: Callable[[], Executor]) -> None:
     """Say how the executor is made when it is first needed."""
     global _loader, _executor
     _loader, _executor = loader, None
+
+
+def set_calculator_loader(loader: Callable[[], Calculator]) -> None:
+    """Say where built-ins of constants are computed."""
+    global _calculator
+    _calculator = loader
+
+
+def calculated(row: Intrinsic, args: Sequence[Any]) -> Any | None:
+    """A built-in of constants, or None where only the executor knows."""
+    return None if _calculator is None else _calculator()(row, args)
 
 
 def executor() -> Executor:

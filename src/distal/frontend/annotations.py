@@ -120,6 +120,9 @@ def _generic(annotation: Any, bindings: Bindings) -> Type:
 
 
 def _array(element: Type, length: Any) -> Type:
+    if typing.get_origin(length) is typing.Literal:
+        # Type checkers want the length as Literal[4].
+        (length,) = typing.get_args(length)[:1]
     if isinstance(length, bool) or not isinstance(length, int):
         raise AnnotationError("the length of an array is a whole number known now")
     if not 1 <= length <= _LARGEST_ARRAY:

@@ -79,7 +79,7 @@ def value_of(obj: Any, text: str, declarations: Declarations) -> Value:
         return number
     match obj:
         case VectorValue() | MatrixValue():
-            return _lang_value(obj, text)
+            return lang_value(obj, text)
         case Parameter():
             return declarations.uniform(obj)
         case TextureValue():
@@ -151,13 +151,14 @@ def _plain(value: Any) -> Any:
     return value if isinstance(value, bool) else int(value)
 
 
-def _lang_value(value: VectorValue | MatrixValue, text: str) -> Expr:
+def lang_value(value: VectorValue | MatrixValue, text: str) -> Expr:
+    """The constant that a vector or matrix made in Python stands for."""
     type = value.__distal_type__
     match type:
         case Vector(kind):
             parts = tuple(_scalar(c, kind, text) for c in value)
         case Matrix():
-            parts = tuple(_lang_value(c, text) for c in value)
+            parts = tuple(lang_value(c, text) for c in value)
         case _:
             raise AssertionError(type)
     return Compose(parts, type)

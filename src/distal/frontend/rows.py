@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from distal.frontend.body import Body
 from distal.frontend.fitting import fit, natural_type, settle, shown_type
+from distal.frontend.objects import fit_constant, lang_value, number_of
 from distal.frontend.operators import power
 from distal.frontend.problems import SceneError
 from distal.frontend.values import Closure, Display, Static, Value, Whole
@@ -19,6 +20,7 @@ from distal.ir.intrinsics import INTRINSICS, Intrinsic
 from distal.ir.nodes import Builtin, Expr
 from distal.ir.signatures import Follows, Signature
 from distal.ir.types import FLOAT, INT, UINT, Scalar, Type, Vector
+from distal.lang.values import MatrixValue, VectorValue
 
 # Python's own functions that mean a row of the table, so that scene code needs no import for them.
 _MATH_NAMES: Final = {"fabs": "abs"} | {
@@ -163,6 +165,38 @@ def _fit(body: Body, value: Value, type: Type, node: ast.expr) -> Expr:
     fitted = fit(body, value, type, node)
     assert fitted is not None
     return fitted
+
+
+def call_with_constants(row: Intrinsic, args: Sequence[Any]) -> Expr | None:
+    """The call of a row with Python numbers, vectors or matrices; None where it takes no such.
+
+    Raises:
+        RefusedError: An argument is no constant of scene code.
+    """
+    values = [_plain_value(a, f"an argument of {row.name}") for a in args]
+    known = [v for v in values if v is not None]
+    if len(known) < len(values) or len(values) != len(row.args):
+        return None
+    best = _best(row.name, known)
+    if best is None:
+        return None
+    params, result = best
+    fitted = [_fit_constant(v, t) for v, t in zip(known, params, strict=True)]
+    exprs = tuple(f for f in fitted if f is not None)
+    return Builtin(row.name, exprs, result) if len(exprs) == len(fitted) else None
+
+
+def _plain_value(arg: Any, text: str) -> Value | None:
+    if isinstance(arg, VectorValue | MatrixValue):
+        return lang_value(arg, text)
+    return number_of(arg, text)
+
+
+def _fit_constant(value: Value, type: Type) -> Expr | None:
+    if isinstance(type, Vector) and isinstance(natural_type(value), Scalar):
+        scalar = fit_constant(value, Scalar(type.kind))
+        return None if scalar is None else splat(scalar, type)
+    return fit_constant(value, type)
 
 
 def _mismatch(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) -> SceneError:

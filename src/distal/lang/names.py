@@ -9,9 +9,9 @@ import builtins
 from dataclasses import dataclass
 from typing import Any
 
-from distal.executor_hook import executor
+from distal.executor_hook import calculated, executor
 from distal.ir.intrinsics import Intrinsic
-from distal.lang.values import VectorValue
+from distal.lang.values import MatrixValue, VectorValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +36,23 @@ class LangFunction:
         python = getattr(builtins, self.row.name, None)
         if python is not None and (kwargs or all(map(_is_plain, args))):
             return python(*args, **kwargs)
+        if not kwargs and all(map(_is_constant, args)):
+            value = calculated(self.row, args)
+            if value is not None:
+                return value
         return executor().call(self, args, kwargs)
+
+    def __repr__(self) -> str:
+        return f"<built-in {self.row.name}>"
 
 
 def _is_plain(value: object) -> bool:
     """Neither a vector nor an array."""
     return not isinstance(value, VectorValue) and not hasattr(value, "dtype")
+
+
+def _is_constant(value: object) -> bool:
+    return isinstance(value, int | float | VectorValue | MatrixValue)
 
 
 @dataclass(frozen=True, slots=True)
