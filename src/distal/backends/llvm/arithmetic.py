@@ -296,6 +296,33 @@ class Arithmetic:
         bits = self.writer.value(f"bitcast {mask} {joined} to i{self.lanes.width}")
         return self.writer.value(f"icmp ne i{self.lanes.width} {bits}, 0")
 
+    # Truth values that go round a loop
+
+    def carried(self, kind: Kind, *, uniform: bool) -> str:
+        """The type in which a leaf goes round a loop.
+
+        Processors without mask registers keep truth values as whole lanes, which LLVM does only
+        when told: as vectors of i1 they would be packed and unpacked in each round.
+        """
+        packed = kind is Kind.BOOL and not uniform and self.lanes.level != "avx512"
+        return self.lanes.type(Kind.INT if packed else kind, uniform=uniform)
+
+    def to_carried(self, kind: Kind, name: str, *, uniform: bool) -> str:
+        """A leaf's name at the end of a round."""
+        type, carried = self.lanes.type(kind, uniform=uniform), self.carried(kind, uniform=uniform)
+        if type == carried:
+            return name
+        if name.startswith("splat"):
+            return f"splat (i32 {-1 if 'true' in name else 0})"
+        return self.writer.value(f"sext {type} {name} to {carried}")
+
+    def from_carried(self, kind: Kind, name: str, *, uniform: bool) -> str:
+        """A leaf's name at the start of a round."""
+        type, carried = self.lanes.type(kind, uniform=uniform), self.carried(kind, uniform=uniform)
+        if type == carried:
+            return name
+        return self.writer.value(f"icmp slt {carried} {name}, zeroinitializer")
+
     def spread_all(self, leaves: Leaves) -> Leaves:
         """Every leaf with a vector for each chunk."""
         return tuple(map(self.spread, leaves))

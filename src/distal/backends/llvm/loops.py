@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 from distal.backends.llvm.costs import constant_rounds
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored
+from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import reads_in
-from distal.ir.nodes import Assign, Break, For, If, Stmt, While
+from distal.ir.nodes import Assign, Break, CompareOp, For, If, Stmt, While
 from distal.ir.types import Kind
 from distal.ir.walk import root_of, statements_in
 
@@ -28,14 +29,23 @@ _INT_MAX = 2**31 - 1
 
 
 @dataclass(slots=True)
+class _Carried:
+    """One leaf that goes round: its phis, and its value inside the loop."""
+
+    entering: tuple[str, ...]
+    phis: tuple[str, ...]
+    inside: Leaf
+
+
+@dataclass(slots=True)
 class _Loop:
-    """A loop under construction: what goes round."""
+    """A loop under construction."""
 
     header: str
     before: str  # the block control comes from
-    names: list[str]  # Vars that the body changes
-    entering: dict[str, Leaves]
-    phis: dict[str, list[list[tuple[str, int]]]]  # for each name and leaf: phi name, line
+    head: int  # where the phis are written
+    variables: dict[str, list[_Carried]]  # the Vars that the body changes
+    others: list[_Carried]  # the count and the active lanes
 
 
 class Loops:
@@ -64,7 +74,6 @@ class Loops:
         writer, expressions = self.writer, self.expressions
         before, done = dict(expressions.environment), writer.label("done")
         outer = expressions.mask
-        diverges = id(stmt) in self.uniformity.divergent_loops
         skipped = ""
         if not certain:
             skipped, enter = writer.block, writer.label("enter")
@@ -72,91 +81,76 @@ class Loops:
             test = writer.value(f"icmp {sign} i32 {start.names[0]}, {stop.names[0]}")
             writer.branch(test, enter, done)
             writer.begin(enter)
-        loop = self._begin_loop(stmt.body, before)
-        count, count_at = writer.fresh(), writer.reserve()
-        live = self._begin_mask(outer) if diverges else None
+        diverges = id(stmt) in self.uniformity.divergent_loops
+        loop = self._begin(stmt.body, [start, *self._lanes_left(outer, diverges)])
+        count = loop.others[0].inside
+        live = self._activate(loop.others[1]) if diverges else None
         self.arithmetic.enter()
-        expressions.environment[stmt.name] = (Leaf(Kind.INT, (count,), True),)
+        expressions.environment[stmt.name] = (count,)
         leave = self._body(stmt.body)
         ahead = self._kept(loop, live, stmt.body)
-        tests = []
-        if expressions.program.costs.rounds((stmt,)) > POLL_ROUNDS:
-            tests.append(self._polled())
+        following = self._following(count, stmt.step)
+        near = stop.constant and abs(int(stop.names[0]) + stmt.step) <= _INT_MAX
+        tests = [self._more(count, stop, stmt.step, following if near else None)]
+        carried = [following]
         if live is not None:
-            remaining, test = self._remaining(live[0], leave)
-            tests.append(test)
+            carried.append(self._remaining(live, leave))
+            tests.append(self.arithmetic.any_lane(carried[1]))
         elif leave is not None:
             tests.append(self.arithmetic.invert(leave).names[0])
-        following = writer.value(f"add i32 {count}, {stmt.step}")
-        near = stop.constant and abs(int(stop.names[0]) + stmt.step) <= _INT_MAX
-        tests.append(self._more(count, stop.names[0], stmt.step, following if near else None))
-        test = tests[0]
-        for other in tests[1:]:
-            test = writer.value(f"and i1 {test}, {other}")
-        end = writer.block
-        writer.branch(test, loop.header, done)
+        if expressions.program.costs.rounds((stmt,)) > POLL_ROUNDS:
+            tests.append(self._polled())
+        end = self._end(loop, ahead, carried)
+        writer.branch(self._all(tests), loop.header, done)
         self.arithmetic.leave()
-        first, back = (start.names[0], loop.before), (following, end)
-        writer.fill(count_at, f"{count} = phi i32 [ {first[0]}, %{first[1]} ], "
-                              f"[ {back[0]}, %{back[1]} ]")  # fmt: skip
-        if live is not None:
-            self._fill_mask(live, outer, loop.before, remaining, end)
-        self._fill(loop, ahead, end)
         writer.begin(done)
         expressions.mask = outer
         ends = [(ahead, end)] if certain else [(before, skipped), (ahead, end)]
         self.statements.join(before, ends)
 
-    def _more(self, count: str, stop: str, step: int, following: str | None) -> str:
+    def _following(self, count: Leaf, step: int) -> Leaf:
+        amount = self.arithmetic.constant(step, Kind.INT)
+        return self.arithmetic.apply(Kind.INT, "add {t0} {0}, {1}", count, amount)
+
+    def _more(self, count: Leaf, stop: Leaf, step: int, following: Leaf | None) -> str:
         """Whether another round follows; ``following`` is the next count if it cannot overflow."""
         if following is not None:
-            return self.writer.value(f"icmp {'slt' if step > 0 else 'sgt'} i32 {following}, {stop}")
-        left, right = (stop, count) if step > 0 else (count, stop)
-        rest = self.writer.value(f"sub i32 {left}, {right}")
-        return self.writer.value(f"icmp ugt i32 {rest}, {abs(step)}")
+            order = "slt" if step > 0 else "sgt"
+            return self.writer.value(f"icmp {order} i32 {following.names[0]}, {stop.names[0]}")
+        return self._more_apart(count, stop, step).names[0]
+
+    def _more_apart(self, count: Leaf, stop: Leaf, step: int) -> Leaf:
+        """Whether a round follows, by what is left: a number that no int is too small for."""
+        sides = (stop, count) if step > 0 else (count, stop)
+        rest = self.arithmetic.apply(Kind.INT, "sub {t0} {0}, {1}", *sides)
+        amount = self.arithmetic.constant(abs(step), Kind.INT)
+        return self.arithmetic.apply(Kind.BOOL, "icmp ugt {t0} {0}, {1}", rest, amount)
 
     def _for_apart(self, stmt: For, start: Leaf, stop: Leaf) -> None:
         """Each lane counts for itself."""
         writer, expressions, arithmetic = self.writer, self.expressions, self.arithmetic
         before, outer = dict(expressions.environment), expressions.mask
-        up = stmt.step > 0
-        order = "icmp slt {t0} {0}, {1}" if up else "icmp sgt {t0} {0}, {1}"
-        entering = expressions.within(arithmetic.apply(Kind.BOOL, order, start, stop))
-        test = arithmetic.any_lane(Leaf(Kind.BOOL, entering, False))
-        first = arithmetic.vectors(start)
-        arithmetic.vectors(stop)
+        start, stop = arithmetic.spread(start), arithmetic.spread(stop)
+        order = CompareOp.LT if stmt.step > 0 else CompareOp.GT
+        some = Leaf(Kind.BOOL, expressions.within(arithmetic.compare(order, start, stop)), False)
         enter, done = writer.label("enter"), writer.label("done")
         skipped = writer.block
-        writer.branch(test, enter, done)
+        writer.branch(arithmetic.any_lane(some), enter, done)
         writer.begin(enter)
-        loop = self._begin_loop(stmt.body, before)
-        counts = [(writer.fresh(), writer.reserve()) for _ in first]
-        live = self._begin_mask(entering)
+        loop = self._begin(stmt.body, [start, some])
+        count = loop.others[0].inside
+        live = self._activate(loop.others[1])
         arithmetic.enter()
-        count = Leaf(Kind.INT, tuple(name for name, _ in counts), False)
         expressions.environment[stmt.name] = (count,)
         leave = self._body(stmt.body)
         ahead = self._kept(loop, live, stmt.body)
-        step = arithmetic.constant(abs(stmt.step), Kind.INT)
-        rest = arithmetic.apply(
-            Kind.INT, "sub {t0} {0}, {1}", *((stop, count) if up else (count, stop))
-        )
-        more = arithmetic.apply(Kind.BOOL, "icmp ugt {t0} {0}, {1}", rest, step)
-        form = "add {t0} {0}, {1}" if up else "sub {t0} {0}, {1}"
-        following = arithmetic.apply(Kind.INT, form, count, step)
-        leave = arithmetic.invert(more) if leave is None else arithmetic.either(
-            arithmetic.invert(more), leave
-        )  # fmt: skip
-        remaining, test = self._remaining(live[0], leave)
-        test = writer.value(f"and i1 {test}, {self._polled()}")
-        end = writer.block
+        finished = arithmetic.invert(self._more_apart(count, stop, stmt.step))
+        leave = finished if leave is None else arithmetic.either(finished, leave)
+        remaining = self._remaining(live, leave)
+        test = self._all([arithmetic.any_lane(remaining), self._polled()])
+        end = self._end(loop, ahead, [self._following(count, stmt.step), remaining])
         writer.branch(test, loop.header, done)
         arithmetic.leave()
-        type = arithmetic.lanes.vector(Kind.INT)
-        for (name, at), a, b in zip(counts, first, following.names, strict=True):
-            writer.fill(at, f"{name} = phi {type} [ {a}, %{loop.before} ], [ {b}, %{end} ]")
-        self._fill_mask(live, entering, loop.before, remaining, end)
-        self._fill(loop, ahead, end)
         writer.begin(done)
         expressions.mask = outer
         self.statements.join(before, [(before, skipped), (ahead, end)])
@@ -166,99 +160,107 @@ class Loops:
         writer, expressions, arithmetic = self.writer, self.expressions, self.arithmetic
         before, outer = dict(expressions.environment), expressions.mask
         diverges = id(stmt) in self.uniformity.divergent_loops
-        loop = self._begin_loop(stmt.body, before)
-        live = self._begin_mask(outer) if diverges else None
+        loop = self._begin(stmt.body, self._lanes_left(outer, diverges))
+        live = self._activate(loop.others[0]) if diverges else None
         arithmetic.enter()
         expressions.memo = {}
         holds = expressions.scalar(stmt.condition)
         at_top = dict(expressions.environment)
         if live is not None:
             expressions.mask = expressions.within(holds)
-            live = (Leaf(Kind.BOOL, expressions.mask, False), live[1])
-            test = arithmetic.any_lane(live[0])
-        else:
-            test = holds.names[0]
-        test = writer.value(f"and i1 {test}, {self._polled()}")
+            live = Leaf(Kind.BOOL, expressions.mask, False)
+        test = self._all([arithmetic.any_lane(holds if live is None else live), self._polled()])
         inside, done = writer.label("inside"), writer.label("done")
-        top = writer.block
+        ends = [(at_top, writer.block)]
         writer.branch(test, inside, done)
         writer.begin(inside)
         leave = self._body(stmt.body)
         ahead = self._kept(loop, live, stmt.body)
-        ends = [(at_top, top)]
-        remaining: tuple[str, ...] = ()
-        if live is not None:
-            remaining, _ = self._remaining(live[0], leave)
-            end = writer.block
-            writer.jump(loop.header)
+        end = self._end(loop, ahead, [] if live is None else [self._remaining(live, leave)])
+        if live is None and leave is not None:
+            ends.append((ahead, end))
+            writer.branch(leave.names[0], done, loop.header)
         else:
-            end = writer.block
-            if leave is not None:
-                ends.append((ahead, end))
-                writer.branch(leave.names[0], done, loop.header)
-            else:
-                writer.jump(loop.header)
+            writer.jump(loop.header)
         arithmetic.leave()
-        if live is not None:
-            self._fill_mask(live, outer, loop.before, remaining, end)
-        self._fill(loop, ahead, end)
         writer.begin(done)
         expressions.mask = outer
         self.statements.join(before, ends)
 
-    def _begin_loop(self, body: tuple[Stmt, ...], before: dict[str, Leaves | Stored]) -> _Loop:
-        """Jump to a loop's first block and begin it with a phi for each Var the body changes."""
-        writer = self.writer
+    # What goes round
+
+    def _begin(self, body: tuple[Stmt, ...], others: list[Leaf]) -> _Loop:
+        """Begin a loop with phis for the Vars that the body changes, and for other leaves."""
+        writer, environment = self.writer, self.expressions.environment
         assigned = {root_of(s.target).name for s in statements_in(body) if isinstance(s, Assign)}
-        names = [name for name in before if name in assigned]
         entering: dict[str, Leaves] = {}
-        for name in names:
-            held = before[name]
-            if not isinstance(held, Stored):
+        for name, held in environment.items():
+            if name in assigned and not isinstance(held, Stored):
                 entering[name] = held
-        loop = _Loop(writer.label("loop"), writer.block, list(entering), entering, {})
+        # Outer values are made ready before the jump, inner ones after all phis.
+        variables = {name: [self._carried(leaf) for leaf in v] for name, v in entering.items()}
+        loop = _Loop(
+            writer.label("loop"), writer.block, 0, variables, list(map(self._carried, others))
+        )
         writer.jump(loop.header)
         writer.begin(loop.header)
-        for name, leaves in entering.items():
-            loop.phis[name] = [[(writer.fresh(), writer.reserve()) for _ in leaf.names]
-                               for leaf in leaves]  # fmt: skip
-            self.expressions.environment[name] = tuple(
-                Leaf(leaf.kind, tuple(n for n, _ in phis), leaf.uniform)
-                for leaf, phis in zip(leaves, loop.phis[name], strict=True)
+        loop.head = writer.reserve()
+        for carried in (*(c for row in variables.values() for c in row), *loop.others):
+            leaf = carried.inside
+            names = (
+                self.arithmetic.from_carried(leaf.kind, name, uniform=leaf.uniform)
+                for name in carried.phis
             )
+            carried.inside = Leaf(leaf.kind, tuple(names), leaf.uniform)
+        for name, row in variables.items():
+            environment[name] = tuple(carried.inside for carried in row)
         return loop
 
-    def _fill(self, loop: _Loop, ahead: dict[str, Leaves | Stored], end: str) -> None:
-        """Write the phis of a loop's first block, now that its end is known."""
-        for name in loop.names:
+    def _carried(self, leaf: Leaf) -> _Carried:
+        phis = tuple(self.writer.fresh() for _ in leaf.names)
+        return _Carried(self._packed(leaf), phis, leaf)
+
+    def _packed(self, leaf: Leaf) -> tuple[str, ...]:
+        return tuple(
+            self.arithmetic.to_carried(leaf.kind, name, uniform=leaf.uniform) for name in leaf.names
+        )
+
+    def _end(self, loop: _Loop, ahead: dict[str, Leaves | Stored], others: list[Leaf]) -> str:
+        """At a round's end: hand on what goes round. The block it ends in."""
+        end = self.writer.block
+        pairs = list(zip(loop.others, others, strict=True))
+        for name, row in loop.variables.items():
             last = ahead[name]
             assert not isinstance(last, Stored)
-            for before, after, phis in zip(loop.entering[name], last, loop.phis[name], strict=True):
-                type = self.arithmetic.lanes.type(before.kind, uniform=before.uniform)
-                for (phi, at), a, b in zip(phis, before.names, after.names, strict=True):
-                    edges = f"[ {a}, %{loop.before} ], [ {b}, %{end} ]"
-                    self.writer.fill(at, f"{phi} = phi {type} {edges}")
+            pairs += zip(row, last, strict=True)
+        for carried, leaf in pairs:
+            kind, uniform = carried.inside.kind, carried.inside.uniform
+            assert leaf.uniform is uniform
+            type = self.arithmetic.carried(kind, uniform=uniform)
+            rows = zip(carried.phis, carried.entering, self._packed(leaf), strict=True)
+            for phi, first, back in list(rows):
+                edges = f"[ {first}, %{loop.before} ], [ {back}, %{end} ]"
+                self.writer.fill(loop.head, f"{phi} = phi {type} {edges}")
+        return end
 
-    def _begin_mask(self, outer: object) -> tuple[Leaf, list[tuple[str, int]]]:
-        """The phi of the lanes that are left, and make them the active ones."""
-        writer = self.writer
-        phis = [(writer.fresh(), writer.reserve()) for _ in range(self.arithmetic.lanes.chunks)]
-        names = tuple(name for name, _ in phis)
-        self.expressions.mask = names
-        return Leaf(Kind.BOOL, names, False), phis
+    def _lanes_left(self, outer: Mask, diverges: bool) -> list[Leaf]:
+        """The lanes that enter a loop that they leave one by one."""
+        if not diverges:
+            return []
+        every = ("splat (i1 true)",) * self.arithmetic.lanes.chunks
+        return [Leaf(Kind.BOOL, outer or every, False)]
 
-    def _fill_mask(
-        self,
-        live: tuple[Leaf, list[tuple[str, int]]],
-        outer: tuple[str, ...] | None,
-        before: str,
-        remaining: tuple[str, ...],
-        end: str,
-    ) -> None:
-        type = self.arithmetic.lanes.vector(Kind.BOOL)
-        first = outer or ("splat (i1 true)",) * len(live[1])
-        for (name, at), a, b in zip(live[1], first, remaining, strict=True):
-            self.writer.fill(at, f"{name} = phi {type} [ {a}, %{before} ], [ {b}, %{end} ]")
+    def _activate(self, lanes_left: _Carried) -> Leaf:
+        """Make the lanes that are left the active ones."""
+        self.expressions.mask = lanes_left.inside.names
+        return lanes_left.inside
+
+    def _all(self, tests: list[str]) -> str:
+        """Whether all tests hold."""
+        joined = tests[0]
+        for test in tests[1:]:
+            joined = self.writer.value(f"and i1 {joined}, {test}")
+        return joined
 
     def _body(self, body: tuple[Stmt, ...]) -> Leaf | None:
         """A round; the condition of its trailing ``if leave: break``."""
@@ -275,24 +277,22 @@ class Loops:
         return leave
 
     def _kept(
-        self, loop: _Loop, live: tuple[Leaf, object] | None, body: tuple[Stmt, ...]
+        self, loop: _Loop, live: Leaf | None, body: tuple[Stmt, ...]
     ) -> dict[str, Leaves | Stored]:
         """The locals at a round's end; lanes that left before it keep their values."""
         environment = dict(self.expressions.environment)
         if live is None:
             return environment
         inside = reads_in(body)
-        for name in loop.names:
+        for name, row in loop.variables.items():
             if self._dead_after(name, inside):
                 continue
             changed = environment[name]
             assert not isinstance(changed, Stored)
-            rows = zip(changed, loop.phis[name], strict=True)
-            kept = []
-            for new, phis in rows:
-                old = Leaf(new.kind, tuple(n for n, _ in phis), new.uniform)
-                kept.append(new if new == old else self.arithmetic.select(live[0], new, old))
-            environment[name] = tuple(kept)
+            environment[name] = tuple(
+                new if new == old.inside else self.arithmetic.select(live, new, old.inside)
+                for new, old in zip(changed, row, strict=True)
+            )
         return environment
 
     def _dead_after(self, name: str, inside: dict[str, int]) -> bool:
@@ -301,11 +301,11 @@ class Loops:
         beside = statements.levels.get(name) == statements.level
         return beside and inside.get(name, 0) == statements.reads.get(name, 0)
 
-    def _remaining(self, live: Leaf, leave: Leaf | None) -> tuple[tuple[str, ...], str]:
-        """The lanes that go round again, and whether there is one."""
-        if leave is not None:
-            live = self.arithmetic.both(live, self.arithmetic.invert(leave))
-        return live.names, self.arithmetic.any_lane(live)
+    def _remaining(self, live: Leaf, leave: Leaf | None) -> Leaf:
+        """The lanes that go round again."""
+        if leave is None:
+            return live
+        return self.arithmetic.spread(self.arithmetic.both(live, self.arithmetic.invert(leave)))
 
     def _polled(self) -> str:
         """A test, in loops that may be long, that nobody asked to stop."""

@@ -16,6 +16,7 @@ class Writer:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.block = "entry"
+        self._head = 0
         self._count = 0
         self._labels = 0
         self._allocations: list[str] = []
@@ -44,6 +45,8 @@ class Writer:
     def begin(self, label: str) -> None:
         """Begin a block; the one before must have ended in a branch."""
         self.lines.append(f"{label}:")
+        self.lines.append("")  # room for phis
+        self._head = len(self.lines) - 1
         self.block = label
 
     def jump(self, label: str) -> None:
@@ -55,13 +58,13 @@ class Writer:
         self.lines.append(f"  br i1 {condition}, label %{yes}, label %{no}")
 
     def reserve(self) -> int:
-        """Leave room for a line to be written later; its position."""
-        self.lines.append("")
-        return len(self.lines) - 1
+        """Where a phi of this block is to be written later."""
+        return self._head
 
     def fill(self, position: int, text: str) -> None:
-        """Write a line where room was left."""
-        self.lines[position] = "  " + text
+        """Write a phi of a block that was begun before."""
+        known = self.lines[position]
+        self.lines[position] = f"{known}\n  {text}" if known else f"  {text}"
 
     def allocate(self, type: str, align: int) -> str:
         """Memory that lives as long as the function, made at its top."""
