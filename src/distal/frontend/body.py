@@ -109,6 +109,7 @@ class Body:
         self.returned: list[tuple[Value, ast.Return]] = []
         self.failed = False
         self.whole_starts: dict[str, int] = {}  # locals that are ints because a literal began them
+        self.place: Span | None = None  # of the statement that is being lowered
         self._taken: set[str] = set()
         self._depths: dict[Expr, int] = {}
         self._expression: Callable[[Body, ast.expr], Value] = program.expression
@@ -165,14 +166,14 @@ class Body:
         if not children(value):
             return value
         fresh = self.fresh(name)
-        self.emit(Let(fresh, value, span=value.span))
+        self.emit(Let(fresh, value, span=self.place))
         return Read(fresh, value.type)
 
     def hold(self, name: str, value: Expr) -> Expr:
         """As ``bind``, and also for a Var that is about to change."""
         if isinstance(value, Read):
             fresh = self.fresh(name)
-            self.emit(Let(fresh, value, span=value.span))
+            self.emit(Let(fresh, value, span=self.place))
             return Read(fresh, value.type)
         return self.bind(name, value)
 
@@ -186,8 +187,9 @@ class Body:
         yield block
         self.blocks.pop()
 
-    def begin_statement(self) -> None:
-        """Remember where hoisted locals go: before this statement."""
+    def begin_statement(self, stmt: ast.stmt) -> None:
+        """Remember where hoisted locals go, before this statement, and where they come from."""
+        self.place = self.span(stmt)
         self.blocks[-1].start = len(self.blocks[-1].statements)
 
     # Names

@@ -28,7 +28,7 @@ from distal.ir.types import INT, Array, Type, is_static
 def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
     """Lower into the current block, going on after each mistake."""
     for stmt in statements:
-        body.begin_statement()
+        body.begin_statement(stmt)
         try:
             rule = _RULES.get(type(stmt))
             if rule is None:
@@ -175,7 +175,7 @@ def _for(body: Body, stmt: ast.For) -> None:
         body.failed = True
         bounds, array = None, None
     variable = Variable(name, body, False, loop=True, failed=bounds is None)
-    counter = body.fresh(name if array is None else f"{name}_index")
+    counter = body.fresh((name.strip("_") or "i") if array is None else f"{name}_index")
     _loop_body(body, stmt, variable, counter, bounds, array)
 
 
