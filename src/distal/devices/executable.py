@@ -19,12 +19,12 @@ class Executable:
     """An image in memory that may be run; the memory is given back with the object."""
 
     def __init__(self, image: Image) -> None:
+        if sys.platform == "win32":
+            raise OSError("the CPU device runs on Linux and macOS only, so far")
         size = -(-max(1, len(image.code)) // mmap.PAGESIZE) * mmap.PAGESIZE
         code = bytearray(image.code)
         for name, slot in image.imports.items():
             struct.pack_into("<Q", code, slot, _library_address(name))
-        if sys.platform == "win32":
-            raise OSError("the CPU device runs on Linux and macOS only, so far")
         # Never writable and executable at once.
         self._memory = mmap.mmap(-1, size, mmap.MAP_PRIVATE | mmap.MAP_ANON)
         self._memory.write(bytes(code))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -285,3 +288,46 @@ def test_a_kernel_is_found_again_without_the_compiler(tmp_path: Path) -> None:
     )
     other = cpu.prepare(module, precision=64, cache=Cache(tmp_path / "kernels"))
     assert not other.stats["cache_hit"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends a signal")
+def test_control_c_ends_an_endless_picture(tmp_path: Path) -> None:
+    """In a process of its own, interrupted while its threads are in compiled code."""
+    scene = tmp_path / "endless_scene.py"
+    scene.write_text(
+        "from distal.lang import Frame, image, vec4\n"
+        "@image\n"
+        "def picture(frame: Frame) -> vec4:\n"
+        "    x = frame.coord.x\n"
+        "    while x > 0.0:\n"
+        "        x = x * 0.5 + 1.0\n"
+        "    return vec4(x)\n"
+    )
+    program = (
+        "import sys\n"
+        f"sys.path.insert(0, {str(tmp_path)!r})\n"
+        "from endless_scene import picture\n"
+        "from distal.devices import cpu\n"
+        "from distal.devices.cache import Cache\n"
+        "from distal.frontend import lower\n"
+        "kernel = cpu.prepare(lower(picture), cache=Cache(None))\n"
+        "print('ready', flush=True)\n"
+        "try:\n"
+        "    kernel.render(640, 480, {'resolution': (640.0, 480.0)}, {})\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted', flush=True)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        started = time.perf_counter()
+        try:
+            rest, _ = process.communicate(timeout=30)
+        finally:
+            process.kill()
+        assert rest == "interrupted\n"
+        assert time.perf_counter() - started < 5.0
