@@ -14,7 +14,7 @@ from distal.frontend.annotations import AnnotationError, to_type
 from distal.frontend.body import Body
 from distal.frontend.constructors import construct, construct_struct, length_of
 from distal.frontend.fitting import fit_or_refuse, settle, shown_type
-from distal.frontend.operators import meet
+from distal.frontend.meeting import meet
 from distal.frontend.problems import SceneError
 from distal.frontend.rows import PYTHON_FUNCTIONS, call_row
 from distal.frontend.values import Closure, Display, Static, Value, Whole

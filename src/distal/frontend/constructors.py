@@ -11,8 +11,8 @@ from distal.frontend.fitting import fit, fit_or_refuse, natural_type, settle, sh
 from distal.frontend.objects import RefusedError, value_of
 from distal.frontend.problems import did_you_mean
 from distal.frontend.values import Closure, Display, Static, Value, Whole
-from distal.ir.build import cast, number, splat
-from distal.ir.nodes import Compose, Const, Construct, Expr
+from distal.ir.build import cast, integer, number, splat
+from distal.ir.nodes import Compose, Const, Construct, Expr, Index
 from distal.ir.types import (
     BOOL,
     FLOAT,
@@ -86,6 +86,8 @@ def _literal(body: Body, value: int, type: Scalar, node: ast.Call) -> Expr:
 def _vector(body: Body, type: Vector, args: Sequence[Value], node: ast.Call) -> Expr:
     if not args:
         raise body.problem(f"'{type}' needs {type.size} components", node, f"write {type}(0)")
+    if len(args) == 1:
+        args = _elements(body, args[0], node)
     parts = [_component(body, a, type, node) for a in args]
     if len(parts) == 1:
         (part,) = parts
@@ -100,6 +102,18 @@ def _vector(body: Body, type: Vector, args: Sequence[Value], node: ast.Call) -> 
             hint = f"write .{'xyzw'[: type.size]} to take the first {type.size}"
         raise body.problem(f"{type} has {type.size} components, not {total}", node, hint)
     return Compose(tuple(parts), type, span=body.span(node))
+
+
+def _elements(body: Body, arg: Value, node: ast.Call) -> Sequence[Value]:
+    """The elements of a short array of numbers; else the argument itself."""
+    if isinstance(arg, Display):
+        return [arg]
+    match natural_type(arg):
+        case Array(Scalar() as element, length) if 2 <= length <= 4:
+            array = body.bind("values", settle(body, arg, node))
+            return [Index(array, integer(i), element) for i in range(length)]
+        case _:
+            return [arg]
 
 
 def _component(body: Body, arg: Value, type: Vector, node: ast.Call) -> Expr:

@@ -95,6 +95,23 @@ def _fit_display(
     return Compose(known, type) if isinstance(type, Vector) else Construct(known, type)
 
 
+def vector_type(value: Value) -> Type | None:
+    """The vector that a captured list or a tuple of 2 to 4 numbers may stand for."""
+    if not isinstance(value, Display) or not 2 <= len(value.items) <= 4:
+        return None
+    if value.is_list and not value.captured:
+        return None
+    kinds = {Kind.INT if isinstance(i, Whole) else _scalar_kind(i) for i in value.items}
+    if kinds <= {Kind.INT, Kind.FLOAT}:
+        return Vector(Kind.FLOAT, len(value.items))
+    return None
+
+
+def _scalar_kind(value: Value) -> Kind | None:
+    type = natural_type(value)
+    return type.kind if isinstance(type, Scalar) else None
+
+
 def natural_type(value: Value) -> Type | None:
     """The type a value has alone; None for what is no value or does not know yet."""
     match value:

@@ -27,6 +27,7 @@ from distal.frontend.fitting import (
     natural_type,
     not_a_value,
     shown_type,
+    vector_type,
 )
 from distal.frontend.headers import MISSING, Header, Slot
 from distal.frontend.objects import RefusedError, value_of
@@ -179,7 +180,7 @@ def _bound(body: Body, header: Header, variable: TypeVar, group: list[Argument])
         if isinstance(argument.value, Static | Closure):
             continue
         if not isinstance(argument.value, Whole):
-            natural = natural_type(argument.value)
+            natural = vector_type(argument.value) or natural_type(argument.value)
             if natural is not None:
                 firm.setdefault(natural, argument)
     wide = [t for t in firm if not isinstance(t, Scalar)]

@@ -1,4 +1,4 @@
-"""The rules of operators: which types meet, what is splatted, what becomes what.
+"""The rules of operators: what each takes and what it gives.
 
 Literals alone are computed here, in Python's own arithmetic; everything else becomes a node.
 """
@@ -11,11 +11,13 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from distal.frontend.body import Body
-from distal.frontend.fitting import fit, natural_type, settle, shown_type
+from distal.frontend.fitting import settle, shown_type
+from distal.frontend.meeting import do_not_mix, firm, meet
 from distal.frontend.objects import RefusedError, float_constant
+from distal.frontend.powers import power
 from distal.frontend.problems import SceneError
-from distal.frontend.values import Display, Value, Whole
-from distal.ir.build import builtin, cast, number, splat
+from distal.frontend.values import Value, Whole
+from distal.ir.build import cast, splat
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -25,7 +27,6 @@ from distal.ir.nodes import (
     Const,
     Expr,
     MatMul,
-    Read,
     Splat,
     Unary,
     UnaryOp,
@@ -116,93 +117,6 @@ def _fold(body: Body, op: BinaryOp, lhs: int, rhs: int, node: ast.expr | ast.stm
     return Whole(value)
 
 
-def meet(
-    body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt, symbol: str
-) -> tuple[Expr, Expr]:
-    """Both sides as one type: a literal takes the other side's kind, a scalar is splatted."""
-    if isinstance(lhs, Whole) and not isinstance(rhs, Whole):
-        right = _firm(body, rhs, lhs, node)
-        return _literal_beside(body, lhs, right, node, symbol), right
-    if isinstance(rhs, Whole) and not isinstance(lhs, Whole):
-        left = _firm(body, lhs, rhs, node)
-        return left, _literal_beside(body, rhs, left, node, symbol)
-    left, right = _firm(body, lhs, rhs, node), _firm(body, rhs, lhs, node)
-    if left.type is right.type:
-        return left, right
-    if kind_of(left.type) is kind_of(right.type) and kind_of(left.type) is not None:
-        if isinstance(left.type, Scalar) and symbol in _widening(right.type):
-            return splat(left, right.type), right
-        if isinstance(right.type, Scalar) and symbol in _widening(left.type):
-            return left, splat(right, left.type)
-    raise _do_not_mix(body, left, right, node, symbol)
-
-
-_EVERY_SYMBOL: Final = frozenset(
-    [*(op.value for op in BinaryOp), *(op.value for op in CompareOp), "**", "select"]
-)
-
-
-def _widening(type: Type) -> frozenset[str]:
-    """The operators that repeat a scalar in every component of the other side."""
-    return frozenset({"*", "/"}) if isinstance(type, Matrix) else _EVERY_SYMBOL
-
-
-def _firm(body: Body, value: Value, other: Value, node: ast.expr | ast.stmt) -> Expr:
-    """A value with its own type; a captured tuple is a vector beside a vector."""
-    if isinstance(value, Display):
-        other_type = natural_type(other)
-        if isinstance(other_type, Vector):
-            fitted = fit(body, value, other_type, node)
-            if fitted is not None:
-                return fitted
-    return settle(body, value, node)
-
-
-def _literal_beside(
-    body: Body, literal: Whole, other: Expr, node: ast.expr | ast.stmt, symbol: str
-) -> Expr:
-    """The literal as the other side's kind; a scalar, or splatted beside a vector or matrix."""
-    kind = kind_of(other.type)
-    if kind is None or kind is Kind.BOOL:
-        raise _do_not_mix(body, other, settle(body, literal, node), node, symbol)
-    scalar = fit(body, literal, Scalar(kind), node)
-    assert scalar is not None
-    return splat(scalar, other.type)
-
-
-def _do_not_mix(
-    body: Body, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt, symbol: str
-) -> SceneError:
-    left, right = lhs.type, rhs.type
-    message = f"{left} and {right} do not mix in '{symbol}'"
-    hint = None
-    kinds = {kind_of(left), kind_of(right)}
-    if (isinstance(left, Matrix) and isinstance(right, Matrix | Vector) and symbol == "*") or (
-        isinstance(right, Matrix) and isinstance(left, Vector) and symbol == "*"
-    ):
-        hint = "the product of matrices is written @"
-    elif kinds == {Kind.INT, Kind.FLOAT}:
-        hint = _int_hint(body, lhs if kind_of(left) is Kind.INT else rhs)
-    elif kinds == {Kind.INT, Kind.UINT}:
-        hint = "convert one side: int(...) or uint(...)"
-    elif Kind.BOOL in kinds and None not in kinds:
-        hint = "convert the bool: int(b) or float(b)"
-    elif isinstance(left, Vector) and isinstance(right, Vector) and left.kind is right.kind:
-        wide, narrow = (left, right) if left.size > right.size else (right, left)
-        hint = f"pick {narrow.size} components of the {wide}, such as .{'xyzw'[: narrow.size]}"
-    return body.problem(message, node, hint)
-
-
-def _int_hint(body: Body, value: Expr) -> str:
-    """How an int meets a float."""
-    if isinstance(value, Read) and value.name in body.whole_starts:
-        start = body.whole_starts[value.name]
-        return f"'{value.name}' is an int because it starts as {start}: write {start}.0"
-    if isinstance(value.type, Vector):
-        return f"write vec{value.type.size}(...) around the {value.type}"
-    return "write float(...) around the int"
-
-
 def _arithmetic(body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt) -> Expr:
     type, span = lhs.type, body.span(node)
     kind = kind_of(type)
@@ -270,12 +184,12 @@ def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | as
     elif isinstance(count.type, Scalar):
         count = splat(count, value.type)
     if value.type is not count.type:
-        raise _do_not_mix(body, value, count, node, op.value)
+        raise do_not_mix(body, value, count, node, op.value)
     return Binary(op, value, count, value.type, span=body.span(node))
 
 
 def _matmul(body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Expr:
-    left, right = _firm(body, lhs, rhs, node), _firm(body, rhs, lhs, node)
+    left, right = firm(body, lhs, rhs, node), firm(body, rhs, lhs, node)
     match left.type, right.type:
         case (Matrix(n), Matrix(m)) if n == m:
             type: Type = left.type
@@ -289,82 +203,6 @@ def _matmul(body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Ex
             message = f"'@' does not take {left.type} and {right.type}"
             raise body.problem(message, node, hint)
     return MatMul(left, right, type, span=body.span(node))
-
-
-def power(body: Body, base: Value, exponent: Value, node: ast.expr | ast.stmt) -> Value:
-    """``base ** exponent``: constant whole exponents multiply, others are the row ``pow``."""
-    whole = _whole_exponent(exponent)
-    if isinstance(base, Whole) and whole is not None and isinstance(exponent, Whole):
-        return _fold_power(body, base.value, whole, node)
-    if isinstance(base, Whole) and whole is None:
-        exponent_expr = settle(body, exponent, node)
-        if kind_of(exponent_expr.type) is not Kind.FLOAT:
-            raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
-    if whole is None:
-        left, right = meet(body, base, exponent, node, "**")
-        if kind_of(left.type) is not Kind.FLOAT or isinstance(left.type, Matrix):
-            if kind_of(left.type) in (Kind.INT, Kind.UINT):
-                raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
-            raise body.problem(f"'**' does not take {left.type}", node)
-        return builtin("pow", left, right)
-    value = settle(body, base, node)
-    kind = kind_of(value.type)
-    if kind is Kind.BOOL or kind is None or isinstance(value.type, Matrix):
-        raise body.problem(f"'**' does not take {value.type}", node)
-    if kind is not Kind.FLOAT:
-        if not isinstance(exponent, Whole):
-            raise body.problem(f"{value.type} and float do not mix in '**'", node, "use float(...)")
-        if whole < 0:
-            raise body.problem("an int to a negative power is not an int", node, "use float(...)")
-    return _multiplied(body, value, whole, node)
-
-
-def _whole_exponent(exponent: Value) -> int | None:
-    match exponent:
-        case Whole(value):
-            return value
-        case Const(value, type) if type is FLOAT and float(value).is_integer():
-            # Beyond this float exponents are not meant as repeated products.
-            return int(value) if abs(value) <= 1024 else None
-        case _:
-            return None
-
-
-def _fold_power(body: Body, base: int, exponent: int, node: ast.expr | ast.stmt) -> Value:
-    if exponent < 0:
-        if base == 0:
-            raise body.problem("division by zero", node)
-        return number(float(base) ** exponent)
-    if abs(base) > 1 and exponent * abs(base).bit_length() > 128:
-        raise body.problem("this number is too large", node, "write it as a float")
-    return Whole(base**exponent)
-
-
-def _multiplied(body: Body, base: Expr, exponent: int, node: ast.expr | ast.stmt) -> Expr:
-    """Repeated squaring; each power of two is computed once."""
-    if exponent == 0:
-        return number(1, base.type)
-    span = body.span(node)
-    power = body.bind("base", base) if abs(exponent) > 1 else base
-    result: Expr | None = None
-    left = abs(exponent)
-    while True:
-        if left & 1:
-            result = (
-                power
-                if result is None
-                else Binary(BinaryOp.MUL, result, power, base.type, span=span)
-            )
-        left >>= 1
-        if not left:
-            break
-        power = Binary(BinaryOp.MUL, power, power, base.type, span=span)
-        if left > 1:
-            power = body.bind("power", power)
-    assert result is not None
-    if exponent < 0:
-        result = Binary(BinaryOp.DIV, number(1, base.type), result, base.type, span=span)
-    return result
 
 
 def unary(body: Body, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:

@@ -12,7 +12,7 @@ from typing import Any, Final
 from distal.frontend.body import Body
 from distal.frontend.fitting import fit, natural_type, settle, shown_type
 from distal.frontend.objects import fit_constant, lang_value, number_of
-from distal.frontend.operators import power
+from distal.frontend.powers import power
 from distal.frontend.problems import SceneError
 from distal.frontend.values import Closure, Display, Static, Value, Whole
 from distal.ir.build import splat

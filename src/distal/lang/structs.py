@@ -6,6 +6,7 @@ it, so a field may name a struct that is defined further down.
 
 from __future__ import annotations
 
+import importlib
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -33,12 +34,21 @@ def struct(cls: C) -> C:
     return made
 
 
+def _annotations(cls: type) -> dict[str, Any]:
+    try:
+        return dict(cls.__annotations__)
+    except NameError:
+        # From Python 3.14 on they are evaluated now, and one names what is defined further down.
+        lazy: Any = importlib.import_module("annotationlib")
+        return dict(lazy.get_annotations(cls, format=lazy.Format.STRING))
+
+
 def _dataclass(cls: C) -> C:
     """A dataclass whose annotations are left alone.
 
     As texts they would be looked up in the class's module, which a file run by itself has not.
     """
-    annotations = dict(cls.__annotations__)
+    annotations = _annotations(cls)
     cls.__annotations__ = dict.fromkeys(annotations, Any)
     made = cast("Any", dataclass)(cls)
     made.__annotations__ = annotations

@@ -12,7 +12,7 @@ import pytest
 from distal.diagnostics import CompileError
 from distal.frontend import lower, type_of_value
 from distal.ir.types import BOOL, FLOAT, INT, MAT3, UINT, VEC3
-from distal.lang import mat3, uint, vec3
+from distal.lang import Vectors, func, mat3, uint, vec3
 from tests.unit.frontend.evaluation import body, from_text
 
 
@@ -23,6 +23,11 @@ class Wood(IntEnum):
 class Speed(Enum):
     SLOW = 0.5
     NAMED = "fast"
+
+
+@func
+def GENERIC(v: Vectors) -> Vectors:  # noqa: N802
+    return v * 2.0
 
 
 def returned(expression: str, result: str, **names: Any) -> str:
@@ -54,6 +59,8 @@ def returned(expression: str, result: str, **names: Any) -> str:
         ((1, 2.0, 3), "C.xzy", "vec3", "(vec3 1.0 2.0 3.0).xzy"),
         ((1, 2.0, 3), "vec3(C)", "vec3", "(vec3 1.0 2.0 3.0)"),
         ((1, 2.0, 3), "C", "vec3", "(vec3 1.0 2.0 3.0)"),
+        ((1, 2.0, 3), "mat3(2) @ C", "vec3", None),
+        ((1, 2.0, 3), "GENERIC(C)", "vec3", "GENERIC((vec3 1.0 2.0 3.0))"),
         ([1.5, 2.0], "C[1]", "float", "2.0"),
         ([1.5, 2.0], "C[-1]", "float", "2.0"),
         ([1.5, 2.0], "float(len(C))", "float", "2.0"),
@@ -63,8 +70,9 @@ def returned(expression: str, result: str, **names: Any) -> str:
         (SimpleNamespace(radius=2.0), "C.radius", "float", "2.0"),
     ],
 )
-def test_values(value: object, expression: str, result: str, expected: str) -> None:
-    assert returned(expression, result, C=value) == expected
+def test_values(value: object, expression: str, result: str, expected: str | None) -> None:
+    found = returned(expression, result, C=value, GENERIC=GENERIC)
+    assert found.endswith("(vec3 1.0 2.0 3.0))") if expected is None else found == expected
 
 
 def test_numpy_matrices_are_transposed_on_entry() -> None:
@@ -144,3 +152,13 @@ def test_types_of_values_from_python() -> None:
     assert type_of_value(mat3(1)) is MAT3
     assert type_of_value((1.0, 2.0, 3.0)) is VEC3
     assert type_of_value("text") is None
+
+
+def test_a_short_array_becomes_a_vector_by_the_constructor() -> None:
+    scene = from_text("""
+        @func
+        def scene(x: float) -> vec3:
+            values = [x, 1, 2]
+            return vec3(values)
+        """)
+    assert body(scene).endswith("return (vec3 values[0] values[1] values[2])\n")
