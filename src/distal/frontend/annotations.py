@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
+from distal.frontend.values import LARGEST_ARRAY
 from distal.ir.types import (
     BOOL,
     FLOAT,
@@ -38,7 +39,6 @@ Bindings: TypeAlias = Mapping[TypeVar, Type]
 NO_BINDINGS: Bindings = {}
 
 _PYTHON_TYPES: dict[object, Type] = {float: FLOAT, int: INT, bool: BOOL}
-_LARGEST_ARRAY = 1 << 16
 
 
 class AnnotationError(Exception):
@@ -125,8 +125,8 @@ def _array(element: Type, length: Any) -> Type:
         (length,) = typing.get_args(length)[:1]
     if isinstance(length, bool) or not isinstance(length, int):
         raise AnnotationError("the length of an array is a whole number known now")
-    if not 1 <= length <= _LARGEST_ARRAY:
-        raise AnnotationError(f"the length of an array lies between 1 and {_LARGEST_ARRAY}")
+    if not 1 <= length <= LARGEST_ARRAY:
+        raise AnnotationError(f"the length of an array lies between 1 and {LARGEST_ARRAY}")
     if is_static(element):
         raise AnnotationError(f"an array cannot hold {element}")
     return Array(element, int(length))

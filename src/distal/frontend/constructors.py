@@ -10,7 +10,7 @@ from distal.frontend.body import Body
 from distal.frontend.fitting import fit, fit_or_refuse, natural_type, settle, shown_type
 from distal.frontend.objects import RefusedError, value_of
 from distal.frontend.problems import did_you_mean
-from distal.frontend.values import Closure, Display, Static, Value, Whole
+from distal.frontend.values import LARGEST_ARRAY, Closure, Display, Static, Value, Whole
 from distal.ir.build import cast, integer, number, splat
 from distal.ir.nodes import Compose, Const, Construct, Expr, Index
 from distal.ir.types import (
@@ -234,11 +234,17 @@ def length_of(body: Body, value: Value, node: ast.expr) -> Value:
             raise body.problem(f"'len' does not take {expr.type}", node)
 
 
+def _size(value: Value) -> int:
+    """How many single values a display holds."""
+    return sum(map(_size, value.items)) if isinstance(value, Display) else 1
+
+
 def repeated(body: Body, element: Value, count: Value, node: ast.expr) -> Value:
     """``[x] * n``: an array of equal elements."""
     if not isinstance(count, Whole) or not isinstance(element, Display):
         raise body.problem("a list is repeated a number of times known now", node)
-    total = len(element.items) * count.value
-    if not 1 <= total <= 1 << 16:
-        raise body.problem(f"an array has 1 to {1 << 16} elements, not {total}", node)
+    total = _size(element) * count.value
+    if not 1 <= total <= LARGEST_ARRAY:
+        message = f"an array has 1 to {LARGEST_ARRAY} components, not {total}"
+        raise body.problem(message, node, "more belong into a Buffer" if total > 0 else None)
     return Display(element.items * count.value, is_list=True)

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 from distal.frontend.annotations import struct_type, to_type
 from distal.frontend.values import (
     FALSE,
+    LARGEST_ARRAY,
     LARGEST_FLOAT,
     TRUE,
     Closure,
@@ -167,6 +168,7 @@ def lang_value(value: VectorValue | MatrixValue, text: str) -> Expr:
 def _sequence(items: Sequence[Any], text: str, declarations: Declarations) -> Value:
     if not items:
         raise RefusedError(f"'{text}' is empty", "an array has at least one element")
+    _check_size(len(items), text)
     inner = [i for i in items if isinstance(i, tuple | list)]
     if len(inner) == len(items):
         vectors = _rows(inner, text)
@@ -179,6 +181,12 @@ def _sequence(items: Sequence[Any], text: str, declarations: Declarations) -> Va
                 f"'{text}' holds {value.object!r:.60}, which is no value of scene code"
             )
     return Display(values, is_list=True, captured=True)
+
+
+def _check_size(size: int, text: str) -> None:
+    if size > LARGEST_ARRAY:
+        message = f"'{text}' has {size} elements; an array has at most {LARGEST_ARRAY}"
+        raise RefusedError(message, "make it a Buffer")
 
 
 def _rows(rows: list[Any], text: str) -> tuple[Value, ...] | None:
@@ -221,6 +229,7 @@ def _array(obj: Any, text: str) -> Value:
     if kind is None:
         raise RefusedError(f"'{text}' is an array of {obj.dtype}, which scene code does not have")
     shape = tuple(obj.shape)
+    _check_size(math.prod(shape), text)
     if len(shape) == 2 and shape[0] == shape[1] and 2 <= shape[0] <= 4 and kind is Kind.FLOAT:
         # NumPy writes rows, scene code's matrices are made of columns.
         columns = [[obj[r, c].item() for r in range(shape[0])] for c in range(shape[0])]

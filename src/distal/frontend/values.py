@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from distal.frontend.body import Body
 
 LARGEST_FLOAT = 3.4028234663852886e38
+LARGEST_ARRAY = 1 << 16  # components; more belong into a Buffer
 WHOLE_RANGES: dict[Type, range] = {INT: range(-(2**31), 2**31), UINT: range(2**32)}
 
 
