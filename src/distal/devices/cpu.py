@@ -1,7 +1,7 @@
 """The CPU device: vector code on every processor, compiled once and kept.
 
 What flows in: a module fresh from the front end, then numbers. What flows out: pictures, and values
-at points. With a kernel in the cache neither the passes nor LLVM are loaded.
+at points. With a kernel in the cache no pass runs and nothing is compiled.
 """
 
 from __future__ import annotations
@@ -37,8 +37,7 @@ from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
 from distal.devices.features import Level, chosen_level
-from distal.devices.jit import compile_image, compiler_fingerprint
-from distal.devices.link import Image
+from distal.devices.jit import compile_object, compiler_fingerprint
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
 from distal.ir.nodes import Module
@@ -81,10 +80,9 @@ def prepare(
     if kernel is None:
         passes = passes or importlib.import_module("distal.compiler").run_passes
         artifact = emit_for(passes(module, TARGET, precision), level.lanes(precision))
-        image = compile_image(artifact.text, level)
-        kernel = image, artifact.interface
-        cache.store(key, _stored(image, artifact.interface))
-    image, interface = kernel
+        kernel = compile_object(artifact.text, level), artifact.interface
+        cache.store(key, _stored(*kernel))
+    code, interface = kernel
     lanes = level.lanes(precision)
     stats = {
         "device": "cpu",
@@ -95,7 +93,7 @@ def prepare(
         "compile_s": time.perf_counter() - started,
     }
     types = {r.name: r.type for r in module.resources}
-    return CpuKernel(Executable(image), interface, precision, lanes.count, stats, types)
+    return CpuKernel(Executable(code), interface, precision, lanes.count, stats, types)
 
 
 # Kernels as files
@@ -121,20 +119,16 @@ def _sources() -> str:
     return hashlib.sha256(repr(sorted(rows)).encode()).hexdigest()
 
 
-def _stored(image: Image, interface: dict[str, Any]) -> bytes:
-    header = json.dumps(
-        {"interface": interface, "entries": image.entries, "imports": image.imports}
-    ).encode()
-    return struct.pack("<I", len(header)) + header + image.code
+def _stored(code: bytes, interface: dict[str, Any]) -> bytes:
+    header = json.dumps(interface).encode()
+    return struct.pack("<I", len(header)) + header + code
 
 
-def _loaded(data: bytes | None) -> tuple[Image, dict[str, Any]] | None:
+def _loaded(data: bytes | None) -> tuple[bytes, dict[str, Any]] | None:
     if data is None:
         return None
     (size,) = struct.unpack_from("<I", data)
-    header = json.loads(data[4 : 4 + size])
-    image = Image(data[4 + size :], header["entries"], header["imports"])
-    return image, header["interface"]
+    return data[4 + size :], json.loads(data[4 : 4 + size])
 
 
 # Kernels as functions
