@@ -7,6 +7,8 @@ interface alone: the runner is also a test of that. ``tests.gpu`` is the same fo
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.backends.base import Artifact
+from distal.backends.messages import map_message
 from tests import egl
 
 # What shadertoy.com writes around a text, as far as we use it.
@@ -45,6 +48,25 @@ def complete_text(artifact: Artifact) -> str:
     return f"{SHADERTOY_HEAD}{channels}{artifact.text}{SHADERTOY_TAIL}"
 
 
+def assert_valid(artifact: Artifact) -> None:
+    """Khronos' reference compiler takes every stage, without a warning.
+
+    Says nothing where it is not installed; ``test_texts`` skips aloud then.
+    """
+    validator = shutil.which("glslangValidator")
+    if validator is None:
+        return
+    text = complete_text(artifact)
+    if artifact.interface["target"] == "glsl-es100":
+        text = f"#version 100\n{text}"
+    stages = {"frag": text} if artifact.vertex is None else {"frag": text, "vert": artifact.vertex}
+    for stage, source in stages.items():
+        words = [validator, "--stdin", "-S", stage]
+        done = subprocess.run(words, input=source, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, map_message(artifact, done.stdout)
+        assert "WARNING" not in done.stdout, done.stdout
+
+
 def run_glsl(
     artifact: Artifact,
     size: tuple[int, int],
@@ -52,7 +74,7 @@ def run_glsl(
     textures: Mapping[str, NDArray[np.float32]] | None = None,
     buffers: Mapping[str, NDArray[Any]] | None = None,
 ) -> NDArray[np.float32]:
-    """The picture, float32 of shape (height, width, 4), top row first.
+    """The picture, float32 of shape (height, width, 4), top row first; the text is validated too.
 
     Args:
         artifact: What was compiled.
@@ -66,6 +88,7 @@ def run_glsl(
         ShaderRejectedError: The text is refused.
         ValueError: A value names no uniform.
     """
+    assert_valid(artifact)
     shader = egl.EglShader(complete_text(artifact), artifact.interface["version"], artifact.vertex)
     values = _values(artifact, size, dict(uniforms or {}))
     bound: list[Any] = []
