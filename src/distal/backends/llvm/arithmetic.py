@@ -202,6 +202,8 @@ class Arithmetic:
             bits = self.constant(divisor.bit_length() - 1, kind)
             quotient = self.apply(kind, f"{shift} {{t0}} {{0}}, {{1}}", lhs, bits)
             return quotient, self.binary(BinaryOp.AND, lhs, self.constant(divisor - 1, kind))
+        if rhs.constant and divisor == 0:
+            return lhs, self.constant(0, kind)
         quotient = self.truncated_quotient(lhs, rhs)
         remainder = self.binary(BinaryOp.SUB, lhs, self.binary(BinaryOp.MUL, quotient, rhs))
         zero = self.constant(0, kind)
