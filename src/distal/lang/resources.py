@@ -6,8 +6,11 @@ is looked at here. Loading a file, and checking what is in it, is done by whoeve
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any, ClassVar
 
 from distal.ir.types import (
@@ -26,11 +29,22 @@ from distal.lang.values import VectorValue, uint
 _WRAPS = ("repeat", "clamp")
 
 
+def _beside(file: str, data: Any) -> Any:
+    """The names of files made whole where such a file stands beside ``file``."""
+    if isinstance(data, list | tuple) and len(data) == 6:  # a cube's faces
+        return [_beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
+    if not isinstance(data, str | PathLike):
+        return data
+    candidate = os.path.join(os.path.dirname(os.path.abspath(file)), os.fspath(data))
+    return candidate if os.path.exists(candidate) else data
+
+
 class TextureValue:
     """What the three kinds of texture share.
 
     Attributes:
-        data: A file's name or path, an array, or nested lists of numbers.
+        data: A file's name or path, an array, or nested lists of numbers. A relative name is looked
+            for beside the file that declares the texture, then in the working folder.
         wrap: What lies outside: "repeat" or "clamp" (the edge goes on).
     """
 
@@ -39,7 +53,8 @@ class TextureValue:
     def __init__(self, data: Any, wrap: str = "repeat") -> None:
         if wrap not in _WRAPS:
             raise ValueError(f"wrap is 'repeat' or 'clamp', not {wrap!r}")
-        self.data = data
+        declared_in = sys._getframe(1).f_globals.get("__file__")
+        self.data = _beside(declared_in, data) if isinstance(declared_in, str) else data
         self.wrap = wrap
 
 
