@@ -163,6 +163,7 @@ def _case(
 def operator_cases() -> Iterator[Case]:
     """Each operator, conversion and access on each type."""
     yield from _arithmetic()
+    yield from _by_constants()
     yield from _matrices()
     yield from _bits()
     yield from _comparisons()
@@ -186,6 +187,20 @@ def _arithmetic() -> Iterator[Case]:
         yield _binary(BinaryOp.DIV, type, rtol=1e-6, defined=_divisible)
         yield _binary(BinaryOp.FLOOR_DIV, type, defined=_off_whole_quotients)
         yield _binary(BinaryOp.MOD, type, rtol=2e-6, atol=1e-5, defined=_off_whole_quotients)
+
+
+def _by_constants() -> Iterator[Case]:
+    """What targets treat apart: division, remainder and shifts by numbers known beforehand."""
+    for type, constants in ((INT, (0, 1, -1, 2, 8, -8, 3, -7)), (UINT, (0, 1, 2, 8, 7))):
+        for op in (BinaryOp.FLOOR_DIV, BinaryOp.MOD, BinaryOp.SHL, BinaryOp.SHR):
+            for constant in constants:
+
+                def applied(
+                    a: Sequence[Expr], op: BinaryOp = op, type: Type = type, by: int = constant
+                ) -> Expr:
+                    return build.binary(op, a[0], build.number(by, type))
+
+                yield _case(f"{op.value} {constant}", (type,), applied)
 
 
 def _matrices() -> Iterator[Case]:
