@@ -65,8 +65,8 @@ def in_volume(frame: Frame) -> vec4:
 
 @image
 def in_sky(frame: Frame) -> vec4:
-    # Face by face and away from the edges, where targets may look across.
-    across = (frame.coord % 8.0 - 4.0) / 5.0
+    # Face by face and up to the edges, where the filter looks across to the next face.
+    across = (frame.coord % 8.0 - 4.0) / 3.51
     face = int(frame.coord.x / 8.0) % 3
     way = 1.0 if frame.coord.y < 12.0 else -1.0
     if face == 0:

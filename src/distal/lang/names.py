@@ -34,7 +34,7 @@ class LangFunction:
         ``round(x, 2)``, ``max(numbers, key=…)`` and the like in a scene's module mean Python's own.
         """
         python = getattr(builtins, self.row.name, None)
-        if python is not None and (kwargs or all(map(_is_plain, args))):
+        if python is not None and (kwargs or _means_python(args)):
             return python(*args, **kwargs)
         if not kwargs and all(map(_is_constant, args)):
             value = calculated(self.row, args)
@@ -46,9 +46,11 @@ class LangFunction:
         return f"<built-in {self.row.name}>"
 
 
-def _is_plain(value: object) -> bool:
-    """Neither a vector nor an array."""
-    return not isinstance(value, VectorValue) and not hasattr(value, "dtype")
+def _means_python(args: tuple[Any, ...]) -> bool:
+    """Whether a call of a name that Python has too is none of the language's: no vectors in it."""
+    if any(isinstance(arg, VectorValue) for arg in args):
+        return False
+    return len(args) == 1 or not any(hasattr(arg, "dtype") for arg in args)
 
 
 def _is_constant(value: object) -> bool:

@@ -53,3 +53,13 @@ def test_uint_wraps_and_values_travel() -> None:
     for value in [vec3(1, 2, 3), mat2(1.0)]:
         assert repr(pickle.loads(pickle.dumps(value))) == repr(value)
         assert repr(copy.deepcopy(value)) == repr(value)
+
+
+def test_names_that_python_has_too_keep_their_meaning_outside_scene_code():
+    from distal import lang  # noqa: PLC0415
+
+    assert lang.round(2.36, 1) == 2.4
+    assert lang.max([1, 5, 3], key=lambda x: -x) == 1
+    assert lang.abs(-3) == 3
+    assert lang.min("b", "a") == "a"
+    assert tuple(lang.abs(lang.vec2(-1.0, 2.0))) == (1.0, 2.0)

@@ -18,6 +18,7 @@ from distal.lang import (
     mix,
     select,
     size,
+    struct,
     texel,
     vec2,
     vec3,
@@ -73,14 +74,21 @@ def sample_3d(texture: Texture3D, coord: vec3, wrap: int) -> vec4:
     return mix(near, far, weight.z)
 
 
+@struct
+class CubePlace:
+    """A point of a cube map: the face, and where on it, (-1, -1) to (1, 1)."""
+
+    face: int
+    along: vec2
+
+
 @func
-def sample_cube(texture: TextureCube, direction: vec3, wrap: int) -> vec4:
-    """Bilinear on the face that ``direction`` points at, clamped at the face's edges.
+def cube_place(direction: vec3) -> CubePlace:
+    """The place that a direction points at.
 
     Faces and their axes as in OpenGL's cube maps (OpenGL ES 3.0 specification, table 3.21): +x,
     -x, +y, -y, +z, -z.
     """
-    extent = vec2(size(texture))
     reach = abs(direction)
     face = 0
     axis = reach.x
@@ -95,18 +103,58 @@ def sample_cube(texture: TextureCube, direction: vec3, wrap: int) -> vec4:
         face = select(direction.z < 0.0, 5, 4)
         axis = reach.z
         along = vec2(select(direction.z < 0.0, -direction.x, direction.x), -direction.y)
-    place = (along / axis * 0.5 + 0.5) * extent - 0.5
-    corner = floor(place)
-    weight = place - corner
+    return CubePlace(face, along / axis)
+
+
+@func
+def cube_direction(place: CubePlace) -> vec3:
+    """The direction of a place; beyond a face's edge it points at the neighbouring face."""
+    side = select(place.face % 2 == 0, 1.0, -1.0)
+    if place.face < 2:
+        return vec3(side, -place.along.y, -side * place.along.x)
+    if place.face < 4:
+        return vec3(place.along.x, side, side * place.along.y)
+    return vec3(side * place.along.x, -place.along.y, side)
+
+
+@func
+def cube_texel(texture: TextureCube, face: int, index: ivec2, extent: int) -> vec4:
+    """A texel of a face, or of the face that lies beyond its edge."""
+    place = CubePlace(face, (2.0 * vec2(index) + 1.0) / float(extent) - 1.0)
+    if max(abs(place.along.x), abs(place.along.y)) > 1.0:
+        place = cube_place(cube_direction(place))
+    found = ivec2(floor((place.along * 0.5 + 0.5) * float(extent)))
+    return texel(texture, ivec3(found, place.face))
+
+
+@func
+def sample_cube(texture: TextureCube, direction: vec3, wrap: int) -> vec4:
+    """Bilinear, across the edges of faces ("seamless", OpenGL ES 3.0 specification, 3.8.9).
+
+    At a corner of the cube three texels meet; the fourth is their mean.
+    """
+    extent = size(texture).x
+    place = cube_place(direction)
+    position = (place.along * 0.5 + 0.5) * float(extent) - 0.5
+    corner = floor(position)
+    weight = position - corner
     lower = ivec2(corner)
-    x1 = lower.x + 1
-    y1 = lower.y + 1
-    bottom = mix(
-        texel(texture, ivec3(lower.x, lower.y, face)),
-        texel(texture, ivec3(x1, lower.y, face)),
-        weight.x,
-    )
-    top = mix(
-        texel(texture, ivec3(lower.x, y1, face)), texel(texture, ivec3(x1, y1, face)), weight.x
-    )
-    return mix(bottom, top, weight.y)
+    upper = lower + 1
+    a = cube_texel(texture, place.face, lower, extent)
+    b = cube_texel(texture, place.face, ivec2(upper.x, lower.y), extent)
+    c = cube_texel(texture, place.face, ivec2(lower.x, upper.y), extent)
+    d = cube_texel(texture, place.face, upper, extent)
+    last = extent - 1
+    left = lower.x < 0
+    right = upper.x > last
+    below = lower.y < 0
+    above = upper.y > last
+    if left and below:
+        a = (b + c + d) / 3.0
+    elif right and below:
+        b = (a + c + d) / 3.0
+    elif left and above:
+        c = (a + b + d) / 3.0
+    elif right and above:
+        d = (a + b + c) / 3.0
+    return mix(mix(a, b, weight.x), mix(c, d, weight.x), weight.y)
