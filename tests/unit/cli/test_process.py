@@ -7,6 +7,8 @@ import sys
 import time
 
 SLOW_SCENE = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
 import distal, time
 from distal.cli import main
 

@@ -304,7 +304,9 @@ def test_control_c_ends_an_endless_picture(tmp_path: Path) -> None:
         "    return vec4(x)\n"
     )
     program = (
-        "import sys\n"
+        # A shell's background job hands on that ctrl-C is ignored.
+        "import signal, sys\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         f"sys.path.insert(0, {str(tmp_path)!r})\n"
         "from endless_scene import picture\n"
         "from distal.devices import cpu\n"
