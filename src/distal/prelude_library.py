@@ -10,8 +10,7 @@ import importlib
 from dataclasses import replace
 from functools import cache
 
-from distal.diagnostics import CompileError
-from distal.frontend import lower_overload
+from distal.frontend import has_overload, lower_overload
 from distal.ir.nodes import Call, Expr, Function, Module
 from distal.ir.types import Type
 from distal.ir.walk import map_expressions, rewrite
@@ -22,12 +21,7 @@ def _lowered(name: str, args: tuple[Type, ...]) -> tuple[Function, ...]:
     """The overload and what it calls, callees first; empty when there is no such overload."""
     module, _, function = name.partition(".")
     func = getattr(importlib.import_module(f"distal.lang.prelude.{module}"), function)
-    try:
-        return lower_overload(func, args)
-    except CompileError as error:
-        if error.diagnostics[0].message.startswith(f"'{func.name}' does not take"):
-            return ()
-        raise
+    return lower_overload(func, args) if has_overload(func, args) else ()
 
 
 class PreludeLibrary:

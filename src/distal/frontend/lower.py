@@ -78,6 +78,13 @@ def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tu
     return _guarded(program, name, work)
 
 
+def has_overload(func: Func, arg_types: tuple[Type, ...]) -> bool:
+    """Whether a function has an overload for exactly these argument types."""
+    program = Program()
+    headers = [program.header(o) for o in func.overloads]
+    return any(_exact_bindings(program, h, arg_types) is not None for h in headers)
+
+
 def _guarded(program: Program, name: str, work: Callable[[], R]) -> R:
     """Run, and turn whatever stops the work into one error with all mistakes."""
     try:
