@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import importlib
 import math
+import operator
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -92,6 +93,9 @@ class PythonExecutor:
         threads: int | None,
         progress: Callable[[float], Any] | None,
         cancel: Any,
+        mouse: Sequence[float],
+        index: int,
+        seed: int,
     ) -> Picture:
         """The picture of an image; see ``Image.render``."""
         width, height = _checked_size(size)
@@ -105,9 +109,9 @@ class PythonExecutor:
         frame = {
             "resolution": (float(width), float(height)),
             "time": seconds,
-            "mouse": (0.0, 0.0, 0.0, 0.0),
-            "index": 0,
-            "seed": 0,
+            "mouse": _checked_mouse(mouse),
+            "index": (_checked_int("index", index) + 2**31) % 2**32 - 2**31,
+            "seed": _checked_int("seed", seed) & 0xFFFFFFFF,
         }
         renamed = renamed_parameters(module.uniforms)
         pixels = kernel.render(
@@ -258,6 +262,24 @@ def _checked_time(seconds: Any) -> float:
     if not math.isfinite(value):
         raise ValueError(f"time is finite, not {value}")
     return value
+
+
+def _checked_mouse(mouse: Any) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in mouse)
+    except (TypeError, ValueError):
+        values = ()
+    if len(values) != 4 or not all(map(math.isfinite, values)):
+        raise ValueError(f"mouse is four finite numbers, not {mouse!r}")
+    return values
+
+
+def _checked_int(name: str, value: Any) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is a whole number, not {value!r}") from None
+    return number
 
 
 def _now() -> float:

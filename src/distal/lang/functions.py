@@ -7,7 +7,7 @@ with its source text. Nothing is parsed or checked; that happens when it is comp
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
@@ -90,6 +90,9 @@ class Image(Func):
         threads: int | None = None,
         progress: Callable[[float], Any] | None = None,
         cancel: Any = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
     ) -> Any:
         """Compute the picture.
 
@@ -101,6 +104,9 @@ class Image(Func):
             threads: How many to use; None for all the machine lends.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.
+            mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
+            index: ``frame.index``, the frame's number; wraps at 32 bits.
+            seed: ``frame.seed``; wraps at 32 bits.
         """
         return executor().render(
             self,
@@ -111,6 +117,9 @@ class Image(Func):
             threads=threads,
             progress=progress,
             cancel=cancel,
+            mouse=mouse,
+            index=index,
+            seed=seed,
         )
 
 
