@@ -12,6 +12,7 @@ from typing import (
     overload,
 )
 
+from distal.film.picture import Picture
 from distal.ir.types import Type as Type
 from distal.lang.names import LangForm as LangForm
 from distal.lang.names import LangFunction as LangFunction
@@ -67,7 +68,10 @@ class Image(Func[[Frame], Any]):
         threads: int | None = None,
         progress: Callable[[float], Any] | None = None,
         cancel: Any = None,
-    ) -> Any: ...
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+    ) -> Picture: ...
 
 def func(function: Callable[_P, _R]) -> Func[_P, _R]: ...
 def image(function: Callable[[Frame], vec3] | Callable[[Frame], vec4]) -> Image: ...
