@@ -1,6 +1,7 @@
 # make picture   sets up what it needs and renders the raymarcher to picture.png
 # make test      sets up what it needs and runs everything that CI runs
 # make bench     measures; make sweep runs thousands of random programs; make clean undoes set-up
+# make versions  runs the tests on every other supported Python that is installed
 #
 # Needs Python 3.11 or newer (with venv) and make. Everything else goes into .venv. System packages
 # are installed only for the tests, only as root and only with apt-get; else the command is printed
@@ -16,7 +17,7 @@ WORKERS ?= 2
 SWEEP ?= 5000
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools
 
-.PHONY: picture test lint units system bench sweep clean
+.PHONY: picture test lint units system bench sweep versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -41,8 +42,19 @@ bench: $(VENV)/.setup-test
 sweep: $(VENV)/.setup-test
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
 
+# Python 3.11 is what `make test` uses; the others are tried where they are installed.
+versions: system
+	@for v in 3.12 3.13 3.14; do \
+		if ! "python$$v" -c 'import venv, ensurepip' >/dev/null 2>&1; then \
+			echo "== Python $$v: not installed, skipped"; continue; fi; \
+		echo "== Python $$v"; \
+		"python$$v" -m venv "$(VENV)-$$v" && \
+		"$(VENV)-$$v/bin/python" -m pip install --quiet --disable-pip-version-check -e '.[test]' && \
+		"$(VENV)-$$v/bin/python" -m pytest -n $(WORKERS) -rs || exit 1; \
+	done
+
 clean:
-	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-3.* build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 
 $(VENV)/.setup-run: $(VENV)/.setup-venv pyproject.toml
 	@begin=$$(date +%s); echo "Installing distal into $(VENV) ..."; \
