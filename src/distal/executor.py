@@ -24,6 +24,7 @@ from distal.call_values import (
     count,
     empty,
     fits,
+    is_double,
     is_many,
     lanes,
     single,
@@ -40,6 +41,7 @@ from distal.ir.printer import print_module
 from distal.ir.types import Type
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
+from distal.lang.parameter_values import LARGEST_FLOAT
 from distal.lang.parameters import Parameter
 from distal.passes.entry import renamed_parameters
 
@@ -52,18 +54,26 @@ Types: TypeAlias = tuple[Type, ...] | None
 
 @dataclass(frozen=True, slots=True)
 class Lowered:
-    """A lowered function, the hash of its text, and what it captured."""
+    """A lowered function.
+
+    Attributes:
+        module: The IR.
+        digest: Hash of the printed IR: equal for functions that mean the same.
+        source_hash: Hash of the text of every file that its functions stand in.
+        captured: Tells whether the module still stands for the function.
+    """
 
     module: Module
     digest: str
+    source_hash: str
     captured: Captured
 
     @staticmethod
     def of(function: Func | LangFunction, types: Types) -> Lowered:
         """Lower a function for argument types."""
         module, captured = lower_captured(function, types)
-        digest = hashlib.sha256(print_module(module).encode()).hexdigest()
-        return Lowered(module, digest, captured)
+        texts = sorted({"".join(o.source.lines) for o in captured.overloads})
+        return Lowered(module, _hash(print_module(module)), _hash("\0".join(texts)), captured)
 
 
 class PythonExecutor:
@@ -102,7 +112,7 @@ class PythonExecutor:
         seconds = _checked_time(time)
         begin = _now()
         lowered = self._lower(image, None)
-        module, digest = lowered.module, lowered.digest
+        module = lowered.module
         values = parameter_values(module, params or {})
         kernel = self._kernel(lowered, device, 32)
         compiled = _now()
@@ -129,7 +139,9 @@ class PythonExecutor:
             "compile_s": compiled - begin,
             "render_s": _now() - compiled,
         }
-        origin = Provenance(source=image.name, source_hash=digest, parameters=values, time=seconds)
+        origin = Provenance(
+            source=image.name, source_hash=lowered.source_hash, parameters=values, time=seconds
+        )
         return Picture(pixels, origin, stats)
 
     def call(
@@ -137,7 +149,7 @@ class PythonExecutor:
     ) -> Any:
         """The function's value for numbers, vectors, or arrays with one row for each point."""
         types, values = _arguments(function, args, kwargs)
-        double = any(getattr(leaf, "dtype", None) == np.float64 for leaf in args)
+        double = any(map(is_double, [*args, *kwargs.values()]))
         dtype = np.dtype(np.float64 if double else np.float32)
         rows = [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
         many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
@@ -174,6 +186,10 @@ class PythonExecutor:
         return kernel
 
 
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
 def parameter_values(module: Module, params: Mapping[str, Any]) -> dict[str, Any]:
     """The value of each parameter of a module: as given, checked, or its default.
 
@@ -183,6 +199,8 @@ def parameter_values(module: Module, params: Mapping[str, Any]) -> dict[str, Any
         ValueError: A name is unknown, or a value outside its range.
         TypeError: A value is of another kind.
     """
+    if not isinstance(params, Mapping):
+        raise TypeError(f"params are values by name, not {type(params).__name__}")
     declared = [u.source for u in module.uniforms if u.origin is Origin.PARAMETER]
     by_name = {key: p for p in declared for key in (p.label, p.name)}
     values = {p.name: p.default for p in declared}
@@ -238,7 +256,10 @@ def _takes(function: Func | LangFunction) -> str:
 
 
 def _described(value: Any) -> str:
-    shape = np.shape(value) if not isinstance(value, str) else ()
+    try:
+        shape = np.shape(value) if not isinstance(value, str) else ()
+    except ValueError:
+        return f"a {type(value).__name__} whose parts differ in length"
     if shape:
         return f"an array of shape {shape}"
     return repr(value) if isinstance(value, int | float | str) else type(value).__name__
@@ -246,7 +267,7 @@ def _described(value: Any) -> str:
 
 def _checked_size(size: Any) -> tuple[int, int]:
     try:
-        width, height = (int(side) for side in size)
+        width, height = map(operator.index, size)
     except (TypeError, ValueError):
         raise TypeError(f"size is (width, height) in pixels, not {size!r}") from None
     if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
@@ -259,8 +280,10 @@ def _checked_time(seconds: Any) -> float:
         value = float(seconds)
     except (TypeError, ValueError):
         raise TypeError(f"time is a number of seconds, not {seconds!r}") from None
-    if not math.isfinite(value):
-        raise ValueError(f"time is finite, not {value}")
+    except OverflowError:
+        value = math.inf
+    if not abs(value) <= LARGEST_FLOAT:
+        raise ValueError(f"time is finite and fits 32 bits; {value} does not")
     return value
 
 

@@ -17,19 +17,28 @@ from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, TextureValue
 from distal.lang.values import MatrixValue, VectorValue
 
-_MISSING: Final = object()
+
+class _Missing:
+    """What stands for a name that is not bound."""
+
+
+_MISSING: Final = _Missing()
 # What never changes, so that being the same object is enough.
 _UNCHANGING: Final = (
-    *(bool, int, float, str, bytes, type(None), type, Enum, type(_MISSING)),
+    *(bool, int, float, str, bytes, type(None), type, Enum, _Missing),
     *(VectorValue, MatrixValue, Parameter, LangFunction, LangForm, Buffer, TextureValue),
 )
 
 
 class Captured:
-    """The objects behind the names of some functions, as they are now."""
+    """The objects behind the names of some functions, as they are now.
+
+    Attributes:
+        overloads: The functions.
+    """
 
     def __init__(self, overloads: Iterable[Overload]) -> None:
-        self._overloads = tuple(overloads)
+        self.overloads = tuple(overloads)
         self._objects = tuple(self._now())
         self._lasting = all(map(_lasts, self._objects))
 
@@ -41,7 +50,7 @@ class Captured:
         return len(now) == len(self._objects) and all(map(_same, now, self._objects))
 
     def _now(self) -> Iterator[Any]:
-        for overload in self._overloads:
+        for overload in self.overloads:
             python = overload.python
             names = tuple(_names(python.__code__))
             for cell in python.__closure__ or ():
@@ -76,8 +85,10 @@ def _lasts(value: Any) -> bool:
         return all(map(_lasts, value))
     if isinstance(value, (*_UNCHANGING, Func, Overload, ModuleType)):
         return True
+    if getattr(value, "shape", None) == ():  # NumPy's numbers, but not its arrays of one number
+        return not hasattr(value, "__setitem__")
     # Builtins, ``typing`` and the like: named, and of no use as a constant.
-    return callable(value) or hasattr(value, "__origin__") or getattr(value, "shape", None) == ()
+    return callable(value) or hasattr(value, "__origin__")
 
 
 def _same(a: Any, b: Any) -> bool:
