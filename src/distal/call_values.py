@@ -10,6 +10,7 @@ import dataclasses
 from collections import namedtuple
 from collections.abc import Mapping, Sequence
 from itertools import product
+from operator import itemgetter
 from typing import Any, TypeVar, assert_never
 
 import numpy as np
@@ -121,7 +122,19 @@ def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
             assert_never(type)
 
 
+def is_double(value: Any) -> bool:
+    """Whether the person passed numbers of 64 bits, also inside a struct."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return any(is_double(getattr(value, field.name)) for field in dataclasses.fields(value))
+    if isinstance(value, tuple):
+        return any(map(is_double, value))
+    return getattr(value, "dtype", None) == np.float64
+
+
 def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
+    if not shape and isinstance(value, tuple | VectorValue):
+        # As in scene code, a tuple is a vector; one number for each point is a list or an array.
+        raise TypeError(f"{value!r} is a vector")
     if isinstance(value, VectorValue):
         value = tuple(value)
     array = np.asarray(value)
@@ -161,7 +174,23 @@ def _array(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
         return _numbers(value, shape, element.kind, dtype)
     if not isinstance(value, list | tuple) or len(value) != length:
         raise TypeError(f"not {length} values")
-    return tuple(lanes(v, element, dtype) for v in value)
+    elements = [lanes(v, element, dtype) for v in value]
+    return _stacked(elements, count(elements) or 1)
+
+
+def _stacked(elements: Sequence[Any], points: int) -> Any:
+    """Elements side by side along the second axis; of structs, field by field."""
+    if isinstance(elements[0], tuple):
+        return tuple(_stacked(field, points) for field in zip(*elements, strict=True))
+    shape = (points, *elements[0].shape[1:])
+    return np.stack([np.broadcast_to(e, shape) for e in elements], axis=1)
+
+
+def _element(result: Any, position: int) -> Any:
+    """One element of the array that every row holds."""
+    if isinstance(result, tuple):
+        return tuple(_element(part, position) for part in result)
+    return result[:, position]
 
 
 def count(values: Sequence[Any]) -> int | None:
@@ -199,6 +228,12 @@ def is_many(value: Any, type: Type) -> bool:
             else:
                 parts = [getattr(value, n) for n, _ in fields]
             return any(is_many(v, t) for v, (_, t) in zip(parts, fields, strict=True))
+        case Array(Scalar() | Vector() as element, _):
+            if isinstance(value, list | tuple):
+                value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
+            return np.ndim(value) == (2 if isinstance(element, Scalar) else 3)
+        case Array(element, _):
+            return any(is_many(v, element) for v in value)
         case _:
             return False
 
@@ -219,9 +254,7 @@ def single(result: Any, type: Type) -> Any:
                 tuple(single(r, t) for r, (_, t) in zip(result, fields, strict=True)), type
             )
         case Array(element, length):
-            if isinstance(result, tuple):
-                return [single(r, element) for r in result]
-            return [single(result[:, i], element) for i in range(length)]
+            return [single(_element(result, i), element) for i in range(length)]
         case _:
             raise AssertionError(f"{type} is no result")
 
@@ -230,7 +263,13 @@ def with_names(result: Any, type: Type) -> Any:
     """A struct's values with its fields as attributes; anything else as it is."""
     if not isinstance(type, Struct) or type.is_tuple:
         return result
-    return namedtuple(type.name, [name for name, _ in type.fields])(*result)
+    names = [name for name, _ in type.fields]
+    # A field called _x is no mistake in scene code, only in a namedtuple: added under its own name.
+    named = namedtuple(type.name, names, rename=True)  # type: ignore[misc]  # a name made here
+    for position, name in enumerate(names):
+        if name not in named._fields:
+            setattr(named, name, property(itemgetter(position)))
+    return named(*result)
 
 
 def empty(type: Type, dtype: np.dtype[Any]) -> Any:
@@ -242,10 +281,8 @@ def empty(type: Type, dtype: np.dtype[Any]) -> Any:
             return np.empty((0, size), _dtype(kind, dtype))
         case Matrix(size):
             return np.empty((0, size, size), dtype)
-        case Array(Scalar() | Vector() as element, length):
-            return np.empty((0, length, *empty(element, dtype).shape[1:]), dtype)
         case Array(element, length):
-            return tuple(empty(element, dtype) for _ in range(length))
+            return _stacked([empty(element, dtype)] * length, 0)
         case Struct(_, fields):
             return tuple(empty(t, dtype) for _, t in fields)
         case _:

@@ -69,7 +69,10 @@ def compile(obj: Func, target: str = "glsl-es300", after: str | None = None) -> 
     Raises:
         CompileError: The scene code has mistakes, or says what the target cannot do.
         ValueError: There is no such target or pass.
+        TypeError: It is neither.
     """
+    if not isinstance(obj, Func):
+        raise TypeError(f"only an @image or a @func can be compiled, not {type(obj).__name__}")
     if after is not None and after not in ("lower", *PASS_NAMES):
         raise ValueError(f"there is no pass '{after}'; passes: lower, {', '.join(PASS_NAMES)}")
     if after is not None and target != IR_TARGET:

@@ -282,8 +282,10 @@ def _checked_time(seconds: Any) -> float:
         raise TypeError(f"time is a number of seconds, not {seconds!r}") from None
     except OverflowError:
         value = math.inf
-    if not abs(value) <= LARGEST_FLOAT:
-        raise ValueError(f"time is finite and fits 32 bits; {value} does not")
+    if not math.isfinite(value):
+        raise ValueError(f"time is finite, not {value}")
+    if abs(value) > LARGEST_FLOAT:
+        raise ValueError(f"time fits 32 bits, {value} does not")
     return value
 
 

@@ -51,10 +51,13 @@ def _find(path: str) -> Path:
             raise LoadError(f"there is no example '{wanted}'; examples: {', '.join(examples)}")
         return examples[wanted]
     file = Path(path)
-    if file.is_dir():
-        raise LoadError(f"{file} is a folder, not a scene file")
-    if not file.exists():
-        raise LoadError(f"there is no file {file}")
+    try:
+        if file.is_dir():
+            raise LoadError(f"{file} is a folder, not a scene file")
+        if not file.exists():
+            raise LoadError(f"there is no file {file}")
+    except OSError as error:  # a folder on the way that cannot be entered, a name too long
+        raise LoadError(f"cannot read {file}: {error.strerror}") from None
     return file
 
 

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ParamSpec
+from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
 
 import typer
 
@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from distal.lang.functions import Func
 
 Arguments = ParamSpec("Arguments")
+
+# By the name under which Python knows it: what rendering needs besides this command itself.
+CORE_PACKAGES: Final = {"numpy": "numpy", "llvmlite": "llvmlite", "PIL": "pillow", "rich": "rich"}
 
 application = typer.Typer(
     name="distal",
@@ -80,6 +83,15 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
             raise typer.Exit(1) from None
         except (LoadError, SaveError) as error:
             print(f"error: {error}", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except ModuleNotFoundError as error:
+            if error.name not in CORE_PACKAGES:
+                raise
+            package = CORE_PACKAGES[error.name]
+            print(f"error: {package} is missing: pip install {package}", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except MemoryError as error:
+            print(f"error: not enough memory: {error}".rstrip(": "), file=sys.stderr)
             raise typer.Exit(1) from None
         except KeyboardInterrupt:
             raise typer.Exit(130) from None
@@ -204,6 +216,8 @@ def compile(
     if output is not None:
         if output.suffix.lower() in (".json", ".vert"):
             raise UsageError(f"'{output}' is where the interface or the vertex stage goes")
+        if output.resolve() == Path(read_scene(scene)[0]).resolve():
+            raise UsageError(f"'{output}' is the scene itself")
         check_destination(output)
     artifact = distal.compile(_load(scene), target=target.value, after=after)
     if output is None:

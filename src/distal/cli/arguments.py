@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
-from distal.lang.parameter_values import Value
+from distal.lang.parameter_values import LARGEST_FLOAT, Value
 from distal.lang.parameters import Parameter
 
 EXAMPLE_PREFIX: Final = "example:"
@@ -55,6 +55,8 @@ def read_time(text: str) -> float:
         raise UsageError(f"a time is a number of seconds, not '{text:.40}'") from None
     if not math.isfinite(time):
         raise UsageError(f"a time is finite, not {time}")
+    if abs(time) > LARGEST_FLOAT:
+        raise UsageError(f"a time fits 32 bits, {time} does not")
     return time
 
 

@@ -7,6 +7,7 @@ on it is gone.
 
 from __future__ import annotations
 
+import errno
 import mmap
 import threading
 import weakref
@@ -32,6 +33,15 @@ class _Lease:
         }
 
 
+def _mapped(size: int) -> mmap.mmap:
+    try:
+        return mmap.mmap(-1, size)
+    except OSError as error:
+        if error.errno == errno.ENOMEM:
+            raise MemoryError(f"no {size / 2**20:.0f} MiB of memory for a picture") from None
+        raise
+
+
 class Pool:
     """Blocks of memory that nobody holds, by size."""
 
@@ -48,7 +58,7 @@ class Pool:
             return np.empty(shape, np.float32)
         memory = self._reused(size)
         if memory is None:
-            memory = mmap.mmap(-1, size)
+            memory = _mapped(size)
             if hasattr(mmap, "MADV_HUGEPAGE"):
                 memory.madvise(mmap.MADV_HUGEPAGE)
         lease = _Lease(memory, shape)

@@ -7,6 +7,7 @@ ended. The caller's own thread only waits, so that ctrl-C and ``cancel`` act at 
 
 from __future__ import annotations
 
+import operator
 import os
 import threading
 import time
@@ -53,9 +54,7 @@ def run(
     Raises:
         Cancelled: ``cancel`` said so.
     """
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads must be at least 1, not {threads}")
-    count = max(1, min(threads or usable_threads(), work.pieces))
+    count = max(1, min(_checked(threads) or usable_threads(), work.pieces))
     failures: list[BaseException] = []
 
     def worker() -> None:
@@ -82,6 +81,18 @@ def run(
     if progress is not None:
         progress(1.0)
     return count
+
+
+def _checked(threads: int | None) -> int | None:
+    if threads is None:
+        return None
+    try:
+        number = operator.index(threads)
+    except TypeError:
+        raise TypeError(f"threads is a whole number, not {threads!r}") from None
+    if number < 1:
+        raise ValueError(f"threads must be at least 1, not {number}")
+    return number
 
 
 def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> None:

@@ -74,6 +74,10 @@ class Func:
         """The parameters (sliders and the like) that this and what it calls read."""
         return executor().parameters(self)
 
+    def __reduce__(self) -> str:
+        """Pickled by its name, as every function is, and so copied as itself."""
+        return self.__qualname__
+
     def __repr__(self) -> str:
         return f"<{type(self).__name__.lower()} {self.__qualname__}>"
 

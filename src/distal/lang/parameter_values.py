@@ -14,6 +14,8 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Final, TypeAlias
 
+from distal.lang.values import VectorValue
+
 Value: TypeAlias = "float | int | bool | tuple[float, ...]"
 
 LARGEST_FLOAT: Final = 3.4028234663852886e38  # of 32 bits: what every target computes in
@@ -128,6 +130,8 @@ def joined(value: Value) -> str:
 
 
 def _plain(value: object) -> object:
+    if isinstance(value, VectorValue):
+        return tuple(value)
     # NumPy's scalars and arrays know their plain form; this module need not know NumPy.
     convert: Callable[[], object] | None = getattr(value, "tolist", None)
     return convert() if callable(convert) else value
