@@ -227,13 +227,13 @@ def _arguments(
         mistake: TypeError | None = None
         for overload in function.overloads:
             header = read_header(overload)
+            if header.problems:
+                lower(function)  # raises with the author's lines
             try:
                 values = bind(header, args, kwargs)
             except TypeError as error:
                 mistake = error
                 continue
-            if header.problems:
-                lower(function)  # raises with the author's lines
             types_found = choose_types(header, values)
             if types_found is not None:
                 return types_found, values

@@ -106,10 +106,20 @@ def _attribute(body: Body, node: ast.Attribute) -> Value:
     base = body.expression(node.value)
     if isinstance(base, Static):
         return _static_attribute(body, base, node)
+    if node.attr == "value" and _is_enum_member(body, node.value):
+        return base
     if isinstance(base, Display) and len(base.items) in (2, 3, 4):
         base = _as_vector(body, base, node.value)
     value = settle(body, base, node.value)
     return member(body, value, node.attr, node)
+
+
+def _is_enum_member(body: Body, node: ast.expr) -> bool:
+    """Whether this is ``Mode.A``, which stands for its value already."""
+    if not isinstance(node, ast.Attribute):
+        return False
+    owner = body.expression(node.value)
+    return isinstance(owner, Static) and isinstance(owner.object, EnumMeta)
 
 
 def _as_vector(body: Body, display: Display, node: ast.expr) -> Value:

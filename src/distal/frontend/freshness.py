@@ -75,8 +75,8 @@ def _with_members(value: Any, names: tuple[str, ...]) -> Iterator[Any]:
     yield value
     if isinstance(value, Func):
         yield from value.overloads
-    if isinstance(value, ModuleType):
-        # ``settings.radius``: the module stays, its members may change.
+    if isinstance(value, ModuleType | type):
+        # ``settings.radius``: the module or class stays, its members may change.
         yield from (vars(value).get(name, _MISSING) for name in names)
 
 
@@ -87,8 +87,8 @@ def _lasts(value: Any) -> bool:
         return True
     if getattr(value, "shape", None) == ():  # NumPy's numbers, but not its arrays of one number
         return not hasattr(value, "__setitem__")
-    # Builtins, ``typing`` and the like: named, and of no use as a constant.
-    return callable(value) or hasattr(value, "__origin__")
+    # Builtins, ``typing``, a class's properties and the like: named, and of no use as a constant.
+    return callable(value) or hasattr(value, "__origin__") or hasattr(type(value), "__get__")
 
 
 def _same(a: Any, b: Any) -> bool:

@@ -163,7 +163,8 @@ def _for(body: Body, stmt: ast.For) -> None:
     if not isinstance(stmt.target, ast.Name):
         raise body.problem("a loop has one loop variable", stmt.target, "unpack it in the body")
     name = stmt.target.id
-    if body.lookup(name) is not None:
+    shadowed = body.lookup(name)
+    if shadowed is not None and not (name == "_" and shadowed.loop):
         message = f"'{name}' is a local already"
         raise body.problem(message, stmt.target, "give the loop variable a name of its own")
     try:
@@ -177,6 +178,8 @@ def _for(body: Body, stmt: ast.For) -> None:
     variable = Variable(name, body, False, loop=True, failed=bounds is None)
     counter = body.fresh((name.strip("_") or "i") if array is None else f"{name}_index")
     _loop_body(body, stmt, variable, counter, bounds, array)
+    if shadowed is not None:  # a loop in a loop, both with _: in Python the inner one's stays
+        body.assigned.discard(shadowed)
 
 
 def _loop_body(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import copy
 import pickle
+from enum import Enum
 
 import numpy as np
 import pytest
 
 import distal
+from distal.frontend.freshness import Captured
 from distal.lang import (
     Floats,
     Frame,
@@ -95,6 +97,20 @@ def first_step(x: float) -> float:
     return x + steps[0] + grid[1]
 
 
+class Settings:
+    gain = 0.5
+
+
+@func
+def settings_gain(x: float) -> float:
+    return vec2(x, 2.0).x + Settings.gain
+
+
+@func
+def starred(*numbers: float) -> float:
+    return 1.0
+
+
 target = point("Target", (0.0, 0.5, 0.0))
 
 
@@ -156,6 +172,25 @@ def test_what_changes_inside_a_captured_list_or_array_is_seen() -> None:
     steps[0], grid[1] = 1.0, 2.0
 
 
+def test_what_changes_in_a_captured_class_is_seen() -> None:
+    assert settings_gain(1.0) == 1.5
+    Settings.gain = 2.0
+    assert settings_gain(1.0) == 3.0
+    Settings.gain = 0.5
+
+
+def test_what_cannot_change_is_not_looked_at_again() -> None:
+    # Else every call would lower anew.
+    for function in (distance, farther, both, sized, settings_gain):
+        assert Captured(function.overloads).is_fresh()
+    assert not Captured(first_step.overloads).is_fresh()
+
+
+def test_mistakes_in_the_definition_come_before_those_of_the_call() -> None:
+    with pytest.raises(distal.CompileError, match=r"'\*numbers' is not part of scene code"):
+        starred(1.0)
+
+
 def test_functions_are_pickled_by_name_and_copied_as_themselves() -> None:
     assert pickle.loads(pickle.dumps(distance)) is distance
     assert copy.deepcopy(distance) is distance
@@ -188,3 +223,17 @@ def test_a_vector_is_a_point() -> None:
 def test_only_scene_code_is_compiled() -> None:
     with pytest.raises(TypeError, match="only an @image or a @func"):
         distal.compile(len)  # type: ignore[arg-type]
+
+
+class Mode(Enum):
+    SOFT = 2
+    HARD = 5
+
+
+@func
+def by_mode(x: float) -> float:
+    return x * float(Mode.HARD.value) if Mode.SOFT.value == Mode.SOFT else 0.0
+
+
+def test_a_member_of_an_enum_is_its_value() -> None:
+    assert by_mode(2.0) == 10.0

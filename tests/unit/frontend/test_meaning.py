@@ -42,6 +42,17 @@ def counting_down(x: float) -> float:
 
 
 @func
+def unnamed_counters(x: float) -> float:
+    for _ in range(4):
+        for _ in range(3):
+            x = x * 1.5 + 1.0
+        for _ in range(2):
+            for _ in range(2):
+                x -= 0.25
+    return x
+
+
+@func
 def empty_range(x: float) -> float:
     for i in range(5, 2):
         x += float(i)
@@ -199,6 +210,7 @@ def returned_literal(x: float):  # type: ignore[no-untyped-def]
 
 FLOAT_FUNCTIONS = [
     *(early_return, nested_loops, counting_down, empty_range, while_break, parameter_changes),
+    unnamed_counters,
     *(while_with_power_in_condition, assigned_in_branches, one_name_in_two_loops, swap),
     *(chained_assignment, chained_comparison, conditions, powers, floats_floored, lists),
     *(math_functions, nested_function, lambdas, tuples, literals, returned_literal),
