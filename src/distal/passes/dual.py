@@ -360,6 +360,9 @@ class DualBody:
         """The expression, read from a local of its own unless it is shallow."""
         if is_constant(e) or (self._depth(e) <= deepest and not self._may_change(e)):
             return e
+        if isinstance(e, Splat):
+            # A matrix is scaled by a Splat only: it must stay one.
+            return rebuild(e, (self._named(e.value, deepest, name, out),))
         lanes = lanes_of(e)
         if lanes is None:
             local = Read(self._names.fresh(name), e.type)

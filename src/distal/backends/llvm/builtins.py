@@ -152,11 +152,13 @@ def _library(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
     if name in _LIBRARY_UNARY:
         return arithmetic.intrinsic(name, Kind.FLOAT, args[0])
     if name in ("atan2", "raw_atan2"):
-        # (0, 0) has the angle 0, whatever its signs; the library turns by pi for x = -0.
-        zero = arithmetic.constant(0.0, Kind.FLOAT)
-        flat, level = (arithmetic.compare(CompareOp.EQ, a, zero) for a in args)
+        # On the axis the signs of zeros count for nothing; the library turns by pi for x = -0, and
+        # the other way round for y = -0.
+        zero, half_turn = (arithmetic.constant(a, Kind.FLOAT) for a in (0.0, math.pi))
+        flat = arithmetic.compare(CompareOp.EQ, args[0], zero)
+        behind = arithmetic.compare(CompareOp.LT, args[1], zero)
         angle = arithmetic.intrinsic("atan2", Kind.FLOAT, *args)
-        return arithmetic.select(_joined(arithmetic, "and", (flat, level)), zero, angle)
+        return arithmetic.select(flat, arithmetic.select(behind, half_turn, zero), angle)
     if name in ("pow", "raw_power"):
         zero = arithmetic.constant(0.0, Kind.FLOAT)
         below = arithmetic.compare(CompareOp.LT, zero, args[0])
