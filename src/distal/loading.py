@@ -6,10 +6,11 @@ snapshot of its text, so that a later edit never mixes in.
 
 from __future__ import annotations
 
+import importlib
 import linecache
 import sys
 import types
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from pathlib import Path
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
@@ -79,7 +80,9 @@ def _run(file: Path) -> types.ModuleType:
     # Decorators look their module up; neighbours of the file can be imported, as in a script.
     sys.modules[name] = module
     folder = str(file.resolve().parent)
+    known = set(sys.modules)
     sys.path.insert(0, folder)
+    importlib.invalidate_caches()  # a neighbour may be younger than what Python saw of the folder
     try:
         exec(code, module.__dict__)
     except CompileError:
@@ -90,7 +93,27 @@ def _run(file: Path) -> types.ModuleType:
         raise LoadError(_failure(file, error)) from error
     finally:
         sys.path.remove(folder)
+        _forget_neighbours(Path(folder), known)
     return module
+
+
+def _forget_neighbours(folder: Path, known: Set[str]) -> None:
+    """Let the next scene import its own neighbours, and edited ones anew.
+
+    Python keeps imported modules by name alone: the ``shapes`` of one folder would serve the scenes
+    of another. What the scene imported stays alive in its globals.
+    """
+    tops = {name.partition(".")[0] for name in set(sys.modules) - known}
+    near = {top for top in tops if _stands_in(sys.modules.get(top), folder)}
+    for name in set(sys.modules) - known:
+        if name.partition(".")[0] in near:
+            del sys.modules[name]
+
+
+def _stands_in(module: types.ModuleType | None, folder: Path) -> bool:
+    """Whether a module's file, or a package's folder, is directly in a folder."""
+    places = list(getattr(module, "__path__", ())) or [getattr(module, "__file__", None)]
+    return any(place is not None and Path(place).parent == folder for place in places)
 
 
 def _read(file: Path) -> str:
