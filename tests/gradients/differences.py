@@ -62,8 +62,8 @@ def _along(function: Function, points: Doubles, here: Doubles, axis: int) -> Any
         behind = (here - function(points - step * direction)) / step
         central.append((ahead + behind) / 2)
         gaps.append(ahead - behind)
-    # One-sided slopes differ by the bend times the step, and halve with it, unless there is a crease
-    # or a jump within the step.
+    # One-sided slopes differ by the bend times the step, which halves with it, unless a crease or a
+    # jump lies within the step.
     scale = 1.0 + np.abs(central[2])
     bent = np.maximum(np.abs(gaps[0] - 2 * gaps[1]), np.abs(gaps[1] - 2 * gaps[2]))
     # Richardson's extrapolation of the two shorter steps.

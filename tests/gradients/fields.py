@@ -36,8 +36,8 @@ class Part:
 
 
 @func
-def twice(field: Callable[[vec2], float], q: vec2) -> float:
-    return field(q) - 0.5 * field(q.yx + 0.3)
+def twice(plane: Callable[[vec2], float], q: vec2) -> float:
+    return plane(q) - 0.5 * plane(q.yx + 0.3)
 
 
 @func
