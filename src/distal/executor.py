@@ -46,6 +46,7 @@ from distal.lang.parameters import Parameter
 from distal.passes.entry import renamed_parameters
 
 LARGEST_SIDE_PX: Final = 16384
+KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
 DEVICES: Final = {"cpu": "distal.devices.cpu", "reference": "distal.devices.reference"}
 
 
@@ -179,10 +180,13 @@ class PythonExecutor:
         if device not in DEVICES:
             raise ValueError(f"there is no device '{device}'; devices: {', '.join(DEVICES)}")
         key = (lowered.digest, device, precision)
-        kernel = self._kernels.get(key)
+        kernel = self._kernels.pop(key, None)
         if kernel is None:
             room = importlib.import_module(DEVICES[device])
-            kernel = self._kernels[key] = room.prepare(lowered.module, precision=precision)
+            kernel = room.prepare(lowered.module, precision=precision)
+        self._kernels[key] = kernel  # the last used stands last
+        if len(self._kernels) > KERNELS_KEPT:
+            self._kernels.pop(next(iter(self._kernels)), None)
         return kernel
 
 

@@ -39,3 +39,20 @@ def test_whole_numbers_wrap_at_32_bits():
 def test_mistakes_are_named(options, error, message):
     with pytest.raises(error, match=message):
         told.render(**{"size": (2, 2), **options})
+
+
+def test_kernels_of_long_ago_are_dropped(monkeypatch):
+    from distal import executor as room  # noqa: PLC0415
+
+    monkeypatch.setattr(room, "KERNELS_KEPT", 2)
+    executor = room.PythonExecutor()
+    for shade in (0.1, 0.2, 0.3):
+
+        @image
+        def plain(frame: Frame) -> vec4:
+            return vec4(shade)
+
+        lowered = executor._lower(plain, None)
+        executor._kernel(lowered, "reference", 32)
+    assert len(executor._kernels) == 2
+    assert (lowered.digest, "reference", 32) in executor._kernels
