@@ -327,7 +327,8 @@ class Glsl100Writer(GlslWriter):
         )
 
     def size(self, resource: Resource) -> Code:
-        raise CompileError.at("GLSL ES 1.00 does not know the size of a texture", self.span)
+        lacks = "has no buffers" if isinstance(resource.type, Buffer) else "knows no texture's size"
+        raise CompileError.at(f"GLSL ES 1.00 {lacks}", self.span)
 
     def buffer_element(self, resource: Resource, index: Code) -> Code:
         raise CompileError.at("GLSL ES 1.00 has no buffers", self.span)
