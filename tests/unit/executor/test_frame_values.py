@@ -46,13 +46,16 @@ def test_kernels_of_long_ago_are_dropped(monkeypatch):
 
     monkeypatch.setattr(room, "KERNELS_KEPT", 2)
     executor = room.PythonExecutor()
-    for shade in (0.1, 0.2, 0.3):
 
+    def plain(shade):
         @image
-        def plain(frame: Frame) -> vec4:
+        def picture(frame: Frame) -> vec4:
             return vec4(shade)
 
-        lowered = executor._lower(plain, None)
+        return picture
+
+    for shade in (0.1, 0.2, 0.3):
+        lowered = executor._lower(plain(shade), None)
         executor._kernel(lowered, "reference", 32)
     assert len(executor._kernels) == 2
     assert (lowered.digest, "reference", 32) in executor._kernels
