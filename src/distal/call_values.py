@@ -61,8 +61,10 @@ def bind(header: Header, args: Sequence[Any], kwargs: Mapping[str, Any]) -> list
     return [given.get(s.name, s.default) for s in slots]
 
 
-def choose_types(header: Header, values: Sequence[Any]) -> tuple[Type, ...] | None:
-    """The parameter types under which every value fits, or None.
+def choose_types(
+    header: Header, values: Sequence[Any], dtype: np.dtype[Any]
+) -> tuple[tuple[Type, ...], list[Any]] | None:
+    """The parameter types under which every value fits and the values as ``lanes``, or None.
 
     A generic parameter tries its type variable's types in order.
     """
@@ -77,18 +79,18 @@ def choose_types(header: Header, values: Sequence[Any]) -> tuple[Type, ...] | No
             types = tuple(to_type(s.annotation, bindings) for s in header.slots)
         except (AnnotationError, UnboundVariableError):
             return None
-        if all(fits(v, t) for v, t in zip(values, types, strict=True)):
-            return types
+        rows = rows_of(values, types, dtype)
+        if rows is not None:
+            return types, rows
     return None
 
 
-def fits(value: Any, type: Type) -> bool:
-    """Whether a value, or an array of such values, is of the type."""
+def rows_of(values: Sequence[Any], types: Sequence[Type], dtype: np.dtype[Any]) -> list[Any] | None:
+    """The values as ``lanes``; None where one, or an array of such, is not of its type."""
     try:
-        lanes(value, type, np.dtype(np.float32))
+        return [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
     except (TypeError, ValueError, OverflowError):
-        return False
-    return True
+        return None
 
 
 def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:

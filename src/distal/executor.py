@@ -23,10 +23,9 @@ from distal.call_values import (
     choose_types,
     count,
     empty,
-    fits,
     is_double,
     is_many,
-    lanes,
+    rows_of,
     single,
     with_names,
 )
@@ -149,21 +148,19 @@ class PythonExecutor:
         self, function: Func | LangFunction, args: Sequence[Any], kwargs: Mapping[str, Any]
     ) -> Any:
         """The function's value for numbers, vectors, or arrays with one row for each point."""
-        types, values = _arguments(function, args, kwargs)
         double = any(map(is_double, [*args, *kwargs.values()]))
         dtype = np.dtype(np.float64 if double else np.float32)
-        rows = [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
+        types, values, rows = _arguments(function, args, kwargs, dtype)
         many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
         points = count(rows)
         lowered = self._lower(function, types)
         module = lowered.module
-        kernel = self._kernel(lowered, "cpu", 64 if double else 32)
-        uniforms = parameter_values(module, {})
-        resources = {r.name: r.source for r in module.resources}
         result_type = module.function(module.entry).result
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
-        result = kernel.evaluate(rows, uniforms, resources)
+        kernel = self._kernel(lowered, "cpu", 64 if double else 32)
+        resources = {r.name: r.source for r in module.resources}
+        result = kernel.evaluate(rows, parameter_values(module, {}), resources)
         return with_names(result, result_type) if many else single(result, result_type)
 
     def _lower(self, function: Func | LangFunction, types: Types) -> Lowered:
@@ -217,16 +214,20 @@ def parameter_values(module: Module, params: Mapping[str, Any]) -> dict[str, Any
 
 
 def _arguments(
-    function: Func | LangFunction, args: Sequence[Any], kwargs: Mapping[str, Any]
-) -> tuple[tuple[Type, ...], list[Any]]:
-    """The types of the overload that takes the arguments, and the arguments in its order."""
+    function: Func | LangFunction,
+    args: Sequence[Any],
+    kwargs: Mapping[str, Any],
+    dtype: np.dtype[Any],
+) -> tuple[tuple[Type, ...], list[Any], list[Any]]:
+    """The types of the overload that takes the arguments; these in its order, also as rows."""
     if isinstance(function, LangFunction):
         if kwargs:
             raise TypeError(f"{function.row.name}() takes no keyword arguments")
         for signature in function.row.signatures:
             for types, _ in signature.instances():
-                if len(types) == len(args) and all(map(fits, args, types)):
-                    return types, list(args)
+                rows = rows_of(args, types, dtype) if len(types) == len(args) else None
+                if rows is not None:
+                    return types, list(args), rows
     else:
         mistake: TypeError | None = None
         for overload in function.overloads:
@@ -238,9 +239,10 @@ def _arguments(
             except TypeError as error:
                 mistake = error
                 continue
-            types_found = choose_types(header, values)
-            if types_found is not None:
-                return types_found, values
+            found = choose_types(header, values, dtype)
+            if found is not None:
+                types, rows = found
+                return types, values, rows
         if mistake is not None and len(function.overloads) == 1:
             raise mistake
     given = ", ".join(map(_described, [*args, *kwargs.values()]))

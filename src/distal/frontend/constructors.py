@@ -29,8 +29,6 @@ from distal.ir.types import (
     vector_of,
 )
 
-Keywords = Sequence[ast.keyword]
-
 
 def construct(body: Body, type: Type, args: Sequence[Value], node: ast.Call) -> Value:
     """A scalar, vector or matrix made from ``args``."""

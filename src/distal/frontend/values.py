@@ -8,7 +8,6 @@ function, type or module is there at compile time only.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -67,7 +66,6 @@ class Closure:
 
 
 Value: TypeAlias = "Expr | Whole | Display | Static | Closure"
-Binder: TypeAlias = Callable[[str, Expr], Expr]
 
 
 def describe(value: Value) -> str:

@@ -84,11 +84,6 @@ def print_module(module: Module) -> str:
     return "\n".join(lines) + "\n"
 
 
-def print_function(function: Function) -> str:
-    """Write one function."""
-    return "\n".join(_function_lines(function)) + "\n"
-
-
 def print_expression(e: Expr) -> str:
     """Write one expression on a line; shared parts before it, each on its own."""
     writer = _Writer()

@@ -26,7 +26,6 @@ class Target:
         unsigned: Has 32-bit unsigned integers and bit operations.
         dynamic_loops: Has while and loops whose bounds are not constant.
         dynamic_index: Indexes arrays and vectors by any expression.
-        structs_select: May pick structs and arrays by a conditional expression.
         integer_floor: Has floored // and % of ints with x // 0 = x (else the prelude's).
         saturating_cast: Its float to int conversion saturates and gives 0 for NaN.
         texel_fetch: Reads single texels and sizes.
@@ -41,7 +40,6 @@ class Target:
     unsigned: bool = True
     dynamic_loops: bool = True
     dynamic_index: bool = True
-    structs_select: bool = True
     integer_floor: bool = False
     saturating_cast: bool = False
     texel_fetch: bool = True

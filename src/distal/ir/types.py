@@ -156,14 +156,6 @@ FRAME: Final = Struct(
     False,
 )
 
-NAMED_TYPES: Final[dict[str, Type]] = {
-    str(t): t
-    for t in (
-        *(FLOAT, INT, UINT, BOOL, VEC2, VEC3, VEC4, IVEC2, IVEC3, IVEC4),
-        *(UVEC2, UVEC3, UVEC4, BVEC2, BVEC3, BVEC4, MAT2, MAT3, MAT4),
-    )
-}
-
 
 def tuple_type(items: tuple[Type, ...]) -> Struct:
     """The struct that carries a returned tuple; its name tells its items' types."""
