@@ -270,3 +270,14 @@ def root_of(target: Expr) -> Read:
         assert isinstance(target, Swizzle | Index | Field)
         target = target.base
     return target
+
+
+def map_indices(target: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """An Assign's target with its indices mapped: the Var itself is written, not computed."""
+    match target:
+        case Index(base, index):
+            return rebuild(target, (map_indices(base, change), change(index)))
+        case Swizzle(base) | Field(base):
+            return rebuild(target, (map_indices(base, change),))
+        case _:
+            return target

@@ -20,12 +20,10 @@ from distal.ir.nodes import (
     Const,
     Continue,
     Expr,
-    Field,
     For,
     Function,
     FunctionRef,
     If,
-    Index,
     Let,
     PerFrame,
     Read,
@@ -39,7 +37,15 @@ from distal.ir.nodes import (
     While,
 )
 from distal.ir.types import BOOL, Scalar, Vector
-from distal.ir.walk import children, expressions_in, nodes_in, rebuild, root_of, statements_in
+from distal.ir.walk import (
+    children,
+    expressions_in,
+    map_indices,
+    nodes_in,
+    rebuild,
+    root_of,
+    statements_in,
+)
 from distal.passes.arithmetic import Arithmetic
 from distal.passes.cost import rounds
 from distal.passes.fold import never_goes_on
@@ -171,7 +177,7 @@ class FlowWalk:
                 return Var(name, changed, span=span)
             case Assign(target, value):
                 changed, form = self._expr(value), self._form(value)
-                where = self._target(target)
+                where = map_indices(target, self._expr)
                 self._set(root_of(target).name, self._after(target, form))
                 return Assign(where, changed, span=span)
             case Return(value):
@@ -189,15 +195,6 @@ class FlowWalk:
                 return While(condition, self._loop(stmt, body), span=span)
             case Break() | Continue():
                 return stmt
-
-    def _target(self, target: Expr) -> Expr:
-        match target:
-            case Index(base, index):
-                return rebuild(target, (self._target(base), self._expr(index)))
-            case Swizzle(base) | Field(base):
-                return rebuild(target, (self._target(base),))
-            case _:
-                return target
 
     def _after(self, target: Expr, value: Expr | None) -> Expr | None:
         """The form of the Var that an assignment changed."""

@@ -13,7 +13,7 @@ author stay: a shared value that the author named keeps that name, others are ca
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -34,7 +34,7 @@ from distal.ir.nodes import (
     Swizzle,
 )
 from distal.ir.types import is_static
-from distal.ir.walk import children, expressions, map_statement, nodes_in, rebuild
+from distal.ir.walk import children, expressions, map_indices, map_statement, nodes_in, rebuild
 from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs, node_cost
 from distal.passes.naming import Names, local_names, module_names
@@ -234,7 +234,7 @@ class _Sharing:
             return plain(self._rewritten(e, site))
 
         if isinstance(stmt, Assign):
-            return Assign(_with_indices(stmt.target, expr), expr(stmt.value), span=stmt.span)
+            return Assign(map_indices(stmt.target, expr), expr(stmt.value), span=stmt.span)
         return map_statement(stmt, expr, lambda _: self._block(next(blocks)))
 
     def _rewritten(self, root: Expr, site: Site, is_bound_here: bool = False) -> Expr:
@@ -271,17 +271,6 @@ def _computed(stmt: Stmt) -> tuple[Expr, ...]:
             found.append(target.index)
         target = target.base
     return (*found, stmt.value)
-
-
-def _with_indices(target: Expr, change: Callable[[Expr], Expr]) -> Expr:
-    """An Assign's target with its indices changed."""
-    match target:
-        case Index(base, index):
-            return rebuild(target, (_with_indices(base, change), change(index)))
-        case Swizzle(base) | Field(base):
-            return rebuild(target, (_with_indices(base, change),))
-        case _:
-            return target
 
 
 def _operands(e: Expr) -> list[tuple[Expr, bool]]:

@@ -17,20 +17,17 @@ from distal.ir.nodes import (
     Break,
     Continue,
     Expr,
-    Field,
     For,
     Function,
     If,
-    Index,
     Let,
     Read,
     Return,
     Stmt,
-    Swizzle,
     Var,
     While,
 )
-from distal.ir.walk import children, nodes_in, rebuild, root_of, statements_in
+from distal.ir.walk import children, map_indices, nodes_in, rebuild, root_of, statements_in
 from distal.passes.places import Place
 
 MARK = "#"  # in no name of a module
@@ -72,16 +69,6 @@ class Versions:
                 memo[e] = rebuild(e, tuple([memo[c] for c in children(e)]))
         return memo[root]
 
-    def _target(self, target: Expr) -> Expr:
-        """Only what is computed for a target is numbered, not the Var itself."""
-        match target:
-            case Index(base, index):
-                return rebuild(target, (self._target(base), self._expr(index)))
-            case Swizzle(base) | Field(base):
-                return rebuild(target, (self._target(base),))
-            case _:
-                return target
-
     def _fill(self, place: Place, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
         """Number a block, its statements going into ``place``."""
         outer, self._place = self._place, place
@@ -107,7 +94,7 @@ class Versions:
                 self._fresh((name,))
                 return Var(name, value, span=span)
             case Assign(target, value):
-                value, where = self._expr(value), self._target(target)
+                value, where = self._expr(value), map_indices(target, self._expr)
                 self._fresh((root_of(target).name,))
                 return Assign(where, value, span=span)
             case Return(value):
