@@ -16,6 +16,7 @@ from distal.ir.nodes import Module
 from distal.ir.printer import print_module
 from distal.ir.target import Target
 from distal.ir.verify import verify
+from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.passes.context import Context
 from distal.passes.pipeline import PASS_NAMES, PIPELINE
@@ -58,8 +59,8 @@ def _run_passes(module: Module, target: Target, precision: int, after: str | Non
     return module
 
 
-def compile(obj: Func, target: str = "glsl-es300", after: str | None = None) -> Artifact:
-    """Compile an ``@image`` or ``@func`` to the text of a target.
+def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None = None) -> Artifact:
+    """Compile a scene, an ``@image`` or a ``@func`` to the text of a target.
 
     Args:
         obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point.
@@ -71,8 +72,8 @@ def compile(obj: Func, target: str = "glsl-es300", after: str | None = None) -> 
         ValueError: There is no such target or pass.
         TypeError: It is neither.
     """
-    if not isinstance(obj, Func):
-        raise TypeError(f"only an @image or a @func can be compiled, not {type(obj).__name__}")
+    if not isinstance(obj, Func | Composed):
+        raise TypeError(f"only a scene, an @image or a @func can be compiled, not {type(obj).__name__}")
     if after is not None and after not in ("lower", *PASS_NAMES):
         raise ValueError(f"there is no pass '{after}'; passes: lower, {', '.join(PASS_NAMES)}")
     if after is not None and target != IR_TARGET:

@@ -40,6 +40,7 @@ from distal.ir.types import (
     kind_of,
     tuple_type,
 )
+from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.names import (
     LangForm,
@@ -76,7 +77,7 @@ def lower_call(body: Body, node: ast.Call) -> Value:
             raise body.problem(f"{shown_type(called)} is not a function", node.func)
         case _:
             if isinstance(called.type, FunctionType):
-                return _apply(body, called, called.type, node)
+                return _apply(body, called, node)
             raise body.problem(f"{called.type} is not a function", node.func)
 
 
@@ -91,6 +92,8 @@ def arguments(body: Body, node: ast.Call) -> list[Value]:
 def _static_call(body: Body, obj: Any, text: str, node: ast.Call) -> Value:
     if isinstance(obj, Func):
         return body.program.call(body, obj, arguments(body, node), node)
+    if isinstance(obj, Composed):
+        return _apply(body, body.program.composed(obj).reference(), node, text)
     row = obj.row if isinstance(obj, LangFunction) else _python_row(obj)
     if row is not None:
         args = arguments(body, node)
@@ -161,9 +164,11 @@ def _not_scene_code(body: Body, obj: Any, text: str, node: ast.Call) -> SceneErr
     return body.problem(f"'{text}' is not a function of scene code", node.func, hint)
 
 
-def _apply(body: Body, function: Expr, type: FunctionType, node: ast.Call) -> Expr:
-    """Call a parameter that is a function."""
-    name = ast.unparse(node.func)
+def _apply(body: Body, function: Expr, node: ast.Call, name: str | None = None) -> Expr:
+    """Call a function value: a parameter, or what an object stands for."""
+    type = function.type
+    assert isinstance(type, FunctionType)
+    name = name or ast.unparse(node.func)
     args = _exactly(body, name, len(type.params), node)
     fitted = tuple(
         fit_or_refuse(body, a, t, at, f"argument {i} of '{name}'")

@@ -11,6 +11,8 @@ from enum import Enum
 from types import CodeType, ModuleType
 from typing import Any, Final
 
+from distal.lang.composed import Composed
+from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Overload
 from distal.lang.names import LangForm, LangFunction
 from distal.lang.parameters import Parameter
@@ -26,7 +28,8 @@ _MISSING: Final = _Missing()
 # What never changes, so that being the same object is enough.
 _UNCHANGING: Final = (
     *(bool, int, float, str, bytes, type(None), type, Enum, _Missing),
-    *(VectorValue, MatrixValue, Parameter, LangFunction, LangForm, Buffer, TextureValue),
+    *(VectorValue, MatrixValue, Parameter, Expression, Composed),
+    *(LangFunction, LangForm, Buffer, TextureValue),
 )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from distal.frontend.body import Variable
-from distal.ir.types import Type
+from distal.ir.nodes import FunctionRef
+from distal.ir.types import FunctionType, Type
 
 
 @dataclass(eq=False, slots=True)
@@ -25,3 +26,8 @@ class Instance:
     params: tuple[Type, ...]
     result: Type | None = None
     captures: tuple[Variable, ...] = ()
+
+    def reference(self) -> FunctionRef:
+        """The function as a value."""
+        assert self.result is not None
+        return FunctionRef(self.name, (), FunctionType(self.params, self.result))

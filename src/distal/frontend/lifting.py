@@ -34,6 +34,7 @@ from distal.ir.nodes import (
     Return,
 )
 from distal.ir.types import FunctionType, Type
+from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.names import LangFunction
 
@@ -54,6 +55,9 @@ def function_value(
             return _func_value(program, body, function, type, node)
         case Static(LangFunction(row)):
             return _row_value(program, row, type)
+        case Static(Composed() as obj):
+            found = program.composed(obj).reference()
+            return found if found.type is type else None
         case _:
             return None
 

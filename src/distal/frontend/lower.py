@@ -3,32 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 from distal.diagnostics import CompileError, Diagnostic
-from distal.frontend.annotations import AnnotationError, UnboundVariableError, admits, to_type
+from distal.frontend.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.calling import instantiate
+from distal.frontend.exact import exact_bindings, exact_instance
 from distal.frontend.freshness import Captured
-from distal.frontend.headers import MISSING, Header
-from distal.frontend.instances import Instance
+from distal.frontend.headers import MISSING
 from distal.frontend.lifting import lower_row
-from distal.frontend.matching import signature_of
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.program import Program
 from distal.frontend.rows import exact_instances
 from distal.ir.nodes import EntryKind, Function, Module
 from distal.ir.types import FRAME, VEC3, VEC4, FunctionType, Type, is_static
+from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
 
 R = TypeVar("R")
 
+# What can be lowered.
+SceneCode: TypeAlias = Func | Composed | LangFunction
 
-def lower(obj: Func | Image | LangFunction, arg_types: tuple[Type, ...] | None = None) -> Module:
+
+def lower(obj: SceneCode, arg_types: tuple[Type, ...] | None = None) -> Module:
     """Lower an image, or a function for the types of its arguments.
 
     Args:
-        obj: What ``@image`` or ``@func`` made, or a built-in.
+        obj: What ``@image`` or ``@func`` made, a shape, a scene, or a built-in.
         arg_types: Picks the overload and binds type variables; may be left out where the
             function's annotations say it all.
 
@@ -39,7 +42,7 @@ def lower(obj: Func | Image | LangFunction, arg_types: tuple[Type, ...] | None =
 
 
 def lower_captured(
-    obj: Func | LangFunction, arg_types: tuple[Type, ...] | None = None
+    obj: SceneCode, arg_types: tuple[Type, ...] | None = None
 ) -> tuple[Module, Captured]:
     """As ``lower``; also tells whether the module still stands for the function later on."""
     program = Program()
@@ -47,11 +50,11 @@ def lower_captured(
     return module, Captured(program.overloads())
 
 
-def _lower(
-    program: Program, obj: Func | LangFunction, arg_types: tuple[Type, ...] | None
-) -> Module:
+def _lower(program: Program, obj: SceneCode, arg_types: tuple[Type, ...] | None) -> Module:
     if isinstance(obj, LangFunction):
         return _lower_builtin(program, obj, arg_types)
+    if isinstance(obj, Composed):
+        return _guarded(program, obj.name, lambda: program.finish(program.composed(obj), obj.kind))
     if isinstance(obj, Image):
         return _guarded(program, obj.name, lambda: _lower_image(program, obj))
     return _guarded(program, obj.name, lambda: _lower_func(program, obj, arg_types))
@@ -68,7 +71,7 @@ def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tu
         if isinstance(func, LangFunction):
             lower_row(program, func.row, arg_types)
         else:
-            _instance(program, func, arg_types)
+            exact_instance(program, func, arg_types)
         error = program.error()
         if error is not None:
             raise error
@@ -82,7 +85,7 @@ def has_overload(func: Func, arg_types: tuple[Type, ...]) -> bool:
     """Whether a function has an overload for exactly these argument types."""
     program = Program()
     headers = [program.header(o) for o in func.overloads]
-    return any(_exact_bindings(program, h, arg_types) is not None for h in headers)
+    return any(exact_bindings(program, h, arg_types) is not None for h in headers)
 
 
 def _guarded(program: Program, name: str, work: Callable[[], R]) -> R:
@@ -147,7 +150,7 @@ def _lower_func(program: Program, func: Func, types: tuple[Type, ...] | None) ->
             what = "a function" if isinstance(type, FunctionType) else f"a {type}"
             message = f"'{func.name}' takes {what}: only scene code can call it"
             raise SceneError(message, header.span)
-    return program.finish(_instance(program, func, types), EntryKind.FUNCTION)
+    return program.finish(exact_instance(program, func, types), EntryKind.FUNCTION)
 
 
 def _own_types(program: Program, func: Func) -> tuple[Type, ...]:
@@ -172,39 +175,3 @@ def _own_types(program: Program, func: Func) -> tuple[Type, ...]:
             program.report(Diagnostic(error.message, slot.span, error.hint))
             raise FollowupError from None
     return tuple(types)
-
-
-def _instance(program: Program, func: Func, types: tuple[Type, ...]) -> Instance:
-    """The overload whose parameters have exactly these types."""
-    headers = [program.header(o) for o in func.overloads]
-    for header in headers:
-        bindings = _exact_bindings(program, header, types)
-        if bindings is not None:
-            return instantiate(program, header, types, bindings, None)
-    given = ", ".join(map(str, types)) or "nothing"
-    hint = " or ".join(signature_of(h) for h in headers)
-    raise SceneError(f"'{func.name}' does not take {given}", headers[0].span, hint)
-
-
-def _exact_bindings(
-    program: Program, header: Header, types: tuple[Type, ...]
-) -> dict[TypeVar, Type] | None:
-    if len(header.slots) != len(types):
-        return None
-    bindings: dict[TypeVar, Type] = {}
-    for slot, type in zip(header.slots, types, strict=True):
-        if isinstance(slot.annotation, TypeVar) and (
-            not admits(slot.annotation, type) or bindings.setdefault(slot.annotation, type) != type
-        ):
-            return None
-    for slot, type in zip(header.slots, types, strict=True):
-        try:
-            if slot.annotation is not MISSING and (
-                program.adopt(to_type(slot.annotation, bindings)) is not type
-            ):
-                return None
-        except AnnotationError as error:
-            raise SceneError(error.message, slot.span, error.hint) from None
-        except UnboundVariableError:
-            return None
-    return bindings

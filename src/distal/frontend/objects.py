@@ -41,6 +41,7 @@ from distal.ir.types import (
     Vector,
     vector_of,
 )
+from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer as LangBuffer
@@ -64,6 +65,10 @@ class Declarations(Protocol):
         """The value of a parameter."""
         ...
 
+    def computed(self, expression: Expression) -> Expr:
+        """The value of an expression of parameters and time."""
+        ...
+
     def resource(self, resource: TextureValue | LangBuffer, name: str, type: Type) -> Expr:
         """A texture or buffer."""
         ...
@@ -83,6 +88,8 @@ def value_of(obj: Any, text: str, declarations: Declarations) -> Value:
             return lang_value(obj, text)
         case Parameter():
             return declarations.uniform(obj)
+        case Expression():
+            return declarations.computed(obj)
         case TextureValue():
             return declarations.resource(obj, text, obj.__distal_type__)
         case LangBuffer():

@@ -13,6 +13,7 @@ from typing import Any
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend import calling, lifting
 from distal.frontend.annotations import AnnotationError, UnboundVariableError, to_type
+from distal.frontend.assembly import Assembly
 from distal.frontend.body import Body
 from distal.frontend.expressions import lower_expression
 from distal.frontend.headers import Header, read_header
@@ -32,6 +33,8 @@ from distal.ir.nodes import (
     UniformDeclaration,
 )
 from distal.ir.types import Array, FunctionType, Struct, Type
+from distal.lang.composed import Composed
+from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Overload
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer as LangBuffer
@@ -50,6 +53,8 @@ class Program:
         self._headers: dict[Overload, Header] = {}
         self._names: set[str] = set()
         self._uniforms: dict[str, tuple[Parameter, UniformDeclaration]] = {}
+        self._numbers: dict[str, UniformDeclaration] = {}
+        self.assembly = Assembly(self)
         self._resources: dict[int, ResourceDeclaration] = {}
         self._structs: dict[str, list[Struct]] = {}
 
@@ -173,6 +178,24 @@ class Program:
             self._uniforms[name] = (parameter, declaration)
         return Uniform(name, parameter.type)
 
+    def computed(self, expression: Expression) -> Expr:
+        """The value of an expression of parameters and time."""
+        for parameter in expression.parameters:
+            self.uniform(parameter)
+        return expression.node
+
+    def number(self, wish: str, type: Type, value: Any) -> Expr:
+        """A number of the scene: a uniform with this value.
+
+        Its name has a capital letter, which no parameter's name has.
+        """
+        first = f"{wish[:1].upper()}{wish[1:]}"
+        name, n = first, 2
+        while name in self._numbers:
+            name, n = f"{first}_{n}", n + 1
+        self._numbers[name] = UniformDeclaration(name, type, Origin.NUMBER, value)
+        return Uniform(name, type)
+
     def resource(self, resource: TextureValue | LangBuffer, name: str, type: Type) -> Expr:
         """A texture or buffer, under the first name it was met by."""
         known = self._resources.get(id(resource))
@@ -194,7 +217,8 @@ class Program:
         if error is not None:
             raise error
         assert any(f.name == entry.name for f in self.functions), f"{entry.name} was lost"
-        uniforms = tuple(declaration for _, declaration in self._uniforms.values())
+        parameters = (declaration for _, declaration in self._uniforms.values())
+        uniforms = (*parameters, *self._numbers.values())
         resources = tuple(self._resources.values())
         return Module(tuple(self.functions), entry.name, kind, uniforms, resources)
 
@@ -215,6 +239,18 @@ class Program:
     ) -> Expr | None:
         """A function as a value of a FunctionType."""
         return lifting.function_value(self, body, value, type, node)
+
+    def composed(self, obj: Composed) -> Instance:
+        """The function that an object makes itself, made now if it was not yet."""
+        known = self.instances.get(obj)
+        if known is None:
+            types = tuple(type for _, type in obj.signature)
+            known = self.instances[obj] = Instance("", obj.name, types)
+            known.name = obj.compose(self.assembly)
+            known.result = next(f.result for f in self.functions if f.name == known.name)
+        elif not known.name:
+            raise CompileError.at(f"'{obj.name}' is part of itself", None, "write a loop")
+        return known
 
     def check_recursion(self, instance: Instance, span: Span) -> None:
         """Refuse a call of a function that is being lowered right now."""
