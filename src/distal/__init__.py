@@ -9,7 +9,11 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from distal.executor_hook import set_calculator_loader, set_executor_loader
+from distal.executor_hook import (
+    set_calculator_loader,
+    set_combiner_loader,
+    set_executor_loader,
+)
 from distal.version import __version__
 
 if TYPE_CHECKING:
@@ -49,8 +53,13 @@ def _calculator() -> Any:
     return importlib.import_module("distal.constant_values").compute
 
 
+def _combiner() -> Any:
+    return importlib.import_module("distal.frontend.python_expressions").combine
+
+
 set_executor_loader(_executor)
 set_calculator_loader(_calculator)
+set_combiner_loader(_combiner)
 
 
 def __getattr__(name: str) -> Any:

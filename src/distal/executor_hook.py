@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
     from distal.ir.intrinsics import Intrinsic
+    from distal.lang.expressions import Expression
     from distal.lang.functions import Func, Image
     from distal.lang.names import LangFunction
     from distal.lang.parameters import Parameter
@@ -20,24 +21,36 @@ class Executor(Protocol):
     """Runs scene code for Python."""
 
     def call(
-        self, function: Func | LangFunction, args: tuple[Any, ...], kwargs: Mapping[str, Any]
+        self,
+        function: Func | Composed | LangFunction,
+        args: tuple[Any, ...],
+        kwargs: Mapping[str, Any],
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
     ) -> Any:
         """The function's value for numbers, vectors or arrays of points."""
         ...
 
-    def render(self, image: Image, **options: Any) -> Any:
-        """The picture of an image; the options are those of ``Image.render``."""
+    def render(self, image: Image | Composed, **options: Any) -> Any:
+        """The picture of an image or a scene; the options are those of ``Image.render``."""
         ...
 
-    def parameters(self, function: Func) -> list[Parameter]:
+    def parameters(self, function: Func | Composed) -> list[Parameter]:
         """The parameters that the function and what it calls read, by first use."""
         ...
 
+    def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
+        """The value of an expression of parameters and time."""
+        ...
 
+
+# An operator or built-in by name, and its operands; None where one is no value of scene code.
+Combiner: TypeAlias = "Callable[[str, Sequence[Any]], Expression | None]"
 # The value of a built-in of plain numbers and vectors, without a device; None where unknown.
 Calculator: TypeAlias = "Callable[[Intrinsic, Sequence[Any]], Any | None]"
 
 _calculator: Callable[[], Calculator] | None = None
+_combiner: Callable[[], Combiner] | None = None
 _loader: Callable[[], Executor] | None = None
 _executor: Executor | None = None
 
@@ -52,6 +65,19 @@ def set_calculator_loader(loader: Callable[[], Calculator]) -> None:
     """Say where built-ins of constants are computed."""
     global _calculator
     _calculator = loader
+
+
+def set_combiner_loader(loader: Callable[[], Combiner]) -> None:
+    """Say who knows the rules of operators between expressions."""
+    global _combiner
+    _combiner = loader
+
+
+def combined(operation: str, operands: Sequence[Any]) -> Expression | None:
+    """The expression that an operation makes of its operands, or None where it takes no such."""
+    if _combiner is None:
+        raise RuntimeError("nothing here combines expressions: no front end was set")
+    return _combiner()(operation, operands)
 
 
 def calculated(row: Intrinsic, args: Sequence[Any]) -> Any | None:

@@ -508,6 +508,7 @@ class Origin(Enum):
 
     FRAME = "frame"  # resolution, time, mouse, index, seed
     PARAMETER = "parameter"  # a slider or the like
+    NUMBER = "number"  # a number of a scene's shapes: its default, which is no part of the code
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from typing import Any
 
 from distal.executor_hook import calculated, executor
 from distal.ir.intrinsics import Intrinsic
+from distal.lang.expressions import composed_value, is_symbolic
 from distal.lang.values import MatrixValue, VectorValue
 
 
@@ -29,10 +30,14 @@ class LangFunction:
         return self.row.doc
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """The value for numbers, vectors or arrays.
+        """The value for numbers, vectors or arrays; of expressions, an expression.
 
         ``round(x, 2)``, ``max(numbers, key=…)`` and the like in a scene's module mean Python's own.
         """
+        if any(map(is_symbolic, args)):
+            if kwargs:
+                raise TypeError(f"{self.row.name}() takes no keyword arguments")
+            return composed_value(self.row.name, args)
         python = getattr(builtins, self.row.name, None)
         if python is not None and (kwargs or _means_python(args)):
             return python(*args, **kwargs)

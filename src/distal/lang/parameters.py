@@ -17,6 +17,7 @@ from enum import Enum
 from typing import assert_never
 
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Type
+from distal.lang.expressions import Expression, Symbolic, uniform_of
 from distal.lang.parameter_values import (
     TOGGLE_WORDS,
     Value,
@@ -44,8 +45,8 @@ class ParameterKind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
-    """One adjustable value of a scene.
+class Parameter(Symbolic):
+    """One adjustable value of a scene. Operators and built-ins of it make an ``Expression``.
 
     Attributes:
         name: Identifier made from the label: the uniform's name and what ``--set`` takes.
@@ -73,6 +74,10 @@ class Parameter:
     group: str = ""
     help: str = ""
     options: tuple[str, ...] = ()
+
+    def as_expression(self) -> Expression:
+        """Its value as an expression."""
+        return uniform_of(self)
 
     @property
     def interface(self) -> tuple[tuple[str, object], ...]:

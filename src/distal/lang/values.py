@@ -20,6 +20,7 @@ from distal.ir.types import (
     Vector,
     vector_of,
 )
+from distal.lang.expressions import Symbolic, composed_value, is_symbolic
 
 _LETTERS = {c: i for letters in ("xyzw", "rgba") for i, c in enumerate(letters)}
 
@@ -43,6 +44,8 @@ _CONVERT: dict[Kind, Callable[[Any], Any]] = {
 
 
 def _is_number(value: object) -> bool:
+    if isinstance(value, Symbolic):
+        return False
     return isinstance(value, int | float) or hasattr(value, "__float__")
 
 
@@ -53,6 +56,12 @@ class VectorValue:
 
     __distal_type__: ClassVar[Type]
     _components: tuple[Any, ...]
+
+    def __new__(cls, *parts: Any) -> Any:
+        """An expression, where one of the parts is one."""
+        if any(map(is_symbolic, parts)):
+            return composed_value(str(cls.__distal_type__), parts)
+        return super().__new__(cls)
 
     def __init__(self, *parts: Any) -> None:
         type = self._vector()
@@ -171,6 +180,12 @@ class MatrixValue:
 
     __distal_type__: ClassVar[Type]
     columns: tuple[VectorValue, ...]
+
+    def __new__(cls, *parts: Any) -> Any:
+        """An expression, where one of the parts is one."""
+        if any(map(is_symbolic, parts)):
+            return composed_value(str(cls.__distal_type__), parts)
+        return super().__new__(cls)
 
     def __init__(self, *parts: Any) -> None:
         size = self._size()
