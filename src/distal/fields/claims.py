@@ -135,16 +135,23 @@ class Operator:
     * ``around(field, p, …) -> float``: asks the child at several points. ``site(field, p, …)``
       gives the place (vec3 or ``Site``) whose material shows at p.
 
+    All of these may also ask for what the rules ask for, by the same names: the ``bounds`` and the
+    ``slope`` of the child (``bounds_a``, ``slope_b`` …), computed once per frame.
+
     Attributes:
         name: What messages call it: "twist".
         keeps: The claims that survive when all children have them. The others are lost (a slope of
             at most 1 makes a lower bound anyway, whoever claims it).
+        keeps_exact: The claims that hold, besides those, when all children are exact inside and
+            outside: a difference is exact inside only if what it takes away is exact outside.
         slope: None where the slope stays (of two: the larger); a number multiplies it; a function
             of ``slope`` (``slope_a``, ``slope_b``), ``bounds`` and numbers gives it.
         bounds: None where the box stays (of two: the box around both); else a function of
             ``bounds`` (``bounds_a``, ``bounds_b``) and numbers; ``no_bounds`` for no box.
         limits: As for a primitive.
         requires: As for a primitive.
+        needs: What the children must be for a slope to exist; finishes the sentence "twist needs
+            …", said when the slope's rule answers ``UNBOUNDED``.
     """
 
     name: str
@@ -159,6 +166,8 @@ class Operator:
     bounds: Func | None = None
     limits: Mapping[str, Limit] = field(default_factory=dict)
     requires: Requirement | None = None
+    keeps_exact: frozenset[Claim] = NOTHING
+    needs: str = "shapes with a bounded slope"
 
 
 PRIMITIVES: Final[dict[str, Primitive]] = {}
