@@ -39,26 +39,29 @@ from distal.lang.values import VALUE_CLASSES, MatrixValue, VectorValue
 _KINDS = {Kind.FLOAT: "fiub", Kind.INT: "iu", Kind.UINT: "iu", Kind.BOOL: "b"}
 
 
-def bind(header: Header, args: Sequence[Any], kwargs: Mapping[str, Any]) -> list[Any]:
+def bind(
+    function: str, defaults: Mapping[str, Any], args: Sequence[Any], kwargs: Mapping[str, Any]
+) -> list[Any]:
     """The value of each parameter, in order, defaults filled in.
+
+    ``defaults`` are by name, in order; ``MISSING`` where there is none.
 
     Raises:
         TypeError: The call does not fit the definition; worded as Python words it.
     """
-    slots = header.slots
-    if len(args) > len(slots):
-        raise TypeError(f"{header.name}() takes {len(slots)} arguments but {len(args)} were given")
-    given = dict(zip((s.name for s in slots), args, strict=False))
+    if len(args) > len(defaults):
+        raise TypeError(f"{function}() takes {len(defaults)} arguments but {len(args)} were given")
+    given = dict(zip(defaults, args, strict=False))
     for name, value in kwargs.items():
         if name in given:
-            raise TypeError(f"{header.name}() got multiple values for argument '{name}'")
-        if all(s.name != name for s in slots):
-            raise TypeError(f"{header.name}() got an unexpected keyword argument '{name}'")
+            raise TypeError(f"{function}() got multiple values for argument '{name}'")
+        if name not in defaults:
+            raise TypeError(f"{function}() got an unexpected keyword argument '{name}'")
         given[name] = value
-    missing = [s.name for s in slots if s.name not in given and s.default is MISSING]
+    missing = [n for n, default in defaults.items() if n not in given and default is MISSING]
     if missing:
-        raise TypeError(f"{header.name}() misses its arguments: {', '.join(missing)}")
-    return [given.get(s.name, s.default) for s in slots]
+        raise TypeError(f"{function}() misses its arguments: {', '.join(missing)}")
+    return [given.get(name, default) for name, default in defaults.items()]
 
 
 def choose_types(

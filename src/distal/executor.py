@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import importlib
-import math
-import operator
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from distal.call_values import (
     bind,
@@ -33,18 +32,28 @@ from distal.devices.base import Kernel
 from distal.film.picture import Picture, Provenance
 from distal.frontend import lower, lower_captured
 from distal.frontend.freshness import Captured
-from distal.frontend.headers import read_header
+from distal.frontend.headers import MISSING, read_header
 from distal.frontend.matching import signature_of
-from distal.ir.nodes import Module, Origin
-from distal.ir.printer import print_module
-from distal.ir.types import Type
+from distal.ir.nodes import Module, Origin, Return
+from distal.ir.printer import print_identity
+from distal.ir.types import VEC4, Type
+from distal.lang.composed import Composed
+from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
-from distal.lang.parameter_values import LARGEST_FLOAT
 from distal.lang.parameters import Parameter
-from distal.passes.entry import renamed_parameters
+from distal.passes.numbers import freeze as freeze_numbers
+from distal.uniform_values import (
+    LARGEST_SIDE_PX,
+    checked_size,
+    checked_time,
+    declared_parameters,
+    frame_values,
+    number_values,
+    parameter_values,
+    uniform_values,
+)
 
-LARGEST_SIDE_PX: Final = 16384
 KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
 DEVICES: Final = {"cpu": "distal.devices.cpu", "reference": "distal.devices.reference"}
 
@@ -58,7 +67,8 @@ class Lowered:
 
     Attributes:
         module: The IR.
-        digest: Hash of the printed IR: equal for functions that mean the same.
+        digest: Hash of the printed IR without numbers' values: equal for functions that mean the
+            same but for these.
         source_hash: Hash of the text of every file that its functions stand in.
         captured: Tells whether the module still stands for the function.
     """
@@ -69,85 +79,105 @@ class Lowered:
     captured: Captured
 
     @staticmethod
-    def of(function: Func | LangFunction, types: Types) -> Lowered:
+    def of(function: Func | Composed | LangFunction, types: Types) -> Lowered:
         """Lower a function for argument types."""
         module, captured = lower_captured(function, types)
         texts = sorted({"".join(o.source.lines) for o in captured.overloads})
-        return Lowered(module, _hash(print_module(module)), _hash("\0".join(texts)), captured)
+        return Lowered(module, _hash(print_identity(module)), _hash("\0".join(texts)), captured)
+
+    def frozen(self, numbers: Mapping[str, Any]) -> Lowered:
+        """The same with these values of a scene's numbers as constants."""
+        uniforms = tuple(
+            replace(u, default=numbers[u.name]) if u.origin is Origin.NUMBER else u
+            for u in self.module.uniforms
+        )
+        module = freeze_numbers(replace(self.module, uniforms=uniforms))
+        return replace(self, module=module, digest=_hash(print_identity(module)))
+
+    @property
+    def resources(self) -> dict[str, Any]:
+        """What the author declared of textures and buffers, by name."""
+        return {r.name: r.source for r in self.module.resources}
 
 
 class PythonExecutor:
     """Runs scene code for Python; keeps compiled kernels for the life of the process.
 
     A function is lowered again when a constant it captured has changed; a kernel is found by what
-    lowering gave.
+    lowering gave, so that scenes which differ in their numbers only share one.
     """
 
     def __init__(self) -> None:
         self._kernels: dict[tuple[str, str, int], Kernel] = {}
-        self._lowered: WeakKeyDictionary[Func, dict[Types, Lowered]] = WeakKeyDictionary()
+        self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
 
-    def parameters(self, function: Func) -> list[Parameter]:
+    def parameters(self, function: Func | Composed) -> list[Parameter]:
         """The parameters that a function and what it calls read, by first use."""
-        uniforms = self._lower(function, None).module.uniforms
-        return [u.source for u in uniforms if u.origin is Origin.PARAMETER]
+        return declared_parameters([part.module for part in self._parts(function)])
 
     def render(
         self,
-        image: Image,
+        image: Image | Composed,
         *,
         size: tuple[int, int],
-        time: float,
-        params: Mapping[str, Any] | None,
-        device: str,
-        threads: int | None,
-        progress: Callable[[float], Any] | None,
-        cancel: Any,
-        mouse: Sequence[float],
-        index: int,
-        seed: int,
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        device: str = "cpu",
+        threads: int | None = None,
+        progress: Callable[[float], Any] | None = None,
+        cancel: Any = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+        settings: Mapping[str, Any] | None = None,
+        freeze: bool = False,
     ) -> Picture:
-        """The picture of an image; see ``Image.render``."""
-        width, height = _checked_size(size)
-        seconds = _checked_time(time)
+        """The picture of an image; see ``Image.render`` for what is not said here.
+
+        ``settings`` are values of a scene's numbers by name, for this picture only. With ``freeze``
+        the numbers are constants of the kernel: for a picture that is worth its own compilation.
+        """
+        size, seconds = checked_size(size), checked_time(time)
         begin = _now()
-        lowered = self._lower(image, None)
-        module = lowered.module
-        values = parameter_values(module, params or {})
-        kernel = self._kernel(lowered, device, 32)
+        parts = self._parts(image)
+        modules = [part.module for part in parts]
+        values = parameter_values(modules, params or {})
+        numbers = number_values(modules, settings or {})
+        if freeze:
+            parts = [part.frozen(numbers) for part in parts]
+        kernels = [self._kernel(part, device, 32) for part in parts]
         compiled = _now()
-        frame = {
-            "resolution": (float(width), float(height)),
-            "time": seconds,
-            "mouse": _checked_mouse(mouse),
-            "index": (_checked_int("index", index) + 2**31) % 2**32 - 2**31,
-            "seed": _checked_int("seed", seed) & 0xFFFFFFFF,
-        }
-        renamed = renamed_parameters(module.uniforms)
-        pixels = kernel.render(
-            width,
-            height,
-            {**frame, **{renamed.get(name, name): value for name, value in values.items()}},
-            {r.name: r.source for r in module.resources},
+        others = {**numbers, **frame_values(size, seconds, mouse, index, seed)}
+        pixels = kernels[0].render(
+            *size,
+            uniform_values(modules[0], values, others),
+            parts[0].resources,
             threads=threads,
             progress=progress,
             cancel=cancel,
         )
-        stats = {
-            "device": device,
-            **kernel.stats,
-            "compile_s": compiled - begin,
-            "render_s": _now() - compiled,
-        }
+        stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
+        linear = None
+        if len(parts) > 1:
+            linear = pixels
+            uniforms = uniform_values(modules[1], values, others)
+            pixels = _displayed(kernels[1], linear, uniforms, parts[1].resources, threads, cancel)
+        stats["render_s"] = _now() - compiled
         origin = Provenance(
-            source=image.name, source_hash=lowered.source_hash, parameters=values, time=seconds
+            source=image.name, source_hash=parts[0].source_hash, parameters=values, time=seconds
         )
-        return Picture(pixels, origin, stats)
+        return Picture(pixels, origin, stats, linear)
 
     def call(
-        self, function: Func | LangFunction, args: Sequence[Any], kwargs: Mapping[str, Any]
+        self,
+        function: Func | Composed | LangFunction,
+        args: Sequence[Any],
+        kwargs: Mapping[str, Any],
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
     ) -> Any:
         """The function's value for numbers, vectors, or arrays with one row for each point."""
+        seconds = checked_time(time)
         double = any(map(is_double, [*args, *kwargs.values()]))
         dtype = np.dtype(np.float64 if double else np.float32)
         types, values, rows = _arguments(function, args, kwargs, dtype)
@@ -156,14 +186,27 @@ class PythonExecutor:
         lowered = self._lower(function, types)
         module = lowered.module
         result_type = module.function(module.entry).result
+        uniforms = _all_values(module, params or {}, seconds)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
         kernel = self._kernel(lowered, "cpu", 64 if double else 32)
-        resources = {r.name: r.source for r in module.resources}
-        result = kernel.evaluate(rows, parameter_values(module, {}), resources)
+        result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
 
-    def _lower(self, function: Func | LangFunction, types: Types) -> Lowered:
+    def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
+        """The value of an expression of parameters and time."""
+        lowered = Lowered.of(_ValueOf(expression), None)
+        uniforms = _all_values(lowered.module, params, checked_time(time))
+        result = self._kernel(lowered, "reference", 64).evaluate([], uniforms, {})
+        return single(result, expression.type)
+
+    def _parts(self, function: Func | Composed) -> list[Lowered]:
+        """What is run one after the other: the function, and what encodes its pixels."""
+        lowered = self._lower(function, None)
+        display = getattr(function, "display", None)
+        return [lowered] if display is None else [lowered, self._lower(display, (VEC4,))]
+
+    def _lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
         """The lowered function, remembered while what it captured is the same."""
         if isinstance(function, LangFunction):
             return Lowered.of(function, types)
@@ -191,30 +234,43 @@ def _hash(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
-def parameter_values(module: Module, params: Mapping[str, Any]) -> dict[str, Any]:
-    """The value of each parameter of a module: as given, checked, or its default.
+class _ValueOf(Composed):
+    """An expression as a function of nothing."""
 
-    Keys are parameters' names or labels.
+    def __init__(self, expression: Expression) -> None:
+        self._expression = expression
+        self.name, self.signature, self.result = "value", (), expression.type
 
-    Raises:
-        ValueError: A name is unknown, or a value outside its range.
-        TypeError: A value is of another kind.
-    """
-    if not isinstance(params, Mapping):
-        raise TypeError(f"params are values by name, not {type(params).__name__}")
-    declared = [u.source for u in module.uniforms if u.origin is Origin.PARAMETER]
-    by_name = {key: p for p in declared for key in (p.label, p.name)}
-    values = {p.name: p.default for p in declared}
-    for key, value in params.items():
-        if key not in by_name:
-            known = ", ".join(values) or "none"
-            raise ValueError(f"there is no parameter '{key}'; parameters: {known}")
-        values[by_name[key].name] = by_name[key].check(value)
-    return values
+    def compose(self, assembly: Any) -> str:
+        """The function whose result it is."""
+        value = assembly.expression(self._expression)
+        name: str = assembly.define("value", (), self.result, (Return(value),))
+        return name
+
+
+def _all_values(module: Module, params: Mapping[str, Any], seconds: float) -> dict[str, Any]:
+    """The uniforms of a function that is called from Python."""
+    others = {**number_values([module], {}), "time": seconds}
+    return uniform_values(module, parameter_values([module], params), others)
+
+
+def _displayed(
+    kernel: Kernel,
+    linear: NDArray[np.float32],
+    uniforms: Mapping[str, Any],
+    resources: Mapping[str, Any],
+    threads: int | None,
+    cancel: Any,
+) -> NDArray[np.float32]:
+    """Linear pixels encoded for display, each by itself."""
+    rows = linear.reshape(-1, 4)
+    encoded = kernel.evaluate([rows], uniforms, resources, threads=threads, cancel=cancel)
+    assert isinstance(encoded, np.ndarray)
+    return encoded.reshape(linear.shape)
 
 
 def _arguments(
-    function: Func | LangFunction,
+    function: Func | Composed | LangFunction,
     args: Sequence[Any],
     kwargs: Mapping[str, Any],
     dtype: np.dtype[Any],
@@ -228,6 +284,13 @@ def _arguments(
                 rows = rows_of(args, types, dtype) if len(types) == len(args) else None
                 if rows is not None:
                     return types, list(args), rows
+    elif isinstance(function, Composed):
+        types = tuple(type for _, type in function.signature)
+        names = dict.fromkeys((name for name, _ in function.signature), MISSING)
+        values = bind(function.name, names, args, kwargs)
+        rows = rows_of(values, types, dtype)
+        if rows is not None:
+            return types, values, rows
     else:
         mistake: TypeError | None = None
         for overload in function.overloads:
@@ -235,7 +298,8 @@ def _arguments(
             if header.problems:
                 lower(function)  # raises with the author's lines
             try:
-                values = bind(header, args, kwargs)
+                defaults = {slot.name: slot.default for slot in header.slots}
+                values = bind(header.name, defaults, args, kwargs)
             except TypeError as error:
                 mistake = error
                 continue
@@ -246,16 +310,23 @@ def _arguments(
         if mistake is not None and len(function.overloads) == 1:
             raise mistake
     given = ", ".join(map(_described, [*args, *kwargs.values()]))
-    raise TypeError(f"{function.__name__}() does not take ({given}); {_takes(function)}")
+    raise TypeError(f"{_name(function)}() does not take ({given}); {_takes(function)}")
 
 
-def _takes(function: Func | LangFunction) -> str:
+def _name(function: Func | Composed | LangFunction) -> str:
+    return function.row.name if isinstance(function, LangFunction) else function.name
+
+
+def _takes(function: Func | Composed | LangFunction) -> str:
     if isinstance(function, LangFunction):
         overloads = [
             f"({', '.join(map(str, types))})"
             for signature in function.row.signatures
             for types, _ in signature.instances()
         ]
+    elif isinstance(function, Composed):
+        params = ", ".join(f"{name}: {type}" for name, type in function.signature)
+        overloads = [f"({params}) -> {function.result}"]
     else:
         overloads = [signature_of(read_header(o)) for o in function.overloads]
     return f"it takes {' or '.join(overloads)}, or arrays with a row for each point"
@@ -271,47 +342,8 @@ def _described(value: Any) -> str:
     return repr(value) if isinstance(value, int | float | str) else type(value).__name__
 
 
-def _checked_size(size: Any) -> tuple[int, int]:
-    try:
-        width, height = map(operator.index, size)
-    except (TypeError, ValueError):
-        raise TypeError(f"size is (width, height) in pixels, not {size!r}") from None
-    if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
-        raise ValueError(f"each side has 1 to {LARGEST_SIDE_PX} pixels, not {width}x{height}")
-    return width, height
-
-
-def _checked_time(seconds: Any) -> float:
-    try:
-        value = float(seconds)
-    except (TypeError, ValueError):
-        raise TypeError(f"time is a number of seconds, not {seconds!r}") from None
-    except OverflowError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise ValueError(f"time is finite, not {value}")
-    if abs(value) > LARGEST_FLOAT:
-        raise ValueError(f"time fits 32 bits, {value} does not")
-    return value
-
-
-def _checked_mouse(mouse: Any) -> tuple[float, ...]:
-    try:
-        values = tuple(float(part) for part in mouse)
-    except (TypeError, ValueError):
-        values = ()
-    if len(values) != 4 or not all(map(math.isfinite, values)):
-        raise ValueError(f"mouse is four finite numbers, not {mouse!r}")
-    return values
-
-
-def _checked_int(name: str, value: Any) -> int:
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise TypeError(f"{name} is a whole number, not {value!r}") from None
-    return number
-
-
 def _now() -> float:
     return time.perf_counter()
+
+
+__all__ = ["LARGEST_SIDE_PX", "PythonExecutor"]

@@ -41,7 +41,7 @@ from distal.devices.jit import compile_object, compiler_fingerprint
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
 from distal.ir.nodes import Module
-from distal.ir.printer import print_module
+from distal.ir.printer import print_identity
 from distal.ir.target import Target
 from distal.ir.types import Buffer, Texture, Type
 from distal.version import __version__
@@ -101,7 +101,14 @@ def prepare(
 
 def _key(module: Module, level: Level, precision: int) -> str:
     """Names everything that machine code depends on, but not how the passes go about it."""
-    told = (print_module(module), __version__, _sources(), level, precision, compiler_fingerprint())
+    told = (
+        print_identity(module),
+        __version__,
+        _sources(),
+        level,
+        precision,
+        compiler_fingerprint(),
+    )
     return hashlib.sha256(repr(told).encode()).hexdigest()
 
 
@@ -153,6 +160,9 @@ class CpuKernel:
         self._precision = precision
         self._lanes = lanes
         self._image = interface["kind"] == "image"
+        self._uniforms = cpu_memory.UniformSlots(
+            interface["uniforms"], interface["uniform_slots"], precision
+        )
         self._main = executable.function(RENDER if self._image else BATCH)
         self._frame = executable.function(FRAME) if FRAME in executable else None
 
@@ -248,9 +258,7 @@ class _Job:
         self.words = np.zeros(len(JOB_FIELDS), np.int64)
         self.counter = np.zeros(1, np.int32)
         self.stop = np.zeros(1, np.int32)
-        self._uniforms = cpu_memory.pack_uniforms(
-            interface["uniforms"], interface["uniform_slots"], uniforms, precision
-        )
+        self._uniforms = kernel._uniforms.packed(uniforms)
         self._frame = np.zeros(max(1, interface["frame_slots"]), cpu_memory.float_type(precision))
         rows = interface["resources"]
         self._resources = np.zeros((max(1, len(rows)), RESOURCE_BYTES // 8), np.int64)

@@ -1,6 +1,7 @@
 """A finished picture.
 
-What flows in: pixels encoded for display, and where they came from. What flows out: an immutable
+What flows in: pixels encoded for display, the light they show where it is known, and where they
+came from. What flows out: an immutable
 ``Picture`` that saves itself and shows itself in a notebook. Knows nothing about how the pixels
 were made.
 """
@@ -52,22 +53,33 @@ class Picture:
             scene made them; saving clamps them, and makes NaN 0.
         provenance: Where the picture came from; it travels in the file's metadata.
         stats: What rendering took: times in seconds and how the work was done.
+        light: The same pixels before they were encoded, where the renderer has them.
     """
 
     array: NDArray[np.float32]
     provenance: Provenance = field(default_factory=Provenance)
     stats: Mapping[str, Any] = field(default_factory=dict)
+    light: NDArray[np.float32] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        shape = self.array.shape
-        if len(shape) != 3 or shape[2] != 4 or 0 in shape:
-            raise ValueError(f"a picture's array has the shape (height, width, 4), not {shape}")
-        if self.array.dtype != np.float32:
-            raise ValueError(f"a picture's array is of float32, not {self.array.dtype}")
-        view = self.array.view()
-        view.setflags(write=False)
-        object.__setattr__(self, "array", view)
+        object.__setattr__(self, "array", _checked(self.array))
+        if self.light is not None:
+            if self.light.shape != self.array.shape:
+                raise ValueError(f"light of shape {self.light.shape} for {self.array.shape}")
+            object.__setattr__(self, "light", _checked(self.light))
         object.__setattr__(self, "stats", MappingProxyType(dict(self.stats)))
+
+    @property
+    def linear(self) -> NDArray[np.float32]:
+        """Linear light: float32 (height, width, 4), straight alpha, top row first. Read-only.
+
+        What the scene's renderer computed, before exposure and tone mapping; of an ``@image``,
+        whose values are encoded already, these decoded (IEC 61966-2-1).
+        """
+        if self.light is None:
+            object.__setattr__(self, "light", _checked(_decoded(self.array)))
+        assert self.light is not None
+        return self.light
 
     @property
     def width(self) -> int:
@@ -113,6 +125,27 @@ class Picture:
     def __repr__(self) -> str:
         name = self.provenance.source
         return f"<Picture {self.width}x{self.height}{f' of {name}' if name else ''}>"
+
+
+def _checked(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The pixels, not to be written to."""
+    shape = pixels.shape
+    if len(shape) != 3 or shape[2] != 4 or 0 in shape:
+        raise ValueError(f"a picture's array has the shape (height, width, 4), not {shape}")
+    if pixels.dtype != np.float32:
+        raise ValueError(f"a picture's array is of float32, not {pixels.dtype}")
+    view = pixels.view()
+    view.setflags(write=False)
+    return view
+
+
+def _decoded(array: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Light from values encoded in sRGB; the straight part goes on below 0."""
+    color = array[..., :3]
+    curved = ((np.maximum(color, 0.0) + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4)
+    linear = array.copy()
+    linear[..., :3] = np.where(color > np.float32(0.04045), curved, color / np.float32(12.92))
+    return linear
 
 
 def check_savable(path: Path) -> None:

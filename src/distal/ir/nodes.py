@@ -17,11 +17,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, Final, TypeAlias
 
 from distal.diagnostics import Span
 from distal.ir.interning import Interned, discriminate_number
 from distal.ir.types import Type
+
+FRAME_TIME: Final = "frame.time"
 
 
 class UnaryOp(Enum):
@@ -103,7 +105,10 @@ class Read(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Uniform(metaclass=Interned):
-    """The value of a module's uniform: one for the whole picture (``Module.uniforms``)."""
+    """The value of a module's uniform: one for the whole picture (``Module.uniforms``).
+
+    Before the entry pass one called ``FRAME_TIME`` is the frame's time, declared nowhere.
+    """
 
     name: str
     type: Type

@@ -1,18 +1,20 @@
 """The IR as text: readable, deterministic and complete.
 
-A module flows in, text flows out: what ``--target ir`` shows, what golden tests compare, and what
-the object cache hashes, so everything that changes the meaning is in it. Spans and the data of
-resources are not. ``@name`` is a uniform, ``$name`` a value of the per-frame part, ``&name`` a
-texture or buffer; ``name(...)`` calls a function of the module and ``(name ...)`` a built-in.
+A module flows in, text flows out: what ``--target ir`` shows, what golden tests compare, and (all
+but the values of a scene's numbers) what the object cache hashes, so everything that changes the
+meaning is in it. Spans and the data of resources are not. ``@name`` is a uniform, ``$name`` a value
+of the per-frame part, ``&name`` a texture or buffer; ``name(...)`` calls a function of the module
+and ``(name ...)`` a built-in.
 
-Expressions share their parts. A part that a statement uses more than once is written once, as
-``%3 = ...`` before the statement, so that the text stays as small as the graph.
+Expressions share their parts. A part that a statement uses more than once is written once, as ``%3
+= ...`` before the statement, so that the text stays as small as the graph.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import assert_never
 
 from distal.ir.nodes import (
@@ -40,6 +42,7 @@ from distal.ir.nodes import (
     Logical,
     MatMul,
     Module,
+    Origin,
     PerFrame,
     Read,
     Resource,
@@ -82,6 +85,14 @@ def print_module(module: Module) -> str:
         lines.append("")
         lines.extend(_function_lines(function))
     return "\n".join(lines) + "\n"
+
+
+def print_identity(module: Module) -> str:
+    """What the code of a module depends on: all of it but the values of a scene's numbers."""
+    uniforms = tuple(
+        replace(u, default=None) if u.origin is Origin.NUMBER else u for u in module.uniforms
+    )
+    return print_module(replace(module, uniforms=uniforms))
 
 
 def print_expression(e: Expr) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import assert_never
 
+from distal.ir import nodes
 from distal.ir.nodes import (
     Apply,
     Assign,
@@ -39,7 +40,18 @@ from distal.ir.nodes import (
 )
 from distal.ir.nodes import Resource as ResourceNode
 from distal.ir.printer import print_expression
-from distal.ir.types import BOOL, FRAME, INT, VEC2, VEC4, FunctionType, Type, index_count, is_static
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    FRAME,
+    INT,
+    VEC2,
+    VEC4,
+    FunctionType,
+    Type,
+    index_count,
+    is_static,
+)
 from distal.ir.verify_types import check_types
 from distal.ir.walk import children, expressions, nodes_in, root_of
 
@@ -152,6 +164,8 @@ class _Checker:
     def _references(self, e: Expr) -> None:
         """Names that lead out of the function."""
         match e:
+            case Uniform(nodes.FRAME_TIME, type) if self._stage not in _NO_FRAME:
+                assert type is FLOAT, "the time is a float"
             case Uniform(name, type):
                 assert self._uniforms.get(name) is type, "no such uniform"
             case PerFrame(name, type):

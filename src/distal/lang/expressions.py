@@ -14,15 +14,12 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from distal.executor_hook import combined, executor
 from distal.ir.build import swizzle
-from distal.ir.nodes import Expr, Uniform
+from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
 
 if TYPE_CHECKING:
     from distal.lang.parameters import Parameter
-
-# The uniform that stands for the frame's time until the entry pass.
-FRAME_TIME: Final = "frame.time"
 
 _LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"}}
 

@@ -3,7 +3,8 @@
 What flows in: a lowered module whose image function takes a ``Frame``. What flows out: a module
 without ``Frame``. A parameter of that type is now the vec2 ``coord``; every other part of it is a
 uniform of origin FRAME, declared only when it is read. An image is wrapped into
-``main(coord: vec2) -> vec4``. The pass does not know how a target provides coord or uniforms.
+``main(coord: vec2) -> vec4``. The time that expressions made in Python read is the frame's, also
+where no ``Frame`` is. The pass does not know how a target provides coord or uniforms.
 
 A frame's values own their uniforms' names. A parameter uniform of the same name (a slider called
 "Time") gets ``_value`` appended, and its interface then ends in ``("parameter", "time")``, the
@@ -17,6 +18,7 @@ from dataclasses import replace
 from typing import Final
 
 from distal.diagnostics import CompileError, Span
+from distal.ir import nodes
 from distal.ir.build import number
 from distal.ir.nodes import (
     Apply,
@@ -181,6 +183,9 @@ class _Body:
                     return coord
                 self._used.add(name)
                 return Uniform(name, type, span=e.span)
+            case Uniform(nodes.FRAME_TIME, type):
+                self._used.add("time")
+                return Uniform("time", type, span=e.span)
             case Uniform(name, type):
                 return Uniform(self._renamed.get(name, name), type, span=e.span)
             case _ if e.type is FRAME:

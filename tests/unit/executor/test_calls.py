@@ -221,7 +221,7 @@ def test_a_vector_is_a_point() -> None:
 
 
 def test_only_scene_code_is_compiled() -> None:
-    with pytest.raises(TypeError, match="only an @image or a @func"):
+    with pytest.raises(TypeError, match="only a scene, an @image or a @func"):
         distal.compile(len)  # type: ignore[arg-type]
 
 
