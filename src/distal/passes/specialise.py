@@ -3,7 +3,8 @@
 What flows in: functions with parameters of static types, ``Apply`` of function values. What flows
 out: functions of plain values only. Each function with static parameters is cloned once for each
 combination of what is bound to them; the captures of a bound function become further parameters
-of the clone; ``Apply`` becomes ``Call``. Functions that nothing reaches are dropped. The function
+of the clone; ``Apply`` becomes ``Call``. A constant that steers a function (``steering``) is bound
+too. Functions that nothing reaches are dropped. The function
 of a ``Gradient`` stays a FunctionRef to a specialised function, for the gradient pass.
 
 What is bound is itself an expression: a FunctionRef whose captures are reads of the clone's
@@ -42,6 +43,7 @@ from distal.ir.walk import children, map_statement, rebuild, statements_in
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.naming import Names, local_names
+from distal.passes.steering import Steering
 
 # A function inside itself this often through function values never ends in practice.
 _DEEPEST: Final = 64
@@ -58,7 +60,7 @@ class _Shape:
     captures: tuple[_Shape | Type, ...]
 
 
-_Binding: TypeAlias = _Shape | None  # None: a run-time parameter
+_Binding: TypeAlias = _Shape | Const | None  # None: a run-time parameter
 
 
 def run(module: Module, context: Context) -> Module:
@@ -83,6 +85,7 @@ class _Clones:
     def __init__(self, module: Module) -> None:
         self._functions = {f.name: f for f in module.functions}
         self._names = Names(self._functions)
+        self.steering = Steering(self._functions)
         self._by_key: dict[tuple[str, tuple[_Binding, ...]], str] = {}
         self._open: list[str] = []  # the functions whose clones are being made
         self.made: dict[str, Function] = {}
@@ -120,7 +123,16 @@ class _Clones:
         )
 
 
-def _words(shape: _Shape) -> Iterator[str]:
+def _binding(arg: Expr, *, steers: bool) -> _Binding:
+    if is_static(arg.type):
+        return _shape(arg)
+    return arg if steers and isinstance(arg, Const) else None
+
+
+def _words(shape: _Shape | Const) -> Iterator[str]:
+    if isinstance(shape, Const):
+        yield str(shape.value).lower().replace("-", "minus_")
+        return
     yield shape.name
     for capture in shape.captures:
         if isinstance(capture, _Shape):
@@ -161,6 +173,8 @@ class _Clone:
         for param, binding in zip(original.params, bindings, strict=True):
             if binding is None:
                 params.append(param)
+            elif isinstance(binding, Const):
+                self._memo[Read(param.name, param.type)] = binding
             else:
                 self._bound[param.name] = self._open_binding(param, binding, extra)
         self._params = (*params, *extra)
@@ -262,9 +276,17 @@ class _Clone:
 
     def _bound_call(self, name: str, args: Sequence[Expr], type: Type, span: Span | None) -> Expr:
         """A call of the clone for the static ones of these rewritten arguments."""
-        bindings = tuple(_shape(a) if is_static(a.type) else None for a in args)
+        steering = self._clones.steering.of(name)
+        bindings: tuple[_Binding, ...] = tuple(
+            _shape(a)
+            if is_static(a.type)
+            else a
+            if i in steering and isinstance(a, Const)
+            else None
+            for i, a in enumerate(args)
+        )
         new = self._clones.instance(name, bindings, self._span)
-        plain = [a for a in args if not is_static(a.type)]
+        plain = [a for a, b in zip(args, bindings, strict=True) if b is None]
         captured = [part for a in args if is_static(a.type) for part in _runtime_parts(a)]
         return Call(new, (*plain, *captured), type, span=span)
 
