@@ -15,7 +15,6 @@ from typing import Any, Final, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
 from distal.call_values import (
     bind,
@@ -161,7 +160,9 @@ class PythonExecutor:
         if len(parts) > 1:
             linear = pixels
             uniforms = uniform_values(modules[1], values, others)
-            pixels = _displayed(kernels[1], linear, uniforms, parts[1].resources, threads, cancel)
+            pixels = kernels[1].map_pixels(
+                linear, uniforms, parts[1].resources, threads=threads, cancel=cancel
+            )
         stats["render_s"] = _now() - compiled
         origin = Provenance(
             source=image.name, source_hash=parts[0].source_hash, parameters=values, time=seconds
@@ -252,21 +253,6 @@ def _all_values(module: Module, params: Mapping[str, Any], seconds: float) -> di
     """The uniforms of a function that is called from Python."""
     others = {**number_values([module], {}), "time": seconds}
     return uniform_values(module, parameter_values([module], params), others)
-
-
-def _displayed(
-    kernel: Kernel,
-    linear: NDArray[np.float32],
-    uniforms: Mapping[str, Any],
-    resources: Mapping[str, Any],
-    threads: int | None,
-    cancel: Any,
-) -> NDArray[np.float32]:
-    """Linear pixels encoded for display, each by itself."""
-    rows = linear.reshape(-1, 4)
-    encoded = kernel.evaluate([rows], uniforms, resources, threads=threads, cancel=cancel)
-    assert isinstance(encoded, np.ndarray)
-    return encoded.reshape(linear.shape)
 
 
 def _arguments(

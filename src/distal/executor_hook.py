@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
     from distal.ir.intrinsics import Intrinsic
+    from distal.lang.composed import Composed
     from distal.lang.expressions import Expression
     from distal.lang.functions import Func, Image
     from distal.lang.names import LangFunction

@@ -12,6 +12,7 @@ from typing import Any, Final
 from distal.backends.base import Artifact
 from distal.backends.glsl_resources import shadertoy_channels
 from distal.backends.glsl_stages import DIALECTS, Program, fragment_lines, vertex_lines
+from distal.backends.glsl_uniforms import beyond_room
 from distal.backends.interface import interface
 from distal.backends.keywords import (
     GLSL_CANVAS_NAMES,
@@ -87,7 +88,9 @@ def _program(module: Module, target: Target) -> Program:
     packing = None
     if target.frame is FramePlace.VERTEX:
         packing = pack(_sent(module))
-    return Program(module, names, dialect, target.name, fixed, packing, _vectors(names, packing))
+    constants = beyond_room(module.uniforms) if dialect.declared else frozenset()
+    vectors = _vectors(names, packing)
+    return Program(module, names, dialect, target.name, fixed, constants, packing, vectors)
 
 
 def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
@@ -108,6 +111,11 @@ def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
 def _interface(program: Program, target: Target) -> dict[str, Any]:
     module, names = program.module, program.names
     result = interface(module, target, names)
+    if program.constants:
+        # Nothing sets them, though the text has them by name.
+        apart = [u for u in result["uniforms"] if u["name"] in program.constants]
+        result["uniforms"] = [u for u in result["uniforms"] if u not in apart]
+        result["constants"] = apart
     for uniform in result["uniforms"]:
         # glslCanvas hands in the mouse as two numbers; the text makes Frame.mouse of them.
         uniform["uniform"] = uniform["uniform"].removeprefix("vec4(").partition(",")[0]

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from distal.backends.clike import place
 from distal.backends.code import Code, Line
 from distal.backends.glsl_resources import accessor_lines, resource_lines
+from distal.backends.glsl_uniforms import constant_line, constant_lines, default_text
 from distal.backends.glsl_writer import Glsl100Writer, GlslWriter
-from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames, globals_of, reachable, types_in
 from distal.backends.module_text import per_frame_reads, uniform_comment
 from distal.backends.names import Namer
@@ -30,7 +30,7 @@ from distal.ir.nodes import (
     Uniform,
     UniformDeclaration,
 )
-from distal.ir.types import FLOAT, UINT, VEC2, Array, Buffer, Struct
+from distal.ir.types import VEC2, Array, Buffer, Struct
 from distal.ir.walk import expressions_in, nodes_in
 
 
@@ -115,6 +115,7 @@ class Program:
     dialect: Dialect
     target: str
     fixed: dict[str, str]  # uniforms that the place provides
+    constants: frozenset[str]  # numbers that there is no room for among the uniforms
     packing: Packing | None
     vectors: list[str]  # the names of the packed vectors
 
@@ -278,9 +279,12 @@ def _uniform_lines(
     fetched_names = {e.name for e in fetched if isinstance(e, Resource)}
     lines: list[str] = []
     accessors: list[str] = []
-    for uniform in program.module.uniforms:
-        if uniform.name in names:
+    uniforms = [u for u in program.module.uniforms if u.name in names]
+    for uniform in uniforms:
+        if uniform.name not in program.constants:
             lines += _uniform_line(program, uniform)
+    constant = (u for u in uniforms if u.name in program.constants)
+    lines += constant_lines((u, program.names.uniforms[u.name]) for u in constant)
     for resource in program.module.resources:
         if resource.name in resources:
             lines += resource_lines(resource, program.names, program.target)
@@ -297,24 +301,11 @@ def _uniform_line(program: Program, uniform: UniformDeclaration) -> list[str]:
         if not dialect.declared:
             return []  # the place declares it
         return [f"uniform {_ES100_TYPES.get(uniform.name, 'int u_frame')};"]
-    value = default_text(uniform)
     if not dialect.declared:
-        return [f"const {uniform.type} {spelled} = {value};{comment}"]
-    if dialect.initialised and uniform.origin is Origin.PARAMETER:
-        return [f"uniform {uniform.type} {spelled} = {value};{comment}"]
+        return [constant_line(uniform, spelled)]
+    if dialect.initialised and uniform.origin is not Origin.FRAME:
+        return [f"uniform {uniform.type} {spelled} = {default_text(uniform)};{comment}"]
     return [f"uniform {uniform.type} {spelled};{comment}"]
-
-
-def default_text(uniform: UniformDeclaration) -> str:
-    """A uniform's default as a GLSL constant."""
-    default = uniform.default
-    if isinstance(default, bool):
-        return "true" if default else "false"
-    if isinstance(default, tuple):
-        return f"{uniform.type}({', '.join(float_literal(float(v)) for v in default)})"
-    if uniform.type is FLOAT:
-        return float_literal(float(default))
-    return f"{default}u" if uniform.type is UINT else int_literal(int(default))
 
 
 def _frame_lines(program: Program, in_functions: set[str]) -> list[Line]:

@@ -84,6 +84,22 @@ class Kernel(Protocol):
         """
         ...
 
+    def map_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """The picture that a function from vec4 to vec4 makes of a picture (height, width, 4).
+
+        Raises:
+            Cancelled: ``cancel`` said so.
+        """
+        ...
+
 
 def cancel_test(cancel: Cancel | None) -> Callable[[], bool]:
     """A question to ask now and then: does the caller want the work to end?"""

@@ -25,6 +25,7 @@ from distal.backends.llvm.layout import (
     BATCH,
     FRAME,
     JOB_FIELDS,
+    PIXELS,
     RENDER,
     RESOURCE_BYTES,
     TILE_BLOCKS,
@@ -163,7 +164,9 @@ class CpuKernel:
         self._uniforms = cpu_memory.UniformSlots(
             interface["uniforms"], interface["uniform_slots"], precision
         )
-        self._main = executable.function(RENDER if self._image else BATCH)
+        main = RENDER if self._image else PIXELS if PIXELS in executable else BATCH
+        self._pixelwise = main == PIXELS
+        self._main = executable.function(main)
         self._frame = executable.function(FRAME) if FRAME in executable else None
 
     def render(
@@ -202,6 +205,9 @@ class CpuKernel:
         """Values at points; see ``Kernel.evaluate``."""
         assert not self._image, "an image has no points"
         points = cpu_memory.shared_length(args)
+        if self._pixelwise and points:
+            rows = np.asarray(args[0], np.float32)
+            return self._mapped(rows, uniforms, resources, threads, progress, cancel)
         stride = -(-points // self._lanes) * self._lanes
         shapes = [shape for _, shape in self._interface["params"]]
         source = cpu_memory.pack_points(shapes, args, points, stride, self._precision)
@@ -215,6 +221,42 @@ class CpuKernel:
         if stride:
             self._run(job, tiles, threads, progress, cancel)
         return cpu_memory.unpack_points(shape, target, points, stride)
+
+    def map_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """A picture of a picture; see ``Kernel.map_pixels``."""
+        values = self.evaluate(
+            [pixels.reshape(-1, 4)], uniforms, resources, threads=threads, cancel=cancel
+        )
+        return np.asarray(values, np.float32).reshape(pixels.shape)
+
+    def _mapped(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        count: int | None,
+        progress: Progress | None,
+        cancel: Cancel | None,
+    ) -> NDArray[np.float32]:
+        """Rows of four floats from rows of four floats, as they lie in memory."""
+        short = self._lanes - len(pixels)
+        if short > 0:  # a block is the least there is
+            pixels = np.pad(pixels, ((0, short), (0, 0)), mode="edge")
+        source, target = np.ascontiguousarray(pixels), PICTURES.take(pixels.shape)
+        tiles = -(-len(pixels) // (TILE_BLOCKS * self._lanes))
+        job = _Job(self, uniforms, resources, source, target)
+        job.set(input=source.ctypes.data, output=target.ctypes.data)
+        job.set(width=len(pixels), tiles=tiles)
+        self._run(job, tiles, count, progress, cancel)
+        return target[:-short] if short > 0 else target
 
     def _run(
         self,

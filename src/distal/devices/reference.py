@@ -110,6 +110,19 @@ class ReferenceKernel:
         points = max((len(leaf) for arg in args for leaf in _leaves(arg)), default=1)
         return from_lanes(result, entry.result, points)
 
+    def map_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """A picture of a picture; see ``Kernel.map_pixels``."""
+        values = self.evaluate([pixels.reshape(-1, 4)], uniforms, resources, cancel=cancel)
+        return np.asarray(values, np.float32).reshape(pixels.shape)
+
     def _arrays(self, resources: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
         """The arrays of the resources; what is an array already is one in the texels' order."""
         arrays = {}

@@ -14,17 +14,19 @@ from distal.backends.llvm.layout import (
     BATCH,
     FRAME,
     JOB_OFFSET,
+    PIXELS,
     RENDER,
     TILE_BLOCKS,
     TILE_HEIGHT,
     TILE_WIDTH,
 )
+from distal.backends.llvm.pixels import channels, chunk_pixels, interleaved, pixel_address
 from distal.backends.llvm.program import Program, prologue
 from distal.backends.llvm.storage import Storage
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import Writer
 from distal.ir.nodes import EntryKind, Function, PerFrame
-from distal.ir.types import FLOAT, Kind, Scalar
+from distal.ir.types import FLOAT, VEC4, Kind, Scalar
 
 
 def kernels(program: Program) -> bool:
@@ -35,6 +37,8 @@ def kernels(program: Program) -> bool:
         frame_apart = program.may_be_long()
     if program.module.kind is EntryKind.IMAGE:
         _render(program)
+    elif _maps_pixels(program):
+        _map_pixels(program)
     else:
         _batch(program)
     return frame_apart
@@ -203,7 +207,7 @@ def _write(
     """Write a block: straight into the picture, or by way of ``spare`` at its edges."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     across, down = lanes.block_width, lanes.count // lanes.block_width
-    rows = _interleaved(arithmetic, color)
+    rows = interleaved(arithmetic, color)
     fits = [
         writer.value(f"icmp sle i32 {writer.value(f'add i32 {at}, {n}')}, {limit}")
         for at, n, limit in zip(corner, (across, down), size, strict=True)
@@ -215,7 +219,7 @@ def _write(
     writer.begin(inside)
     for y, pixels in enumerate(rows):
         row = writer.value(f"add i32 {corner[1]}, {y}")
-        pointer = _pixel(writer, output, corner[0], row, size[0])
+        pointer = pixel_address(writer, output, corner[0], row, size[0])
         writer.line(f"store {type} {pixels}, ptr {pointer}, align 4")
     writer.jump(done)
 
@@ -229,73 +233,16 @@ def _write(
     )
     line = _Count(writer, "0", lines, 1)
     column = _Count(writer, "0", columns, 1)
-    source = _pixel(writer, spare, column.index, line.index, str(across))
+    source = pixel_address(writer, spare, column.index, line.index, str(across))
     pixel = writer.value(f"load <4 x float>, ptr {source}, align 4")
     x = writer.value(f"add i32 {corner[0]}, {column.index}")
     y_at = writer.value(f"add i32 {corner[1]}, {line.index}")
-    target = _pixel(writer, output, x, y_at, size[0])
+    target = pixel_address(writer, output, x, y_at, size[0])
     writer.line(f"store <4 x float> {pixel}, ptr {target}, align 4")
     column.end()
     line.end()
     writer.jump(done)
     writer.begin(done)
-
-
-def _pixel(writer: Writer, base: str, x: str, y: str, width: str) -> str:
-    """The address of a pixel of four floats."""
-    wide = [writer.value(f"zext i32 {n} to i64") for n in (x, y, width)]
-    row = writer.value(f"mul i64 {wide[1]}, {wide[2]}")
-    index = writer.value(f"add i64 {row}, {wide[0]}")
-    return writer.value(f"getelementptr <4 x float>, ptr {base}, i64 {index}")
-
-
-def _interleaved(arithmetic: Arithmetic, color: Leaves) -> list[str]:
-    """The block's rows as pixels of red, green, blue and alpha, always floats of 32 bits."""
-    lanes, writer = arithmetic.lanes, arithmetic.writer
-    width, narrow = lanes.width, f"<{lanes.width} x float>"
-    parts: list[str] = []  # pixels of each chunk
-    for c in range(lanes.chunks):
-        channels = [leaf.names[c] for leaf in color]
-        if lanes.precision == 64:
-            wide = lanes.vector(Kind.FLOAT)
-            channels = [writer.value(f"fptrunc {wide} {n} to {narrow}") for n in channels]
-        everything = ", ".join(f"i32 {i}" for i in range(2 * width))
-        pairs = [
-            writer.value(
-                f"shufflevector {narrow} {a}, {narrow} {b}, <{2 * width} x i32> <{everything}>"
-            )
-            for a, b in (channels[:2], channels[2:])
-        ]
-        order = ", ".join(f"i32 {k * width + lane}" for lane in range(width) for k in range(4))
-        pair = f"<{2 * width} x float>"
-        parts.append(
-            writer.value(
-                f"shufflevector {pair} {pairs[0]}, {pair} {pairs[1]}, <{4 * width} x i32> <{order}>"
-            )
-        )
-    across = lanes.block_width * 4
-    return [
-        _run(writer, parts, 4 * width, first, across) for first in range(0, lanes.count * 4, across)
-    ]
-
-
-def _run(writer: Writer, parts: list[str], size: int, first: int, count: int) -> str:
-    """``count`` consecutive numbers out of vectors of ``size`` laid end to end."""
-    if count <= size:
-        part, start = parts[first // size], first % size
-        if count == size:
-            return part
-        order = ", ".join(f"i32 {start + i}" for i in range(count))
-        type = f"<{size} x float>"
-        return writer.value(
-            f"shufflevector {type} {part}, {type} poison, <{count} x i32> <{order}>"
-        )
-    half = count // 2
-    low = _run(writer, parts, size, first, half)
-    high = _run(writer, parts, size, first + half, half)
-    order = ", ".join(f"i32 {i}" for i in range(count))
-    type = f"<{half} x float>"
-    return writer.value(f"shufflevector {type} {low}, {type} {high}, <{count} x i32> <{order}>")
 
 
 def _batch(program: Program) -> None:
@@ -340,3 +287,42 @@ def _leaf_at(writer: Writer, lanes: Lanes, base: str, leaf: int, stride: str, po
     slot = writer.value(f"add i64 {run}, {points}")
     byte = writer.value(f"mul i64 {slot}, {lanes.slot}")
     return writer.value(f"getelementptr i8, ptr {base}, i64 {byte}")
+
+
+def _maps_pixels(program: Program) -> bool:
+    """Whether the function makes a pixel of a pixel: what encodes pictures for display does."""
+    entry = program.module.function(program.module.entry)
+    types = [param.type for param in entry.params]
+    return types == [VEC4] and entry.result is VEC4 and program.lanes.precision == 32
+
+
+def _map_pixels(program: Program) -> None:
+    """Pixels in, pixels out, four floats each: a picture need not be taken apart for it."""
+    arithmetic = program.arithmetic()
+    writer, lanes = arithmetic.writer, program.lanes
+    prologue(writer)
+    source, target = _field(writer, "input", "ptr"), _field(writer, "output", "ptr")
+    count = _field(writer, "width")
+    last = writer.value(f"sub i32 {count}, {lanes.count}")
+
+    tiles = _Tiles(writer)
+    first = writer.value(f"mul i32 {tiles.index}, {TILE_BLOCKS * lanes.count}")
+    end = _least(writer, writer.value(f"add i32 {first}, {TILE_BLOCKS * lanes.count}"), count)
+    blocks = _Count(writer, first, end, lanes.count)
+    arithmetic.enter()
+    # The last block ends with the picture, and does again what the one before it did.
+    first_pixel = _least(writer, blocks.index, last)
+    chunks = [
+        writer.value(f"add i32 {first_pixel}, {n}") for n in range(0, lanes.count, lanes.width)
+    ]
+    zero, one = "0", "1"
+    color = channels(arithmetic, [pixel_address(writer, source, at, zero, one) for at in chunks])
+    entry = program.module.function(program.module.entry)
+    result = arithmetic.spread_all(program.run(arithmetic, entry, [color], (True,), None))
+    for at, pixels in zip(chunks, chunk_pixels(arithmetic, result), strict=True):
+        pointer = pixel_address(writer, target, at, zero, one)
+        writer.line(f"store <{lanes.width * 4} x float> {pixels}, ptr {pointer}, align 4")
+    arithmetic.leave()
+    blocks.end()
+    tiles.end()
+    _define(program, PIXELS, writer)

@@ -18,6 +18,7 @@ from distal.ir.types import Array, Buffer, Kind, Matrix, Scalar, Struct, Texture
 RENDER: Final = "distal_render"
 FRAME: Final = "distal_frame"
 BATCH: Final = "distal_batch"
+PIXELS: Final = "distal_pixels"
 
 # The job that a kernel is called with: eight-byte fields, in this order.
 JOB_FIELDS: Final = (
@@ -27,8 +28,8 @@ JOB_FIELDS: Final = (
     "frame",  # pointer
     "resources",  # pointer: four eight-byte numbers each: data, width or count, height, depth
     "output",  # pointer: pixels, or result leaves
-    "input",  # pointer: argument leaves
-    "width",  # pixels across
+    "input",  # pointer: argument leaves, or pixels
+    "width",  # pixels across, or points in all
     "height",  # pixels down
     "tiles_across",
     "tiles",  # how many in all
