@@ -44,13 +44,10 @@ from distal.lang.parameters import Parameter
 from distal.passes.numbers import freeze as freeze_numbers
 from distal.uniform_values import (
     LARGEST_SIDE_PX,
+    Declared,
     checked_size,
     checked_time,
-    declared_parameters,
     frame_values,
-    number_values,
-    parameter_values,
-    uniform_values,
 )
 
 KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
@@ -60,7 +57,7 @@ DEVICES: Final = {"cpu": "distal.devices.cpu", "reference": "distal.devices.refe
 Types: TypeAlias = tuple[Type, ...] | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Lowered:
     """A lowered function.
 
@@ -99,6 +96,14 @@ class Lowered:
         return {r.name: r.source for r in self.module.resources}
 
 
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """What is run one after the other: a function, and what encodes its pixels for display."""
+
+    parts: tuple[Lowered, ...]
+    declared: Declared
+
+
 class PythonExecutor:
     """Runs scene code for Python; keeps compiled kernels for the life of the process.
 
@@ -109,10 +114,11 @@ class PythonExecutor:
     def __init__(self) -> None:
         self._kernels: dict[tuple[str, str, int], Kernel] = {}
         self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
+        self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
 
     def parameters(self, function: Func | Composed) -> list[Parameter]:
         """The parameters that a function and what it calls read, by first use."""
-        return declared_parameters([part.module for part in self._parts(function)])
+        return list(self._parts(function).declared.parameters)
 
     def render(
         self,
@@ -138,18 +144,18 @@ class PythonExecutor:
         """
         size, seconds = checked_size(size), checked_time(time)
         begin = _now()
-        parts = self._parts(image)
-        modules = [part.module for part in parts]
-        values = parameter_values(modules, params or {})
-        numbers = number_values(modules, settings or {})
+        run = self._parts(image)
+        parts, declared = run.parts, run.declared
+        values = declared.parameter_values(params or {})
+        numbers = declared.number_values(settings or {})
         if freeze:
-            parts = [part.frozen(numbers) for part in parts]
+            parts = tuple(part.frozen(numbers) for part in parts)
         kernels = [self._kernel(part, device, 32) for part in parts]
         compiled = _now()
         others = {**numbers, **frame_values(size, seconds, mouse, index, seed)}
         pixels = kernels[0].render(
             *size,
-            uniform_values(modules[0], values, others),
+            declared.for_kernel(0, values, others),
             parts[0].resources,
             threads=threads,
             progress=progress,
@@ -159,7 +165,7 @@ class PythonExecutor:
         linear = None
         if len(parts) > 1:
             linear = pixels
-            uniforms = uniform_values(modules[1], values, others)
+            uniforms = declared.for_kernel(1, values, others)
             pixels = kernels[1].map_pixels(
                 linear, uniforms, parts[1].resources, threads=threads, cancel=cancel
             )
@@ -187,7 +193,7 @@ class PythonExecutor:
         lowered = self._lower(function, types)
         module = lowered.module
         result_type = module.function(module.entry).result
-        uniforms = _all_values(module, params or {}, seconds)
+        uniforms = _all_values(Declared([module]), params or {}, seconds)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
         kernel = self._kernel(lowered, "cpu", 64 if double else 32)
@@ -197,15 +203,19 @@ class PythonExecutor:
     def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
         """The value of an expression of parameters and time."""
         lowered = Lowered.of(_ValueOf(expression), None)
-        uniforms = _all_values(lowered.module, params, checked_time(time))
+        uniforms = _all_values(Declared([lowered.module]), params, checked_time(time))
         result = self._kernel(lowered, "reference", 64).evaluate([], uniforms, {})
         return single(result, expression.type)
 
-    def _parts(self, function: Func | Composed) -> list[Lowered]:
-        """What is run one after the other: the function, and what encodes its pixels."""
-        lowered = self._lower(function, None)
+    def _parts(self, function: Func | Composed) -> _Parts:
+        """What is run for a function, remembered while it is the same."""
+        first = self._lower(function, None)
         display = getattr(function, "display", None)
-        return [lowered] if display is None else [lowered, self._lower(display, (VEC4,))]
+        parts = (first,) if display is None else (first, self._lower(display, (VEC4,)))
+        known = self._together.get(function)
+        if known is None or known.parts != parts:
+            known = self._together[function] = _Parts(parts, Declared([p.module for p in parts]))
+        return known
 
     def _lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
         """The lowered function, remembered while what it captured is the same."""
@@ -249,10 +259,10 @@ class _ValueOf(Composed):
         return name
 
 
-def _all_values(module: Module, params: Mapping[str, Any], seconds: float) -> dict[str, Any]:
+def _all_values(declared: Declared, params: Mapping[str, Any], seconds: float) -> dict[str, Any]:
     """The uniforms of a function that is called from Python."""
-    others = {**number_values([module], {}), "time": seconds}
-    return uniform_values(module, parameter_values([module], params), others)
+    others = {**declared.numbers, "time": seconds}
+    return declared.for_kernel(0, declared.parameter_values(params), others)
 
 
 def _arguments(

@@ -21,50 +21,68 @@ from distal.passes.entry import renamed_parameters
 LARGEST_SIDE_PX: Final = 16384
 
 
-def declared_parameters(modules: Sequence[Module]) -> list[Parameter]:
-    """The parameters that modules read, by first use."""
-    uniforms = (u for m in modules for u in m.uniforms if u.origin is Origin.PARAMETER)
-    return list({u.name: u.source for u in uniforms}.values())
+class Declared:
+    """What modules that are run together ask for, sorted out once.
 
+    A scene of a thousand numbers is rendered frame by frame: no frame goes through them again.
 
-def parameter_values(modules: Sequence[Module], params: Mapping[str, Any]) -> dict[str, Any]:
-    """The value of each parameter of modules: as given, checked, or its default.
-
-    Keys are parameters' names or labels.
-
-    Raises:
-        ValueError: A name is unknown, or a value outside its range.
-        TypeError: A value is of another kind.
+    Attributes:
+        parameters: The parameters that they read, by first use.
+        numbers: The scene's numbers by name, with their own values.
     """
-    if not isinstance(params, Mapping):
-        raise TypeError(f"params are values by name, not {type(params).__name__}")
-    declared = declared_parameters(modules)
-    values = {p.name: p.default for p in declared}
-    if not params:
+
+    def __init__(self, modules: Sequence[Module]) -> None:
+        uniforms = [u for module in modules for u in module.uniforms]
+        by_name = {u.name: u.source for u in uniforms if u.origin is Origin.PARAMETER}
+        self.parameters: list[Parameter] = list(by_name.values())
+        self._numbers = {u.name: u for u in uniforms if u.origin is Origin.NUMBER}
+        self.numbers = {name: u.default for name, u in self._numbers.items()}
+        self._renamed = [renamed_parameters(module.uniforms) for module in modules]
+
+    def parameter_values(self, params: Mapping[str, Any]) -> dict[str, Any]:
+        """The value of each parameter: as given, checked, or its default.
+
+        Keys are parameters' names or labels.
+
+        Raises:
+            ValueError: A name is unknown, or a value outside its range.
+            TypeError: A value is of another kind.
+        """
+        if not isinstance(params, Mapping):
+            raise TypeError(f"params are values by name, not {type(params).__name__}")
+        values = {p.name: p.default for p in self.parameters}
+        by_name = {key: p for p in self.parameters for key in (p.label, p.name)}
+        for key, value in params.items():
+            if key not in by_name:
+                known = ", ".join(values) or "none"
+                raise ValueError(f"there is no parameter '{key}'; parameters: {known}")
+            values[by_name[key].name] = by_name[key].check(value)
         return values
-    by_name = {key: p for p in declared for key in (p.label, p.name)}
-    for key, value in params.items():
-        if key not in by_name:
-            known = ", ".join(values) or "none"
-            raise ValueError(f"there is no parameter '{key}'; parameters: {known}")
-        values[by_name[key].name] = by_name[key].check(value)
-    return values
 
+    def number_values(self, settings: Mapping[str, Any]) -> dict[str, Any]:
+        """The value of each number of a scene: its own, or that of a setting.
 
-def number_values(modules: Sequence[Module], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The value of each number of a scene: its own, or that of a setting.
+        Raises:
+            ValueError: No number is called like a setting, or a value is out of reach.
+            TypeError: A value is of another kind.
+        """
+        changed = {}
+        for name, value in settings.items():
+            if name not in self._numbers:
+                raise ValueError(f"there is no number '{name}' in the scene")
+            changed[name] = _checked_number(self._numbers[name], value)
+        return {**self.numbers, **changed}
 
-    Raises:
-        ValueError: No number is called like a setting, or a value is out of reach.
-        TypeError: A value is of another kind.
-    """
-    declared = {u.name: u for m in modules for u in m.uniforms if u.origin is Origin.NUMBER}
-    values = {name: u.default for name, u in declared.items()}
-    for name, value in settings.items():
-        if name not in declared:
-            raise ValueError(f"there is no number '{name}' in the scene")
-        values[name] = _checked_number(declared[name], value)
-    return values
+    def for_kernel(
+        self, position: int, parameters: Mapping[str, Any], others: Mapping[str, Any]
+    ) -> dict[str, Any]:
+        """Everything by the names that the kernel of one of the modules knows.
+
+        ``others`` are the frame's values and the numbers; a parameter that is called like one of
+        the frame's has another name in the kernel (``distal.passes.entry``).
+        """
+        renamed = self._renamed[position]
+        return {**others, **{renamed.get(name, name): v for name, v in parameters.items()}}
 
 
 def _checked_number(uniform: UniformDeclaration, value: Any) -> Any:
@@ -76,18 +94,6 @@ def _checked_number(uniform: UniformDeclaration, value: Any) -> Any:
         return as_bool(uniform.name, value)
     assert isinstance(uniform.type, Vector), f"{uniform.type} is no setting"
     return as_point(uniform.name, value, (uniform.type.size,))
-
-
-def uniform_values(
-    module: Module, parameters: Mapping[str, Any], others: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Everything by the names that the module's kernel knows.
-
-    ``others`` are the frame's values and the numbers; a parameter that is called like one of the
-    frame's has another name in the kernel (``distal.passes.entry``).
-    """
-    renamed = renamed_parameters(module.uniforms)
-    return {**others, **{renamed.get(name, name): value for name, value in parameters.items()}}
 
 
 def frame_values(

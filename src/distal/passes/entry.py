@@ -84,8 +84,12 @@ def parameter_name(uniform: UniformDeclaration) -> str:
 
 def renamed_parameters(uniforms: Iterable[UniformDeclaration]) -> dict[str, str]:
     """The new names of the parameters that are called like a value of the frame."""
-    names = Names([*_FRAME_UNIFORMS, *(u.name for u in uniforms)])
-    return {u.name: names.fresh(f"{u.name}_value") for u in uniforms if u.name in _FRAME_UNIFORMS}
+    declared = [u.name for u in uniforms]
+    alike = [name for name in declared if name in _FRAME_UNIFORMS]
+    if not alike:
+        return {}
+    names = Names([*_FRAME_UNIFORMS, *declared])
+    return {name: names.fresh(f"{name}_value") for name in alike}
 
 
 def _rename(uniform: UniformDeclaration, renamed: dict[str, str]) -> UniformDeclaration:
