@@ -31,7 +31,6 @@ UFUNCS: Final[Mapping[str, str]] = {
     **{"absolute": "abs", "fabs": "abs", "rint": "round", "minimum": "min", "maximum": "max"},
     **{"fmin": "min", "fmax": "max", "arcsin": "asin", "arccos": "acos", "arctan": "atan"},
     **{"arctan2": "atan2", "deg2rad": "radians", "rad2deg": "degrees"},
-    **{"arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh"},
     **{
         name: name
         for name in (

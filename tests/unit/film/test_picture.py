@@ -113,3 +113,26 @@ def test_unknown_suffix_names_what_is_possible(tmp_path, name):
     with pytest.raises(SaveError, match=r"pictures end in \.png"):
         Picture(gradient()).save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_encoded_picture_is_decoded_once() -> None:
+    encoded = np.zeros((1, 6, 4), np.float32)
+    encoded[0, :, 0] = [-0.1, 0.0, 0.04045, 0.5, 1.0, 2.0]
+    encoded[..., 3] = 0.5
+    picture = Picture(encoded)
+    linear = picture.linear
+    expected = [-0.1 / 12.92, 0.0, 0.04045 / 12.92, 0.21404114, 1.0, ((2 + 0.055) / 1.055) ** 2.4]
+    assert np.allclose(linear[0, :, 0], expected, rtol=1e-6)
+    assert np.all(linear[..., 3] == 0.5)
+    assert linear.dtype == np.float32
+    assert picture.linear is linear
+    with pytest.raises(ValueError, match="read-only"):
+        linear[0, 0, 0] = 1.0
+
+
+def test_light_is_kept_as_it_was_rendered() -> None:
+    light = np.full((2, 3, 4), 4.0, np.float32)
+    picture = Picture(np.ones((2, 3, 4), np.float32), light=light)
+    assert np.array_equal(picture.linear, light)
+    with pytest.raises(ValueError, match="light of shape"):
+        Picture(np.ones((2, 3, 4), np.float32), light=light[:1])

@@ -3,6 +3,7 @@ import pytest
 from distal.diagnostics import CompileError
 from distal.ir.build import add, boolean, field, multiply, number, read, select, splat
 from distal.ir.nodes import (
+    FRAME_TIME,
     Apply,
     Call,
     Compose,
@@ -22,6 +23,7 @@ from distal.passes import entry
 from tests.unit.passes.sample_target import CONTEXT, function, program
 
 FRAME_READ = read("frame", FRAME)
+TIME = Uniform(FRAME_TIME, FLOAT)
 
 
 def image(*functions, **rest):
@@ -117,3 +119,21 @@ def test_an_image_must_return_a_colour():
     picture = function("picture", {"frame": FRAME}, VEC2, Return(field(FRAME_READ, "coord")))
     with pytest.raises(CompileError, match="the image 'picture' returns vec2"):
         image(picture)
+
+
+def test_the_time_of_expressions_is_the_frames_time_in_functions_too():
+    wave = function("wave", {"x": FLOAT}, FLOAT, Return(add(read("x", FLOAT), TIME)))
+    module = entry.run(program(wave), CONTEXT)
+    verify(module, "entry")
+    text = print_module(module)
+    assert "uniform @time: float = 0.0 frame" in text
+    assert "return (add x @time)" in text
+
+
+def test_a_parameter_called_time_stands_beside_the_time():
+    slider = UniformDeclaration("time", FLOAT, Origin.PARAMETER, 0.5)
+    body = Return(multiply(Uniform("time", FLOAT), TIME))
+    module = program(function("wave", {"x": FLOAT}, FLOAT, body), uniforms=(slider,))
+    verify(module)
+    text = print_module(entry.run(module, CONTEXT))
+    assert "return (mul @time_value @time)" in text
