@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Sequence
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 from distal.frontend.body import Body
 from distal.frontend.constructors import construct
@@ -22,6 +23,7 @@ from distal.frontend.values import Display, Static, Value
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Expr, Uniform
 from distal.ir.types import Type
+from distal.ir.walk import children
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, TextureValue
@@ -43,6 +45,11 @@ _TYPES: Final[dict[str, Type]] = {str(type): type for type in VALUE_CLASSES}
 # What a message of scene code advises, said for Python, where float(...) must give a number.
 _HINTS: Final = {"write float(...) around the int": "an int divided by 1 is a float: (n / 1) * 0.5"}
 
+# Within a function the front end cuts what is deeper into locals; here there are none, and passes
+# that recurse find it inside whatever stands around. It is half of what they were seen to bear.
+DEEPEST: Final = 100
+_depths: Final[WeakKeyDictionary[Expr, int]] = WeakKeyDictionary()
+
 # Stands where the rules ask for the author's syntax: there is none.
 _NOWHERE: Final = ast.Call(ast.Name("expression"), [], [])
 
@@ -53,7 +60,7 @@ def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
     None where an operand is nothing that scene code could know.
 
     Raises:
-        TypeError: The operation does not take such operands.
+        TypeError: The operation does not take such operands, or the expression grows too deep.
         ValueError: A number is NaN, infinite or too large.
     """
     if not all(map(_may_be_value, operands)):
@@ -68,7 +75,20 @@ def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
         told = error.diagnostic
         hint = _HINTS.get(told.hint or "", told.hint)
         raise TypeError(_told(told.message, hint)) from None
+    if _depth(node) > DEEPEST:
+        raise TypeError(
+            f"this expression has more than {DEEPEST} operations inside one another; "
+            "compute it in a @func, with a loop"
+        )
     return Expression(node, tuple(parameters.found))
+
+
+def _depth(node: Expr) -> int:
+    """How many operations stand inside one another; an operand's is known from its making."""
+    known = _depths.get(node)
+    if known is None:
+        known = _depths[node] = 1 + max(map(_depth, children(node)), default=0)
+    return known
 
 
 class _Outside(Body):

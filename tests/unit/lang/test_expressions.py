@@ -120,6 +120,22 @@ def test_parts_are_shared() -> None:
     assert value(total) == 2.0**41
 
 
+def test_long_sums_work_and_endless_ones_are_refused() -> None:
+    total = time
+    for n in range(90):
+        total = total + size * n
+
+    @func
+    def scaled(x: float) -> float:
+        return x * total
+
+    assert math.isclose(scaled(2.0), 2.0 * 0.25 * 4005, rel_tol=1e-6)
+    assert math.isclose(total.value(time=1.0), 1.0 + 0.25 * 4005)
+    with pytest.raises(TypeError, match="more than 100 operations inside one another"):
+        for n in range(90):
+            total = total + n
+
+
 @pytest.mark.parametrize(
     ("make", "kind", "message"),
     [
