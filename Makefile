@@ -1,6 +1,7 @@
 # make picture   sets up what it needs and renders the raymarcher to picture.png
 # make test      sets up what it needs and runs everything that CI runs
 # make bench     measures; make sweep runs thousands of random programs; make clean undoes set-up
+# make sweep-fields   holds every shape and operator against its claims at many more numbers
 # make versions  runs the tests on every other supported Python that is installed
 #
 # Needs Python 3.11 or newer (with venv) and make. Everything else goes into .venv. System packages
@@ -15,9 +16,10 @@ PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 p
 	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo "$$p" && break; done)
 WORKERS ?= 2
 SWEEP ?= 5000
+SAMPLES ?= 40
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools
 
-.PHONY: picture test lint units system bench sweep versions clean
+.PHONY: picture test lint units system bench sweep sweep-fields versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -41,6 +43,9 @@ bench: $(VENV)/.setup-test
 
 sweep: $(VENV)/.setup-test
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
+
+sweep-fields: $(VENV)/.setup-test
+	DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
 
 # Python 3.11 is what `make test` uses; the others are tried where they are installed.
 versions: system
