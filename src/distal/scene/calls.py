@@ -17,6 +17,7 @@ from distal.frontend.annotations import AnnotationError, UnboundVariableError, t
 from distal.frontend.headers import MISSING, read_header
 from distal.ir.nodes import Expr
 from distal.ir.types import BOOL, INT, Type
+from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.conversion import Number
@@ -28,16 +29,11 @@ PLACE_NAMES: Final = frozenset(("p", "n", "cell"))
 
 
 class Composer(Protocol):
-    """What emits values into a program: ``compose.Composer``."""
+    """What emits values into a program: anything that has the program's assembly."""
 
-    assembly: Assembly
-
-    def number(self, number: Number, wish: str) -> Expr:
-        """The value of a number."""
-        ...
-
-    def resource(self, resource: TextureValue | Buffer, wish: str) -> Expr:
-        """A texture or buffer."""
+    @property
+    def assembly(self) -> Assembly:
+        """Where functions, numbers and resources are added."""
         ...
 
 
@@ -74,11 +70,7 @@ class FunctionCall:
         key = (self, name)
         made = composer.assembly.made
         if key not in made:
-            wish = f"{_identifier(self.what)}_{name}"
-            if isinstance(value, Number):
-                made[key] = composer.number(value, wish)
-            else:
-                made[key] = composer.resource(value, wish)
+            made[key] = _made(composer.assembly, value, f"{_identifier(self.what)}_{name}")
         found: Expr = made[key]
         return found
 
@@ -113,5 +105,22 @@ def result_of(func: Func) -> Type | None:
         return None
 
 
+def _made(assembly: Assembly, value: Number | TextureValue | Buffer, wish: str) -> Expr:
+    if not isinstance(value, Number):
+        return assembly.resource(value, wish)
+    if isinstance(value.value, Expression):
+        return assembly.expression(value.value)
+    return assembly.number(wish, value.type, value.value)
+
+
 def _identifier(what: str) -> str:
     return "".join(c if c.isascii() and c.isalnum() else "_" for c in what)
+
+
+class Pattern(FunctionCall):
+    """A colour (vec3) or an amount (float) that differs from place to place on a surface.
+
+    It stands wherever a material takes a colour or a number.
+    """
+
+    __slots__ = ()

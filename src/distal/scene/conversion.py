@@ -351,7 +351,7 @@ def shown(known: Plain) -> str:
 
 def _texture(value: Any, asked: Asked, type: Texture) -> TextureValue:
     if isinstance(value, str | os.PathLike) and type is TEXTURE_2D:
-        return Texture2D(_beside(value, asked.place))
+        return Texture2D(beside(value, asked.place))
     if isinstance(value, TextureValue) and value.__distal_type__ is type:
         return value
     hint = "or the name of a picture's file" if type is TEXTURE_2D else None
@@ -360,7 +360,7 @@ def _texture(value: Any, asked: Asked, type: Texture) -> TextureValue:
     )
 
 
-def _beside(value: str | os.PathLike[str], place: Span | None) -> str | os.PathLike[str]:
+def beside(value: str | os.PathLike[str], place: Span | None) -> str | os.PathLike[str]:
     """A file's name made whole where such a file stands beside the author's own."""
     if place is None:
         return value

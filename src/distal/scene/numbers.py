@@ -312,15 +312,12 @@ def _check_together(
 ) -> None:
     if requires is None:
         return
-    plain: dict[str, Any] = {}
-    for name, value in values.items():
-        known = _plain(value)
-        if known is None:
-            return
-        plain[name] = known
     wanted = inspect.signature(requires).parameters
     takes_all = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in wanted.values())
-    reason = requires(**{n: v for n, v in plain.items() if takes_all or n in wanted})
+    plain = {n: _plain(v) for n, v in values.items() if takes_all or n in wanted}
+    if None in plain.values():
+        return
+    reason = requires(**plain)
     if reason is not None:
         refuse(f"{what}: {reason}", place=place)
 
