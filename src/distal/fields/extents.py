@@ -92,6 +92,12 @@ def diameter(bounds: Bounds) -> float:
 
 
 @func
+def at_least_one(slope: float) -> float:
+    """The slope of a shape where a true distance (to a box, to a plane) may stand too."""
+    return max(slope, 1.0)
+
+
+@func
 def unless_endless(size: float, slope: float) -> float:
     """A slope, where the size that it rests on is finite; else no bound."""
     return select(size > ENDLESS, UNBOUNDED, slope)

@@ -12,7 +12,7 @@ A lower bound is not kept by moving the surface: it says nothing of the levels i
 from __future__ import annotations
 
 from distal.fields.claims import EXACT_OUTSIDE, Claim, Limit, operator
-from distal.fields.extents import Boxes, grown
+from distal.fields.extents import Boxes, at_least_one, grown
 from distal.lang import abs, dot, func, max, vec2, vec3
 
 INSIDE_AND_BOUND = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
@@ -90,12 +90,6 @@ def kept_below(d: float, p: vec3, normal: vec3, offset: float) -> float:
 def kept_above(d: float, p: vec3, normal: vec3, offset: float) -> float:
     """What lies before a plane: the half that its normal points into."""
     return max(d, offset - dot(p, normal))
-
-
-@func
-def at_least_one(slope: float) -> float:
-    """The slope of a shape that a true distance cuts."""
-    return max(slope, 1.0)
 
 
 @func
