@@ -184,7 +184,8 @@ def convex_polyhedron_bounds(planes: Buffer[vec4], size: vec3) -> Bounds:
 
 def convex_polyhedron_requires(planes: Any) -> str | None:
     """A longer normal would make the field too steep."""
-    for x, y, z, _ in getattr(planes, "data", planes):
+    rows: Any = getattr(planes, "data", ()) if isinstance(planes, Buffer) else planes
+    for x, y, z, _ in rows:
         if math.fabs(x * x + y * y + z * z - 1.0) > 1e-4:
             return "the first three numbers of each of the planes must be a vector of length 1"
     return None

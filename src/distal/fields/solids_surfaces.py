@@ -106,22 +106,13 @@ def wedge(p: vec3, angle: float = 1.0) -> float:
     return opening(vec2(abs(p.x), p.y), 0.5 * angle)
 
 
-def _cross(u: tuple[float, ...], v: tuple[float, ...]) -> tuple[float, ...]:
-    return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-
-
-def _from_to(u: vec3, v: vec3) -> tuple[float, ...]:
-    return tuple(y - x for x, y in zip(u, v, strict=True))
-
-
-def _inner(u: tuple[float, ...], v: tuple[float, ...]) -> float:
-    return sum(x * y for x, y in zip(u, v, strict=True))
-
-
 @func
 def beside_edge(p: vec3, start: vec3, end: vec3, normal: vec3) -> bool:
-    """Whether p lies outside the plane that stands on an edge; the edges run around normal."""
-    return dot(cross(end - start, normal), p - start) > 0.0
+    """Whether p lies outside the plane that stands on an edge; the edges run around normal.
+
+    True where there is no normal: corners in one line leave edges alone.
+    """
+    return dot(cross(end - start, normal), p - start) >= 0.0
 
 
 @func
@@ -136,18 +127,7 @@ def triangle_bounds(a: vec3, b: vec3, c: vec3) -> Bounds:
     return Bounds(min(a, b, c), max(a, b, c))
 
 
-def triangle_requires(a: vec3, b: vec3, c: vec3) -> str | None:
-    """Three corners in line span no face."""
-    sides = _from_to(a, b), _from_to(a, c)
-    normal = _cross(*sides)
-    if _inner(normal, normal) <= 1e-12 * _inner(sides[0], sides[0]) * _inner(sides[1], sides[1]):
-        return "a, b and c must not lie in one line"
-    return None
-
-
-@primitive(
-    "Triangle", EXACT_OUTSIDE, bounds=triangle_bounds, requires=triangle_requires, signed=False
-)
+@primitive("Triangle", EXACT_OUTSIDE, bounds=triangle_bounds, signed=False)
 @func
 def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C) -> float:
     """Flat triangle without thickness.
@@ -180,23 +160,7 @@ def quad_bounds(a: vec3, b: vec3, c: vec3, d: vec3) -> Bounds:
     return Bounds(min(a, b, c, d), max(a, b, c, d))
 
 
-def quad_requires(a: vec3, b: vec3, c: vec3, d: vec3) -> str | None:
-    """The corners must go around one flat face."""
-    corners = (a, b, c, d)
-    sides = [_from_to(corners[i - 1], corners[i]) for i in range(4)]
-    normal = _cross(_from_to(a, c), _from_to(b, d))
-    longest = sorted(_inner(side, side) for side in sides)[-1] ** 0.5
-    area = _inner(normal, normal) ** 0.5
-    if math.fabs(_inner(normal, sides[1])) > 1e-4 * area * longest:
-        return "a, b, c and d must lie in one plane"
-    if area == 0.0 or any(
-        _inner(_cross(sides[i - 1], sides[i]), normal) < -1e-9 * area * area for i in range(4)
-    ):
-        return "a, b, c and d must be the corners of a convex face, in the order around it"
-    return None
-
-
-@primitive("Quad", EXACT_OUTSIDE, bounds=quad_bounds, requires=quad_requires, signed=False)
+@primitive("Quad", EXACT_OUTSIDE, bounds=quad_bounds, signed=False)
 @func
 def quad(
     p: vec3,
@@ -205,13 +169,15 @@ def quad(
     c: vec3 = CORNER_C,
     d: vec3 = CORNER_D,
 ) -> float:
-    """Flat convex face with four corners, without thickness.
+    """Face with four corners, without thickness: the triangles a, b, c and a, c, d.
+
+    Flat and convex where the corners are; any others may be given too.
 
     Args:
         p: Point.
         a: One corner.
         b: The next corner around the face.
-        c: The corner opposite ``a``.
+        c: The corner opposite ``a``; the two triangles share the edge between them.
         d: The corner opposite ``b``.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
@@ -221,16 +187,4 @@ def quad(
         quad((2.5, 3.0, 6.5)) = 7.0
         quad((0.25, 3.0, -4.5)) = 5.0
     """
-    normal = cross(c - a, d - b)
-    outside = (
-        beside_edge(p, a, b, normal)
-        or beside_edge(p, b, c, normal)
-        or beside_edge(p, c, d, normal)
-        or beside_edge(p, d, a, normal)
-    )
-    above = dot(normal, p - a) / max(length(normal), TINY)
-    edges = nearer(
-        nearer(to_segment(p, a, b), to_segment(p, b, c)),
-        nearer(to_segment(p, c, d), to_segment(p, d, a)),
-    )
-    return select(outside, length(edges), abs(above))
+    return min(triangle(p, a, b, c), triangle(p, a, c, d))
