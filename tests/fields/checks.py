@@ -90,7 +90,7 @@ def _surface_is_sound(subject: Subject, surface: Surface, report: Report) -> Non
             f"the sign jumps at {_at(surface.jumps[0])}, where the value is"
             f" {subject.value(surface.jumps[:1])[0]:.4g} ({len(surface.jumps)} places)",
         )
-    if subject.signed and len(surface.points) and not _has_inside(subject, surface):
+    if subject.solid and len(surface.points) and not _has_inside(subject, surface):
         report.add(subject, "says it has an inside, but is nowhere negative")
     if not subject.signed:
         low, high = subject.region

@@ -6,18 +6,19 @@ What flows in: rows. What flows out: ``Sample``s whose numbers keep every limit 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 import numpy as np
 
-from distal.fields.claims import Limit, Primitive
+from distal.fields.claims import Limit, Operator, Primitive
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, VEC4, Vector
 from distal.ir.types import Buffer as BufferType
 from distal.lang.resources import Buffer
 from tests.fields.rows import Sample, Slot, default_of, slots_of
 
 TRIES: Final = 2000
+FRAME: Final = {"right", "up", "back"}  # axes that stand square on each other
 # A polygon without crossings and a line in space, for shapes that take points.
 OUTLINE: Final = [
     (0.6, 0.0), (0.3, 0.25), (0.35, 0.7), (-0.1, 0.3),
@@ -58,13 +59,25 @@ def sample_with(row: Primitive, given: Mapping[str, Any]) -> Sample:
 def random_sample(row: Primitive, rng: np.random.Generator) -> Sample | None:
     """A shape with random numbers, or None where none were found that go together."""
     for _ in range(TRIES):
-        values = {s.name: _draw(s, row.limits.get(s.name), rng) for s in slots_of(row.distance)}
+        values = drawn(slots_of(row.distance), row.limits, rng)
         if fits(row, values):
             return _sample(row, values)
     return None
 
 
-def fits(row: Primitive, values: dict[str, Any]) -> bool:
+def drawn(
+    slots: Iterable[Slot], limits: Mapping[str, Limit], rng: np.random.Generator
+) -> dict[str, Any]:
+    """Random values by name; whether they go together is not asked."""
+    values = {s.name: _draw(s, limits.get(s.name), rng) for s in slots}
+    if set(values) >= FRAME:
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        axes *= np.linalg.det(axes)
+        values |= dict(zip(("right", "up", "back"), map(tuple, axes.tolist()), strict=True))
+    return values
+
+
+def fits(row: Primitive | Operator, values: dict[str, Any]) -> bool:
     """Whether numbers keep the limits and the requirement of a row."""
     for name, limit in row.limits.items():
         if not all(keeps(limit, float(v)) for v in np.ravel(_plain(values[name]))):
@@ -87,7 +100,7 @@ def keeps(limit: Limit, value: float) -> bool:
             return True
 
 
-def _asked(row: Primitive, values: dict[str, Any]) -> dict[str, Any]:
+def _asked(row: Primitive | Operator, values: dict[str, Any]) -> dict[str, Any]:
     assert row.requires is not None
     code = row.requires.__code__
     names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]

@@ -71,6 +71,13 @@ def _read(line: str) -> Measured:
     call, _, value = line.rpartition(" = ")
     tree = ast.parse(call, mode="eval").body
     assert isinstance(tree, ast.Call) and isinstance(tree.func, ast.Name), line
-    args = tuple(ast.literal_eval(a) for a in tree.args)
-    kwargs = {str(k.arg): ast.literal_eval(k.value) for k in tree.keywords}
+    args = tuple(_value(a) for a in tree.args)
+    kwargs = {str(k.arg): _value(k.value) for k in tree.keywords}
     return Measured(line, tree.func.id, args, kwargs, float(ast.literal_eval(value)))
+
+
+def _value(node: ast.expr) -> Any:
+    """A literal; ``Buffer([…])`` is the list in it."""
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Buffer":
+        (node,) = node.args
+    return ast.literal_eval(node)

@@ -208,7 +208,7 @@ class Sample:
             if not s.is_choice
         ]
         slope, low, high = kernel.evaluate([np.zeros(1), *numbers], {}, resources)
-        return float(slope[0]), _endless(low[0]), _endless(high[0])
+        return float(slope[0]), endless(low[0]), endless(high[0])
 
 
 def _short(value: Any) -> str:
@@ -219,7 +219,7 @@ def _short(value: Any) -> str:
     return str(value)
 
 
-def _endless(corner: Sequence[float]) -> Doubles:
+def endless(corner: Sequence[float]) -> Doubles:
     found = np.array(corner, np.float64)
     found[np.abs(found) > UNBOUNDED / 1000.0] *= np.inf
     return found

@@ -28,7 +28,8 @@ class Subject:
         slope: Bound on |gradient| everywhere.
         low: Lower corner of its box; minus infinity where it has no end.
         high: Upper corner.
-        signed: Whether it has an inside.
+        signed: Whether it may have an inside.
+        solid: Whether it must have one: with a wall of thickness 0 it has none.
         estimate: Whether its slope is an estimate.
     """
 
@@ -40,6 +41,7 @@ class Subject:
     low: Doubles
     high: Doubles
     signed: bool = True
+    solid: bool = True
     estimate: bool = False
 
     def value(self, points: Doubles) -> Doubles:
@@ -64,6 +66,7 @@ def subject_of(sample: Sample) -> Subject:
     """A row with numbers, as a subject."""
     slope, low, high = sample.promise()
     row = sample.row
+    zeros = any(n in row.limits and 0.0 in np.ravel(v) for n, v in sample.numbers.items())
     return Subject(
         str(sample),
         sample.evaluate,
@@ -73,5 +76,6 @@ def subject_of(sample: Sample) -> Subject:
         low,
         high,
         row.signed,
+        row.signed and not zeros,
         row.estimate,
     )
