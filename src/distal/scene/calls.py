@@ -66,12 +66,13 @@ class FunctionCall:
         if not isinstance(value, Number | TextureValue | Buffer):
             nested: Expr = value.emit(composer, site)
             return nested
-        # Whatever paints several shapes has one set of numbers.
-        key = (self, name)
+        # What is read at several places, or by several functions, is one number of the program.
         made = composer.assembly.made
+        key = (FunctionCall, id(value))
         if key not in made:
-            made[key] = _made(composer.assembly, value, f"{_identifier(self.what)}_{name}")
-        found: Expr = made[key]
+            wish = f"{_identifier(self.what)}_{name}"
+            made[key] = (value, _made(composer.assembly, value, wish))  # alive, so the id stays
+        found: Expr = made[key][1]
         return found
 
     @property

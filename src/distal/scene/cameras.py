@@ -384,9 +384,7 @@ def _check_opening(found: Number, asked: Asked, most: float, *, whole: bool) -> 
     if largest is None or largest < most or (whole and largest == most):
         return
     limit = f"{'at most' if whole else 'below'} {most:.6g}"
-    hint = None
-    if asked.name == "fov":
-        hint = f"fov is in radians; write fov_deg={largest:g} for degrees"
+    hint = "fov is in radians; fov_deg= takes degrees" if asked.name == "fov" else None
     refuse(f"'{asked.label}' must be {limit}, not {largest:g}", hint, asked.place)
 
 

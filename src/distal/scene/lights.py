@@ -15,6 +15,7 @@ from typing import Any, Final
 from distal.diagnostics import Span
 from distal.fields.claims import Limit, Requirement
 from distal.lang.functions import Func
+from distal.render import ambient
 from distal.render import lights as library
 from distal.scene.calls import FunctionCall
 from distal.scene.numbers import arguments
@@ -74,30 +75,30 @@ class AmbientLight(Light):
 
     def __init__(self, intensity: Any = 0.1, color: Any = "#fff") -> None:
         given = {"intensity": intensity, "color": color}
-        self._shine(ambient=light_call(type(self).__name__, library.ambient_light, given))
+        self._shine(ambient=light_call(type(self).__name__, ambient.ambient_light, given))
 
 
 class HemisphereLight(Light):
-    """Light from above of one colour, from below of another, mixed between.
+    """Light of one colour from the upper half of space, of another from the lower.
 
     Args:
-        color: From above.
-        ground_color: From below.
+        sky: Colour of the upper half.
+        ground: Colour of the lower half.
         intensity: A factor on both.
-        up: Where above is; of any length.
+        up: Where the upper half is, of any length.
     """
 
     __slots__ = ()
 
     def __init__(
         self,
-        color: Any = "#cfe4ff",
-        ground_color: Any = "#443c30",
-        intensity: Any = 0.3,
+        sky: Any = (0.6, 0.75, 1.0),
+        ground: Any = (0.3, 0.25, 0.2),
+        intensity: Any = 0.5,
         up: Any = (0.0, 1.0, 0.0),
     ) -> None:
-        given = {"color": color, "ground_color": ground_color, "intensity": intensity, "up": up}
-        call = light_call(type(self).__name__, library.hemisphere_light, given, _up)
+        given = {"sky": sky, "ground": ground, "intensity": intensity, "up": up}
+        call = light_call(type(self).__name__, ambient.hemisphere_light, given, _up)
         self._shine(ambient=call)
 
 
@@ -108,7 +109,7 @@ class DistantLight(Light):
         direction: Towards the light, of any length.
         intensity: How bright a white matte surface shows that faces it.
         color: Its colour.
-        angle: What it fills of the sky, in radians: what softens its shadows (the sun: 0.0093).
+        angle: How wide it looks, in radians: what softens its shadows (the sun: 0.0093).
     """
 
     __slots__ = ()
@@ -156,8 +157,8 @@ class SpotLight(Light):
         target: What it points at.
         intensity: As for a point light.
         color: Its colour.
-        angle: The cone's opening, in radians; below pi.
-        softness: How much of the cone's edge is soft: 0 sharp, 1 from the axis on.
+        angle: The whole cone's opening, in radians; below pi.
+        softness: Share of half the angle over which the rim fades: 0 sharp, 1 from the axis on.
         radius: How large it is: what softens its shadows.
     """
 
@@ -203,6 +204,7 @@ def light_call(
         requires=requires,
         place=place,
         reserved=_SITE,
+        colors=("sky", "ground"),
     )
     return FunctionCall(what, function, values, place)
 
@@ -220,16 +222,12 @@ def as_light(value: Any, place: Span | None = None) -> Light:
     refuse_kind(f"a light is wanted, not {given}", hint, place)
 
 
-def _no_direction(name: str, vector: tuple[float, ...]) -> str | None:
-    return None if any(vector) else f"{name} is a vector of zeros, which points nowhere"
-
-
 def _up(up: tuple[float, ...]) -> str | None:
-    return _no_direction("up", up)
+    return None if any(up) else "up is a vector of zeros, which points nowhere"
 
 
 def _direction(direction: tuple[float, ...]) -> str | None:
-    return _no_direction("direction", direction)
+    return None if any(direction) else "direction is a vector of zeros, which points nowhere"
 
 
 def _aim(position: tuple[float, ...], target: tuple[float, ...], angle: float) -> str | None:
@@ -237,4 +235,4 @@ def _aim(position: tuple[float, ...], target: tuple[float, ...], angle: float) -
         return "position and target are the same place"
     if angle < math.pi:
         return None
-    return "angle is the cone's opening in radians, below pi; np.radians(…) makes it of degrees"
+    return "angle is the cone's opening in radians, below pi; np.radians makes it of degrees"

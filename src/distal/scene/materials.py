@@ -8,6 +8,7 @@ scene must know of a material to choose its renderer: whether rays bounce off it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
@@ -15,13 +16,13 @@ from distal.diagnostics import Span
 from distal.fields.claims import Limit
 from distal.ir.nodes import Expr
 from distal.ir.types import FLOAT, VEC3, Struct
-from distal.lang import func, vec3
-from distal.lang.expressions import Symbolic
+from distal.lang import func, log, max, vec3
+from distal.lang.expressions import Expression, Symbolic
 from distal.lang.functions import Func
 from distal.lang.values import VectorValue
 from distal.render import material as library
 from distal.scene.calls import PLACE_NAMES, Composer, FunctionCall, Pattern
-from distal.scene.conversion import Asked, Number, unwrapped
+from distal.scene.conversion import Asked, Number, number, unwrapped
 from distal.scene.numbers import arguments
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
@@ -35,12 +36,15 @@ _LIMITS: Final = {
     "metal": Limit.FRACTION,
     "fresnel": Limit.FRACTION,
     "amount": Limit.FRACTION,
-    "intensity": Limit.NOT_NEGATIVE,
+    "strength": Limit.NOT_NEGATIVE,
+    "absorption": Limit.NOT_NEGATIVE,
 }
 _COLORS: Final = ("color", "emission", "absorption")
 _WEIGHTS: Final = ("diffuse", "specular", "transmission")
 # Weights like 0.85, 0.05 and 0.1 add up to a little more than 1 in floats.
 _SLACK: Final = 1e-6
+# No glass is black: what it leaves of the light at least, so that its logarithm is finite.
+_DARKEST: Final = 1e-4
 
 
 class Material:
@@ -106,7 +110,6 @@ class Material:
         }
         place = author_place()
         call = _call("Material", surface, given, place)
-        _check_weights(call.values, place)
         reflects = _may_be(call.values["specular"]) or _may_be(call.values["fresnel"])
         self._be(call, reflects, _may_be(call.values["transmission"]))
 
@@ -279,19 +282,29 @@ def matte(color: Any = (1.0, 1.0, 1.0)) -> Material:
     return _made("matte", library.matte, given)
 
 
-def glossy(color: Any = (1.0, 1.0, 1.0), specular: Any = 0.5, roughness: Any = 0.1) -> Material:
-    """A material that scatters a part and mirrors a part, alike from all sides.
+def glossy(
+    color: Any = (1.0, 1.0, 1.0),
+    diffuse: Any = 0.5,
+    specular: Any = 0.5,
+    roughness: Any = 0.0,
+) -> Material:
+    """A material that scatters a part of the light and mirrors a part, alike from all sides.
 
     Args:
         color: What it scatters.
-        specular: Share of light mirrored; the rest is scattered.
+        diffuse: Share of light scattered.
+        specular: Share of light mirrored.
         roughness: 0 mirrors sharply, 1 hardly at all.
+
+    Raises:
+        ValueError: The shares add up to more than 1, or a number is out of its range.
+        TypeError: Something is of another kind.
     """
-    given = {"color": color, "specular": specular, "roughness": roughness}
+    given = {"color": color, "diffuse": diffuse, "specular": specular, "roughness": roughness}
     return _made("glossy", library.glossy, given, reflects=True)
 
 
-def metal(color: Any = (0.9, 0.9, 0.9), roughness: Any = 0.1) -> Material:
+def metal(color: Any = (0.91, 0.92, 0.92), roughness: Any = 0.2) -> Material:
     """A metal: it mirrors in its own colour.
 
     Args:
@@ -312,25 +325,40 @@ def mirror(color: Any = (1.0, 1.0, 1.0)) -> Material:
     return _made("mirror", library.mirror, given, reflects=True)
 
 
-def glass(
-    ior: Any = 1.5,
-    color: Any = (1.0, 1.0, 1.0),
-    absorption: Any = (0.0, 0.0, 0.0),
-    roughness: Any = 0.0,
-) -> Material:
+def glass(ior: Any = 1.5, color: Any = None, *, absorption: Any = None) -> Material:
     """Glass, water, ice: light goes in, and is mirrored more the flatter it comes.
 
     Args:
-        ior: Index of refraction: 1.33 water, 1.5 glass, 2.4 diamond.
-        color: What passes through its surface.
-        absorption: What a unit of its inside takes from light, for each colour.
-        roughness: 0 clear.
+        ior: Index of refraction: 1.33 water, 1.5 glass, 2.42 diamond.
+        color: What white light becomes on one unit of way inside; instead of ``absorption``.
+        absorption: How much of each colour the inside takes for each unit of way.
+
+    Raises:
+        ValueError: The index is not above 0, or a number is out of its range.
+        TypeError: Something is of another kind, or both color and absorption are given.
     """
-    given = {"ior": ior, "color": color, "absorption": absorption, "roughness": roughness}
-    return _made("glass", library.glass, given, reflects=True, refracts=True)
+    place = author_place()
+    if color is not None and absorption is not None:
+        refuse_kind("glass takes color or absorption, not both", "each tells the other", place)
+    given = {"ior": ior}
+    if color is not None:
+        given["absorption"] = _absorption(color, place)
+    elif absorption is not None:
+        given["absorption"] = absorption
+    return _made("glass", library.glass, given, place, reflects=True, refracts=True)
 
 
-def plastic(color: Any = (1.0, 1.0, 1.0), ior: Any = 1.5, roughness: Any = 0.1) -> Material:
+def _absorption(color: Any, place: Span | None) -> Any:
+    """What takes white light to a colour in one unit of way (Beer and Lambert)."""
+    asked = Asked("color", "glass", VEC3, Limit.FRACTION, is_color=True, place=place)
+    found = number(color, asked)
+    if isinstance(found.value, Expression):
+        return -log(max(found.value, _DARKEST))
+    assert isinstance(found.value, tuple)
+    return tuple(0.0 - math.log(c if c > _DARKEST else _DARKEST) for c in found.value)
+
+
+def plastic(color: Any = (1.0, 1.0, 1.0), roughness: Any = 0.2, ior: Any = 1.5) -> Material:
     """A scattering material under a clear coat: it mirrors more the flatter light comes.
 
     Args:
@@ -342,15 +370,14 @@ def plastic(color: Any = (1.0, 1.0, 1.0), ior: Any = 1.5, roughness: Any = 0.1) 
     return _made("plastic", library.plastic, given, reflects=True)
 
 
-def emissive(color: Any = (1.0, 1.0, 1.0), intensity: Any = 1.0) -> Material:
+def emissive(color: Any = (1.0, 1.0, 1.0), strength: Any = 1.0) -> Material:
     """A material that shines by itself and shows nothing else.
 
     Args:
         color: What it gives off.
-        intensity: A factor on it; beyond 1 too.
+        strength: A factor on it; beyond 1 too.
     """
-    given = {"color": color, "intensity": intensity}
-    return _made("emissive", library.emissive, given)
+    return _made("emissive", library.emissive, {"color": color, "strength": strength})
 
 
 def _made(
@@ -384,6 +411,7 @@ def _call(
         colors=_COLORS,
         accept=accept,
     )
+    _check_weights(what, values, place)
     return FunctionCall(what, function, values, place)
 
 
@@ -392,13 +420,13 @@ def _may_be(value: Any) -> bool:
     return not isinstance(value, Number) or value.may_exceed(0.0)
 
 
-def _check_weights(values: Mapping[str, Any], place: Span | None) -> None:
-    known = {n: values[n].plain for n in _WEIGHTS if isinstance(values[n], Number)}
+def _check_weights(what: str, values: Mapping[str, Any], place: Span | None) -> None:
+    known = {n: values[n].plain for n in _WEIGHTS if isinstance(values.get(n), Number)}
     total = sum(weight for weight in known.values() if weight is not None)
     if total > 1.0 + _SLACK:
         listed = " + ".join(f"{name} {known[name]:g}" for name in known if known[name])
         refuse(
-            f"the weights of a Material add up to {total:g}: {listed}",
+            f"the weights of {what} add up to {total:g}: {listed}",
             "give away at most all of the light: a sum of 1",
             place,
         )
