@@ -57,11 +57,6 @@ from distal.fields.solids_regular import (
     dodecahedron,
     icosahedron,
     octahedron_cheap,
-    smooth_dodecahedron,
-    smooth_icosahedron,
-    smooth_octahedron,
-    smooth_truncated_icosahedron,
-    smooth_truncated_octahedron,
     truncated_icosahedron,
     truncated_octahedron,
 )
@@ -77,6 +72,13 @@ from distal.fields.solids_round import (
     ellipsoid,
     sphere,
     superellipsoid,
+)
+from distal.fields.solids_smoothed import (
+    smooth_dodecahedron,
+    smooth_icosahedron,
+    smooth_octahedron,
+    smooth_truncated_icosahedron,
+    smooth_truncated_octahedron,
 )
 from distal.fields.solids_surfaces import (
     half_space,

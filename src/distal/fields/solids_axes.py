@@ -6,6 +6,7 @@ or the box of what lies along it. Declares no shapes.
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from distal.fields.claims import Bounds
@@ -13,6 +14,10 @@ from distal.lang import dot, func, length, max, min, sqrt, vec2, vec3
 
 # Keeps a division defined where numbers vanish; far below any length that a scene has.
 TINY: Final = 1e-12
+
+# Where shapes between two points stand unless told otherwise.
+LOW_END: Final = vec3(0.0, -0.5, 0.0)
+HIGH_END: Final = vec3(0.0, 0.5, 0.0)
 
 
 @func
@@ -72,3 +77,8 @@ def apart(start: vec3, end: vec3) -> str | None:
     if tuple(start) == tuple(end):
         return "start and end must be two different points"
     return None
+
+
+def below_pi(angle: float) -> str | None:
+    """A cone opens by less than half a turn on either side."""
+    return None if angle < math.pi else "angle must be below pi"

@@ -6,24 +6,21 @@ looked at as how far from the axis and how high above the middle.
 
 from __future__ import annotations
 
-import math
-from typing import Final
-
 from distal.fields.claims import EXACT, Bounds, Limit, primitive
 from distal.fields.solids_axes import (
+    HIGH_END,
+    LOW_END,
     TINY,
     apart,
     around_axis,
     around_y,
     balls_bounds,
+    below_pi,
     discs_bounds,
     upright_bounds,
 )
 from distal.fields.solids_boxes import CONVEX_BOUND
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
-
-LOW_END: Final = vec3(0.0, -0.5, 0.0)
-HIGH_END: Final = vec3(0.0, 0.5, 0.0)
 
 
 @func
@@ -35,11 +32,6 @@ def opening(q: vec2, angle: float) -> float:
     # Where the side is not nearest, its tip is.
     tip = length(q)
     return select(q.x * s > q.y * c, beside, select(beside > 0.0, tip, -tip))
-
-
-def below_pi(angle: float) -> str | None:
-    """A cone opens by less than half a turn on either side."""
-    return None if angle < math.pi else "angle must be below pi"
 
 
 @primitive("InfiniteCone", EXACT, limits={"angle": Limit.POSITIVE}, requires=below_pi)

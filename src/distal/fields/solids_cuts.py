@@ -10,12 +10,19 @@ import math
 from typing import Final
 
 from distal.fields.claims import EXACT, Bounds, Limit, primitive
-from distal.fields.solids_axes import apart, around_axis, around_y, discs_bounds, upright_bounds
+from distal.fields.solids_axes import (
+    HIGH_END,
+    LOW_END,
+    apart,
+    around_axis,
+    around_y,
+    below_pi,
+    discs_bounds,
+    upright_bounds,
+)
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
 
 PI: Final = math.pi
-LOW_END: Final = vec3(0.0, -0.5, 0.0)
-HIGH_END: Final = vec3(0.0, 0.5, 0.0)
 
 
 @func
@@ -169,11 +176,6 @@ def solid_angle_bounds(angle: float, radius: float) -> Bounds:
     return upright_bounds(
         radius * select(angle > 0.5 * PI, 1.0, sin(angle)), min(radius * cos(angle), 0.0), radius
     )
-
-
-def below_pi(angle: float) -> str | None:
-    """A cone opens by less than half a turn on either side."""
-    return None if angle < PI else "angle must be below pi"
 
 
 @primitive(

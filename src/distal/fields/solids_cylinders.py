@@ -5,11 +5,11 @@ What flows in: a point and the numbers of a shape. What flows out: the distance.
 
 from __future__ import annotations
 
-from typing import Final
-
 from distal.fields.claims import EXACT, Bounds, Limit, primitive
 from distal.fields.flats_edges import inside_both
 from distal.fields.solids_axes import (
+    HIGH_END,
+    LOW_END,
     TINY,
     apart,
     around_axis,
@@ -19,9 +19,6 @@ from distal.fields.solids_axes import (
     upright_bounds,
 )
 from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
-
-LOW_END: Final = vec3(0.0, -0.5, 0.0)
-HIGH_END: Final = vec3(0.0, 0.5, 0.0)
 
 
 @primitive("InfiniteCylinder", EXACT, limits={"radius": Limit.POSITIVE})

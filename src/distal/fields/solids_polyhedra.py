@@ -10,7 +10,8 @@ import math
 from typing import Any, Final
 
 from distal.fields.claims import EXACT, Bounds, Limit, primitive
-from distal.fields.solids_boxes import CONVEX_BOUND
+from distal.fields.solids_boxes import CONVEX_BOUND, UNIT_CUBE
+from distal.fields.solids_regular import DIAGONAL, RADIUS, octahedron_bounds
 from distal.lang import (
     Buffer,
     abs,
@@ -28,10 +29,7 @@ from distal.lang import (
 )
 from distal.lang import size as count_of
 
-RADIUS: Final = {"radius": Limit.POSITIVE}
-DIAGONAL: Final = 1.0 / math.sqrt(3.0)
 HALF_ROOT: Final = math.sqrt(0.5)
-UNIT_CUBE: Final = vec3(1.0)
 CUT_CORNERS: Final = Buffer(
     [
         vec4(x * DIAGONAL, y * DIAGONAL, z * DIAGONAL, 0.6)
@@ -52,12 +50,6 @@ def face_edge(height: float, past_edge: float, past_end: float) -> float:
         past_end: Along the edge, how far past its end.
     """
     return select(past_edge > 0.0, length(vec3(height, past_edge, max(past_end, 0.0))), height)
-
-
-@func
-def octahedron_bounds(radius: float) -> Bounds:
-    """The box of the vertices."""
-    return Bounds(vec3(-radius), vec3(radius))
 
 
 @primitive("Octahedron", EXACT, bounds=octahedron_bounds, limits=RADIUS)

@@ -9,6 +9,7 @@ from typing import Final
 
 from distal.fields.claims import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, primitive
 from distal.fields.solids_axes import TINY
+from distal.fields.solids_regular import along_vertices
 from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec3
 
 EGG: Final = vec3(0.5, 0.75, 0.5)
@@ -145,9 +146,6 @@ def superellipsoid(
 # A bump reaches half way to the next: the cosine of half the angle between the vertices of an
 # icosahedron.
 BUMP_EDGE: Final = 0.8506508083520399
-# Of an icosahedron with vertices at distance 1.
-VERTEX_SHORT: Final = 0.5257311121191336
-VERTEX_LONG: Final = 0.8506508083520399
 # The steepest descent of a bump along the angle: 4 / (3 sqrt(3)) * sqrt(2 / (1 - BUMP_EDGE)).
 BUMP_SLOPE: Final = 2.8172
 
@@ -195,12 +193,7 @@ def blob(p: vec3, radius: float = 0.75, height: float = 0.2) -> float:
         blob((0.0, 0.0, 0.0), 1.0, 0.25) = -1.0
     """
     far = length(p)
-    q = abs(p)
-    towards = max(
-        q.y * VERTEX_SHORT + q.z * VERTEX_LONG,
-        q.z * VERTEX_SHORT + q.x * VERTEX_LONG,
-        q.x * VERTEX_SHORT + q.y * VERTEX_LONG,
-    )
+    towards = along_vertices(abs(p))
     # 1 - cosine of the angle to the nearest bump's top, as a share of that at its foot.
     outward = clamp((1.0 - towards / max(far, TINY)) / (1.0 - BUMP_EDGE), 0.0, 1.0)
     bump = (1.0 - outward) * (1.0 - outward)
