@@ -10,10 +10,10 @@ import numpy as np
 from distal.executor_hook import executor
 from distal.ir.build import field
 from distal.ir.nodes import Param, Read, Return
-from distal.ir.types import FLOAT, VEC2, VEC3
+from distal.ir.types import VEC2, VEC3
 from distal.lang.composed import Composed
 
-TYPES = {"uv": VEC2, "aspect": FLOAT}
+TYPES = {"uv": VEC2}
 
 
 class Probe(Composed):

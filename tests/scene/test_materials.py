@@ -139,6 +139,23 @@ def test_a_function_may_give_a_whole_surface():
         as_material(own)
 
 
+def test_glass_takes_on_its_color_in_one_unit_of_way():
+    for given in ("#808080", (0.21586,) * 3, color("Tint", "#808080")):
+        taken = emitted(glass(color=given), "absorption", p=HERE)
+        assert np.exp(-taken) == pytest.approx((0.21586,) * 3, rel=1e-4)
+    assert emitted(glass(color=(1, 0, 1)), "absorption", p=HERE)[1] < 10.0, "finite"
+    assert emitted(glass(absorption=(0, 1, 2)), "absorption", p=HERE) == pytest.approx((0, 1, 2))
+    with pytest.raises(SceneTypeError, match="color or absorption, not both"):
+        glass(color="#fff", absorption=1.0)
+
+
+def test_what_shines_may_be_brighter_than_white():
+    made = emissive((4.0, 2.0, 1.0), strength=3.0)
+    assert emitted(made, "emission", p=HERE) == pytest.approx((12.0, 6.0, 3.0))
+    with pytest.raises(SceneValueError, match="between 0 and 1"):
+        matte((4.0, 2.0, 1.0))
+
+
 def test_two_materials_mix_in_every_number():
     mixed = matte(RED).mix(glass(1.4), ramp)
     found = surface(mixed)

@@ -25,8 +25,8 @@ from distal.scene.numbers import arguments
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
 
-# What the scene gives each ray: where in the picture it is, and the picture's width by its height.
-_SITE: Final = frozenset(("uv", "aspect"))
+# What the scene gives each ray: where in the picture it is, and the pixels of the picture.
+_SITE: Final = frozenset(("uv", "resolution"))
 _LIMITS: Final = dict.fromkeys(
     ("fov", "distance", "height", "screen_height", "screen_distance"), Limit.POSITIVE
 )
@@ -40,7 +40,7 @@ class BaseCamera:
 
     Attributes:
         call: ``(uv) -> Ray``; uv is -1 to 1 from bottom to top, x by the same unit. A function may
-            also ask for ``aspect``, the picture's width by its height.
+            also ask for ``resolution``, the pixels of the picture.
     """
 
     __slots__ = ("__weakref__", "call")

@@ -8,7 +8,6 @@ scene must know of a material to choose its renderer: whether rays bounce off it
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
@@ -28,6 +27,7 @@ from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
 
 _LIMITS: Final = {
+    "color": Limit.FRACTION,
     "diffuse": Limit.FRACTION,
     "specular": Limit.FRACTION,
     "transmission": Limit.FRACTION,
@@ -36,7 +36,6 @@ _LIMITS: Final = {
     "metal": Limit.FRACTION,
     "fresnel": Limit.FRACTION,
     "amount": Limit.FRACTION,
-    "strength": Limit.NOT_NEGATIVE,
     "absorption": Limit.NOT_NEGATIVE,
 }
 _COLORS: Final = ("color", "emission", "absorption")
@@ -213,7 +212,7 @@ def own_pattern(
 ) -> Pattern | Material:
     """An author's function of a place as a pattern, or as a material where it gives a Surface."""
     what = function.name
-    call = _call(what, function, kwargs, place, args)
+    call = _call(what, function, kwargs, place, args, {})
     result = call.result
     if isinstance(result, Struct) and result.name == "Surface":
         return Material.of(call, reflects=True, refracts=True)
@@ -351,11 +350,10 @@ def glass(ior: Any = 1.5, color: Any = None, *, absorption: Any = None) -> Mater
 def _absorption(color: Any, place: Span | None) -> Any:
     """What takes white light to a colour in one unit of way (Beer and Lambert)."""
     asked = Asked("color", "glass", VEC3, Limit.FRACTION, is_color=True, place=place)
-    found = number(color, asked)
-    if isinstance(found.value, Expression):
-        return -log(max(found.value, _DARKEST))
-    assert isinstance(found.value, tuple)
-    return tuple(0.0 - math.log(c if c > _DARKEST else _DARKEST) for c in found.value)
+    left: Any = number(color, asked).value
+    if not isinstance(left, Expression):
+        left = vec3(*left)
+    return -log(max(left, _DARKEST))
 
 
 def plastic(color: Any = (1.0, 1.0, 1.0), roughness: Any = 0.2, ior: Any = 1.5) -> Material:
@@ -377,7 +375,13 @@ def emissive(color: Any = (1.0, 1.0, 1.0), strength: Any = 1.0) -> Material:
         color: What it gives off.
         strength: A factor on it; beyond 1 too.
     """
-    return _made("emissive", library.emissive, {"color": color, "strength": strength})
+    place = author_place()
+    given = {"color": color, "strength": strength}
+    # What shines may be brighter than white.
+    call = _call(
+        "emissive", library.emissive, given, place, limits={"strength": Limit.NOT_NEGATIVE}
+    )
+    return Material.of(call, reflects=False, refracts=False)
 
 
 def _made(
@@ -399,13 +403,14 @@ def _call(
     given: Mapping[str, Any],
     place: Span | None,
     args: tuple[Any, ...] = (),
+    limits: Mapping[str, Limit] = _LIMITS,
 ) -> FunctionCall:
     values = arguments(
         function,
         args,
         given,
         what=what,
-        limits=_LIMITS,
+        limits=limits,
         place=place,
         reserved=PLACE_NAMES,
         colors=_COLORS,

@@ -124,7 +124,7 @@ def arguments(
         what: What is being made, for messages: "Sphere".
         limits: What each number must be.
         requires: Tells why numbers do not go together. Asked with plain values by name; where a
-            slider stands, with its default; not asked where something is computed.
+            slider stands, with its default; not asked where one that it names is computed.
         place: The author's line.
         reserved: Parameters that are no numbers.
         colors: Parameters that understand "#rrggbb"; ``color`` and ``…_color`` always do.
@@ -314,8 +314,9 @@ def _check_together(
         return
     wanted = inspect.signature(requires).parameters
     takes_all = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in wanted.values())
-    plain = {n: _plain(v) for n, v in values.items() if takes_all or n in wanted}
-    if None in plain.values():
+    known = {n: _plain(v) for n, v in values.items() if takes_all or n in wanted}
+    plain = {n: v for n, v in known.items() if v is not None}
+    if len(plain) < len(known) and not takes_all:
         return
     reason = requires(**plain)
     if reason is not None:
