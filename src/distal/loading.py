@@ -1,6 +1,6 @@
 """Finding scenes: a file's path, or the name of a gallery example, to the object to compile.
 
-What flows in: ``FILE[:NAME]``. What flows out: a ``Func`` or ``Image``. A file is run once from a
+What flows in: ``FILE[:NAME]``. What flows out: a ``Func``, an ``Image`` or a scene. A file is run once from a
 snapshot of its text, so that a later edit never mixes in.
 """
 
@@ -12,9 +12,15 @@ import sys
 import types
 from collections.abc import Mapping, Set
 from pathlib import Path
+from typing import TypeAlias
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.ir.nodes import EntryKind
+from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
+
+# What a file may define for us.
+SceneCode: TypeAlias = Func | Composed
 
 _DEFAULT_NAMES = ("scene", "picture")
 
@@ -27,13 +33,13 @@ def gallery() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.py"))} if folder.is_dir() else {}
 
 
-def load(path: str | Path, name: str | None = None) -> Func:
+def load(path: str | Path, name: str | None = None) -> SceneCode:
     """Load a scene from a file.
 
     Args:
         path: A Python file, or ``example:NAME`` for one of the gallery.
-        name: Which of its functions. Without it: the only ``@image`` defined in the file, else
-            the one called ``scene`` or ``picture``.
+        name: Which of its functions, scenes or shapes. Without it: the only scene or ``@image``
+            defined in the file, else the one called ``scene`` or ``picture``.
 
     Raises:
         LoadError: There is no such file or name, or the file fails when run.
@@ -150,28 +156,30 @@ def _failure(file: Path, error: Exception) -> str:
     return "\n".join(lines)
 
 
-def _pick(module: types.ModuleType, file: Path, name: str | None) -> Func:
-    found = {key: value for key, value in vars(module).items() if isinstance(value, Func)}
+def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
+    found = {k: v for k, v in vars(module).items() if isinstance(v, Func | Composed)}
     if name is not None:
         if name not in found:
-            raise LoadError(f"{file} has no @image or @func '{name}'; {_listed(found)}")
+            raise LoadError(f"{file} has no scene, @image or @func '{name}'; {_listed(found)}")
         return found[name]
-    images = {
-        key: value
-        for key, value in found.items()
-        if isinstance(value, Image) and value.__module__ == module.__name__
-    }
-    if len(images) == 1:
-        return next(iter(images.values()))
+    pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
+    if len(set(map(id, pictures.values()))) == 1:
+        return next(iter(pictures.values()))
     for wanted in _DEFAULT_NAMES:
-        if wanted in images:
-            return images[wanted]
-    if not images:
-        raise LoadError(f"{file} defines no @image; {_listed(found)}")
-    raise LoadError(f"{file} defines several images; say which: {file}:NAME; {_listed(images)}")
+        if wanted in pictures:
+            return pictures[wanted]
+    if not pictures:
+        raise LoadError(f"{file} defines no scene and no @image; {_listed(found)}")
+    raise LoadError(f"{file} defines several pictures; say which: {file}:NAME; {_listed(pictures)}")
 
 
-def _listed(found: Mapping[str, Func]) -> str:
+def _is_own_picture(value: SceneCode, module: types.ModuleType) -> bool:
+    if isinstance(value, Image):
+        return value.__module__ == module.__name__
+    return isinstance(value, Composed) and value.kind is EntryKind.IMAGE
+
+
+def _listed(found: Mapping[str, SceneCode]) -> str:
     if not found:
         return "it has no scene code at all"
     return f"it has: {', '.join(found)}"

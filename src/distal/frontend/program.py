@@ -54,6 +54,7 @@ class Program:
         self._names: set[str] = set()
         self._uniforms: dict[str, tuple[Parameter, UniformDeclaration]] = {}
         self._numbers: dict[str, UniformDeclaration] = {}
+        self._wishes: dict[str, int] = {}  # how often a number was to be called that
         self.assembly = Assembly(self)
         self._resources: dict[int, ResourceDeclaration] = {}
         self._structs: dict[str, list[Struct]] = {}
@@ -189,10 +190,12 @@ class Program:
 
         Its name has a capital letter, which no parameter's name has.
         """
-        first = f"{wish[:1].upper()}{wish[1:]}"
-        name, n = first, 2
+        first = name = f"{wish[:1].upper()}{wish[1:]}"
+        n = self._wishes.get(first, 1)
         while name in self._numbers:
-            name, n = f"{first}_{n}", n + 1
+            n += 1
+            name = f"{first}_{n}"
+        self._wishes[first] = n
         self._numbers[name] = UniformDeclaration(name, type, Origin.NUMBER, value)
         return Uniform(name, type)
 

@@ -1,0 +1,245 @@
+"""What a ray brings back: one surface, a chain of mirrors, or a tree of mirrors and glass.
+
+Three renderers, of which a scene takes the cheapest that shows all its materials. The last follows
+both the mirrored and the refracted ray, by an explicit stack.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.claims import Bounds
+from distal.lang import (
+    Field3,
+    array,
+    dot,
+    exp,
+    func,
+    max,
+    reflect,
+    refract,
+    struct,
+    vec3,
+    vec4,
+)
+from distal.render.camera import Ray
+from distal.render.lights import LightSample
+from distal.render.march import Hit, March, march
+from distal.render.material import Surface
+from distal.render.shade import direct_light, fogged, mirrored, surface_normal
+
+STACK = 12
+DIMMEST = 0.004  # rays that would add less than a display's step are not followed
+
+
+@struct
+class Look:
+    """The numbers of shading: how far occlusion looks (0: none), and fog."""
+
+    occlusion: float
+    fog_color: vec3
+    fog_density: float
+
+
+@func
+def place_on(ray: Ray, hit: Hit) -> vec3:
+    """Where a ray ended."""
+    return ray.origin + hit.t * ray.direction
+
+
+@func
+def seen_plain(
+    ray: Ray,
+    field: Field3,
+    surface: Callable[[vec3], Surface],
+    lights: Callable[[int, vec3], LightSample],
+    ambient: Callable[[vec3], vec3],
+    background: Callable[[vec3], vec3],
+    bounds: Bounds,
+    numbers: March,
+    look: Look,
+    steps: int,
+    light_count: int,
+    shadow_steps: int,
+) -> vec4:
+    """Direct light on the first surface; alpha is 0 where there is none."""
+    hit = march(field, ray, bounds, numbers, steps)
+    if not hit.found:
+        return vec4(background(ray.direction), 0.0)
+    p = place_on(ray, hit)
+    n = hit.side * surface_normal(field, p)
+    lifted = p + (2.0 * numbers.threshold * hit.t + 1e-4) * n
+    color = direct_light(
+        field,
+        lights,
+        ambient,
+        surface(p),
+        lifted,
+        n,
+        -ray.direction,
+        hit.side,
+        bounds,
+        numbers,
+        light_count,
+        shadow_steps,
+        look.occlusion,
+    )
+    return vec4(fogged(color, hit.t, look.fog_color, look.fog_density), 1.0)
+
+
+@func
+def seen_mirrored(
+    ray: Ray,
+    field: Field3,
+    surface: Callable[[vec3], Surface],
+    lights: Callable[[int, vec3], LightSample],
+    ambient: Callable[[vec3], vec3],
+    background: Callable[[vec3], vec3],
+    bounds: Bounds,
+    numbers: March,
+    look: Look,
+    steps: int,
+    light_count: int,
+    shadow_steps: int,
+    bounces: int,
+) -> vec4:
+    """As ``seen_plain``, and what mirrors show: one ray goes on."""
+    color = vec3(0.0)
+    throughput = vec3(1.0)
+    alpha = 0.0
+    origin = ray.origin
+    direction = ray.direction
+    for i in range(bounces + 1):
+        here = Ray(origin, direction)
+        hit = march(field, here, bounds, numbers, steps)
+        if not hit.found:
+            color += throughput * background(direction)
+            break
+        alpha = 1.0
+        p = place_on(here, hit)
+        n = hit.side * surface_normal(field, p)
+        lift = 2.0 * numbers.threshold * hit.t + 1e-4
+        material = surface(p)
+        direct = direct_light(
+            field,
+            lights,
+            ambient,
+            material,
+            p + lift * n,
+            n,
+            -direction,
+            hit.side,
+            bounds,
+            numbers,
+            light_count,
+            shadow_steps,
+            look.occlusion,
+        )
+        color += throughput * fogged(direct, hit.t, look.fog_color, look.fog_density)
+        clear = exp(-look.fog_density * hit.t)
+        share = mirrored(material, dot(n, direction), 1.0) * (1.0 - material.roughness)
+        throughput = throughput * share * clear
+        if max(throughput.x, max(throughput.y, throughput.z)) < DIMMEST:
+            break
+        origin = p + lift * n
+        direction = reflect(direction, n)
+    return vec4(color, alpha)
+
+
+@func
+def seen_refracted(
+    ray: Ray,
+    field: Field3,
+    surface: Callable[[vec3], Surface],
+    lights: Callable[[int, vec3], LightSample],
+    ambient: Callable[[vec3], vec3],
+    background: Callable[[vec3], vec3],
+    bounds: Bounds,
+    numbers: March,
+    look: Look,
+    steps: int,
+    light_count: int,
+    shadow_steps: int,
+    bounces: int,
+) -> vec4:
+    """As ``seen_mirrored``, and what glass shows: mirrored and refracted rays both go on."""
+    origins: array[vec3, STACK] = [ray.origin] * STACK
+    directions: array[vec3, STACK] = [ray.direction] * STACK
+    throughputs: array[vec3, STACK] = [vec3(1.0)] * STACK
+    depths: array[int, STACK] = [0] * STACK
+    waiting = 1
+    color = vec3(0.0)
+    alpha = 0.0
+    for _ in range(4 * bounces + 4):
+        if waiting == 0:
+            break
+        waiting -= 1
+        direction = directions[waiting]
+        throughput = throughputs[waiting]
+        depth = depths[waiting]
+        here = Ray(origins[waiting], direction)
+        hit = march(field, here, bounds, numbers, steps)
+        if not hit.found:
+            color += throughput * background(direction)
+            continue
+        alpha = 1.0
+        p = place_on(here, hit)
+        n = hit.side * surface_normal(field, p)
+        lift = 2.0 * numbers.threshold * hit.t + 1e-4
+        material = surface(p)
+        if hit.side < 0.0:
+            throughput = throughput * exp(-material.absorption * hit.t)
+        direct = direct_light(
+            field,
+            lights,
+            ambient,
+            material,
+            p + lift * n,
+            n,
+            -direction,
+            hit.side,
+            bounds,
+            numbers,
+            light_count,
+            shadow_steps,
+            look.occlusion,
+        )
+        if hit.side > 0.0:
+            direct = fogged(direct, hit.t, look.fog_color, look.fog_density)
+            color += throughput * direct
+            throughput = throughput * exp(-look.fog_density * hit.t)
+        if depth >= bounces:
+            continue
+        eta = material.ior if hit.side < 0.0 else 1.0 / material.ior
+        bent = refract(direction, n, eta)
+        total = dot(bent, bent) < 0.5
+        share = mirrored(material, dot(n, direction), hit.side)
+        through = material.color * material.transmission
+        if material.fresnel > 0.5:
+            through = through * (1.0 - share)
+        if total:
+            share = share + through
+            if material.transmission > 0.0:
+                share = max(share, material.color * material.transmission)
+            through = vec3(0.0)
+        mirror_share = throughput * share * (1.0 - material.roughness)
+        through_share = throughput * through
+        if largest(mirror_share) >= DIMMEST and waiting < STACK:
+            origins[waiting] = p + lift * n
+            directions[waiting] = reflect(direction, n)
+            throughputs[waiting] = mirror_share
+            depths[waiting] = depth + 1
+            waiting += 1
+        if largest(through_share) >= DIMMEST and waiting < STACK:
+            origins[waiting] = p - lift * n
+            directions[waiting] = bent
+            throughputs[waiting] = through_share
+            depths[waiting] = depth + 1
+            waiting += 1
+    return vec4(color, alpha)
+
+
+@func
+def largest(v: vec3) -> float:
+    """The largest component."""
+    return max(v.x, max(v.y, v.z))

@@ -1,0 +1,99 @@
+"""Sphere tracing: along a ray to the nearest surface.
+
+Each step goes as far as the field promises no surface, and a little further; when two neighbouring
+spheres do not overlap the step is taken back (Keinert et al., "Enhanced Sphere Tracing", 2014).
+"""
+
+from __future__ import annotations
+
+from distal.fields.claims import UNBOUNDED, Bounds
+from distal.lang import Field3, abs, func, max, min, select, struct, vec2
+from distal.render.camera import Ray
+
+RELAXATION = 1.2
+# When steps run out, the closest approach is a hit if it came within so many thresholds.
+FORGIVING = 6.0
+
+
+@struct
+class March:
+    """The numbers of a march.
+
+    ``divisor``: what distances are divided by for a safe step. ``near`` and ``far``: where rays
+    begin and end. ``threshold``: how near is a hit, as a share of the way along the ray.
+    """
+
+    divisor: float
+    near: float
+    far: float
+    threshold: float
+
+
+@struct
+class Hit:
+    """Where a ray ended: how far along, whether at a surface, after how many steps.
+
+    ``side`` is -1 when the ray began inside.
+    """
+
+    t: float
+    found: bool
+    steps: int
+    side: float
+
+
+@func
+def crossing(ray: Ray, bounds: Bounds) -> vec2:
+    """Where a ray enters and leaves a box; empty (x > y) where it passes by. Infinite sides work."""
+    tiny = 1e-9
+    direction = select(abs(ray.direction) < tiny, ray.direction * 0.0 + tiny, ray.direction)
+    near = (bounds.low - ray.origin) / direction
+    far = (bounds.high - ray.origin) / direction
+    first = min(near, far)
+    last = max(near, far)
+    return vec2(
+        max(first.x, max(first.y, first.z)),
+        min(last.x, min(last.y, last.z)),
+    )
+
+
+@func
+def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -> Hit:
+    """The first surface along a ray."""
+    span = crossing(ray, bounds)
+    t = max(span.x, numbers.near)
+    end = min(span.y, numbers.far)
+    taken = 0
+    side = 1.0
+    relaxation = RELAXATION
+    step = 0.0
+    previous = 0.0
+    best = UNBOUNDED
+    best_t = t
+    found = False
+    for i in range(steps):
+        if t > end:
+            break
+        taken += 1
+        d = side * field(ray.origin + t * ray.direction) / numbers.divisor
+        if i == 0 and d < 0.0:
+            side = -1.0
+            d = -d
+        if relaxation > 1.0 and abs(d) + previous < step:
+            step -= relaxation * step
+            relaxation = 1.0
+        else:
+            error = d / max(t, 1e-3)
+            if error < best:
+                best = error
+                best_t = t
+            if error < numbers.threshold:
+                found = True
+                break
+            step = relaxation * d
+        previous = abs(d)
+        t += step
+    ran_out = taken == steps and not found and t < end
+    if ran_out and best < FORGIVING * numbers.threshold:
+        found = True
+    return Hit(best_t, found, taken, side)

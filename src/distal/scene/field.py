@@ -1,0 +1,408 @@
+"""What solid and flat shapes share: asking them, combining them, painting them.
+
+What flows in: the author's numbers and shapes. What flows out: ever new shapes; none changes. A
+shape is a function of scene code too: ``shape(p)`` in a ``@func``, ``shape(points)`` in Python.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, ClassVar, Self
+
+from distal.diagnostics import Span
+from distal.executor_hook import executor
+from distal.fields import boxes
+from distal.fields.claims import (
+    EXACT,
+    NOTHING,
+    UNBOUNDED,
+    Claim,
+    Limit,
+    Operator,
+    Primitive,
+)
+from distal.frontend import Assembly
+from distal.ir.build import field as field_of
+from distal.ir.build import number as constant_number
+from distal.ir.nodes import Construct, Gradient, Param, Read, Return
+from distal.ir.types import FLOAT, VEC2, VEC3, Type, Vector, tuple_type
+from distal.lang import Func
+from distal.lang.composed import Composed
+from distal.scene.compose import Composer
+from distal.scene.conversion import Number
+from distal.scene.library import OPERATORS
+from distal.scene.materials import as_material
+from distal.scene.node import Node, Rule
+from distal.scene.numbers import arguments
+from distal.scene.places import author_place
+from distal.scene.promises import Promises
+from distal.scene.refusals import refuse
+from distal.scene.values import Body, Values, plain_name
+
+
+class Field(Composed):
+    """What solid and flat shapes share."""
+
+    flat: ClassVar[bool] = False
+    point_type: ClassVar[Type] = VEC3
+    result = FLOAT
+
+    def __init__(self, node: Node) -> None:
+        self.node = node
+        self.signature = (("p", self.point_type),)
+        self._gradient = GradientOf(self)
+        self._promised = PromiseOf(self)
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """What people call it."""
+        return self.node.name
+
+    # Asking
+
+    def compose(self, assembly: Assembly) -> str:
+        """Its distance as a function of scene code."""
+        composer = Composer(assembly, [self.node])
+        return composer.field(self.node, composer.values.all(self.node), ZERO_CELL).name
+
+    def functions(self) -> Iterable[Func]:
+        """The functions that it is made of."""
+        return self.node.functions()
+
+    def __call__(
+        self, points: Any, *, params: Mapping[str, Any] | None = None, time: float = 0.0
+    ) -> Any:
+        """The distance at points: an array (n, 3) ((n, 2) for flat shapes) gives (n,).
+
+        float32 or float64, as the points are; negative inside.
+        """
+        return executor().call(self, (points,), {}, params=params, time=time)
+
+    def gradient(
+        self, points: Any, *, params: Mapping[str, Any] | None = None, time: float = 0.0
+    ) -> Any:
+        """How the distance changes at points: an array of the shape of ``points``."""
+        return executor().call(self._gradient, (points,), {}, params=params, time=time)
+
+    def _promise(self, params: Mapping[str, Any] | None, time: float) -> tuple[Any, ...]:
+        found = executor().call(self._promised, (), {}, params=params, time=time)
+        return tuple(found)
+
+    def bounds(self, *, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
+        """A box around the surface and the inside: (low, high), each a tuple; infinite allowed."""
+        _, _, low, high = self._promise(params, time)
+        return tuple(tuple(map(_unbounded, corner)) for corner in (low, high))
+
+    @property
+    def slope(self) -> float:
+        """A bound on |gradient|, everywhere, for the parameters' defaults."""
+        return float(self._promise(None, 0.0)[0])
+
+    @property
+    def divisor(self) -> float:
+        """What the marcher divides distances by, for the parameters' defaults."""
+        return float(self._promise(None, 0.0)[1])
+
+    @property
+    def claims(self) -> frozenset[Claim]:
+        """What it promises besides its slope."""
+        return self.node.claims
+
+    @property
+    def exact(self) -> bool:
+        """Whether it is the true distance, outside and inside."""
+        return self.node.claims >= EXACT
+
+    # Making others
+
+    def _with(self, operator: str, *args: Any, **kwargs: Any) -> Any:
+        """This shape under an operator of the library."""
+        place = author_place()
+        flat = f"flat {operator}" if self.flat else operator
+        rule = OPERATORS.get(flat) or OPERATORS[operator]
+        return self._under(rule, args, kwargs, place, flat=self.flat)
+
+    def _under(
+        self,
+        rule: Operator,
+        args: Sequence[Any],
+        kwargs: Mapping[str, Any],
+        place: Span | None,
+        *,
+        flat: bool,
+        others: Sequence[Field] = (),
+    ) -> Any:
+        numbers, constants = bound(rule, args, kwargs, place)
+        children = (self.node, *(other.node for other in others))
+        return self._of(Node(rule, flat, children, numbers, constants, place))
+
+    @classmethod
+    def _of(cls, node: Node) -> Any:
+        plain = PLAIN[node.flat]
+        made = plain.__new__(plain)
+        Field.__init__(made, node)
+        return made
+
+    def _combined(self, kind: str, others: Sequence[Any], smooth: Any, blend: str, **k: Any) -> Any:
+        place = author_place()
+        for other in others:
+            if not isinstance(other, Field):
+                refuse(f"a {kind} joins shapes, not {other!r:.60}", None, place)
+            if other.flat != self.flat:
+                refuse(
+                    f"a {kind} joins a flat shape and a solid one",
+                    "make the flat one solid: .extrude(height) or .revolve()",
+                    place,
+                )
+        rule, numbers, constants = joining(kind, smooth, blend, k, place)
+        nodes: list[Node] = []
+        for shape in (self, *others):
+            plain = not numbers and shape.node.rule is rule and _bare(shape.node)
+            nested = plain and (kind in _ASSOCIATIVE or shape is self)
+            nodes.extend(shape.node.children if nested else (shape.node,))
+        return self._of(Node(rule, self.flat, tuple(nodes), numbers, constants, place))
+
+    def union(self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> Self:
+        """What is in any of them; ``|``.
+
+        Args:
+            others: Shapes.
+            smooth: How far the surface moves out where two surfaces meet, in scene units.
+            blend: Its form: quadratic, cubic, quartic, circular, circular_geometric, exponential,
+                root, sigmoid, or an edge: chamfer, round, columns, stairs, soft.
+            k: ``count``: how many columns or stairs.
+        """
+        return self._combined("union", others, smooth, blend, **k)
+
+    def intersection(
+        self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
+    ) -> Self:
+        """What is in all of them; ``&``. Arguments as for ``union``."""
+        return self._combined("intersection", others, smooth, blend, **k)
+
+    def difference(
+        self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
+    ) -> Self:
+        """This without the others; ``-``. Arguments as for ``union``."""
+        return self._combined("difference", others, smooth, blend, **k)
+
+    def xor(self, *others: Any) -> Self:
+        """What is in one of two, and not in the other; ``^``."""
+        return self._combined("xor", others, 0.0, "quadratic")
+
+    def __or__(self, other: Any) -> Self:
+        return self.union(other) if isinstance(other, Field) else NotImplemented
+
+    def __and__(self, other: Any) -> Self:
+        return self.intersection(other) if isinstance(other, Field) else NotImplemented
+
+    def __sub__(self, other: Any) -> Self:
+        return self.difference(other) if isinstance(other, Field) else NotImplemented
+
+    def __xor__(self, other: Any) -> Self:
+        return self.xor(other) if isinstance(other, Field) else NotImplemented
+
+    def __invert__(self) -> Self:
+        return self.complement()
+
+    def complement(self) -> Self:
+        """Everything else; ``~``."""
+        return self._with("complement")
+
+    def paint(self, material: Any) -> Self:
+        """The shape in a material, or in a color; the outermost ``paint`` wins."""
+        return self._of(replace(self.node, material=as_material(material)))
+
+    def cut_material(self, material: Any) -> Self:
+        """What the faces show that this shape cuts into others; else they show what is cut."""
+        return self._of(replace(self.node, cut_material=as_material(material)))
+
+    def named(self, name: str) -> Self:
+        """The shape under a name: of its function in emitted text, and in messages."""
+        if not isinstance(name, str) or not name.strip():
+            refuse(f"a name is a text, not {name!r}", None, author_place())
+        return self._of(replace(self.node, label=name))
+
+    @classmethod
+    def from_function(
+        cls,
+        function: Func,
+        *,
+        slope: float = 1.0,
+        bounds: Any = None,
+        exact: bool = False,
+        **numbers: Any,
+    ) -> Any:
+        """A shape from a ``@func`` of a point (and of numbers, given by name).
+
+        Args:
+            function: ``(p: vec3, …) -> float``; vec2 makes a flat shape. A parameter
+                ``cell: vec3`` is the index of the repetition the point lies in.
+            slope: A bound on |gradient| everywhere. The marcher relies on it.
+            bounds: (low, high) corners of a box around the surface; None for no end.
+            exact: Whether it is the true distance.
+            numbers: Values of its other parameters.
+        """
+        place = author_place()
+        return own_shape(function, slope, bounds, exact, numbers, place)
+
+
+def _bare(node: Node) -> bool:
+    return node.material is None and node.cut_material is None and not node.label
+
+
+_ASSOCIATIVE = ("union", "intersection")
+
+
+def _unbounded(value: float) -> float:
+    if abs(value) < UNBOUNDED / 1000.0:
+        return float(value)
+    return float("inf") if value > 0 else float("-inf")
+
+
+ZERO_CELL = constant_number(0.0, VEC3)
+
+
+class GradientOf(Composed):
+    """The gradient of a shape, as a function."""
+
+    def __init__(self, shape: Field) -> None:
+        self._shape = shape
+        self.name = f"gradient of {shape.name}"
+        self.signature = shape.signature
+        self.result = shape.point_type
+
+    def compose(self, assembly: Assembly) -> str:
+        composer = Composer(assembly, [self._shape.node])
+        node = self._shape.node
+        field = composer.field(node, composer.values.all(node), ZERO_CELL)
+        p = Read("p", self.result)
+        value = Gradient(field, p, False, self.result)
+        params = (Param("p", self.result),)
+        name = f"{plain_name(node.name)}_gradient"
+        return assembly.define(name, params, self.result, (Return(value),), node.place)
+
+
+class PromiseOf(Composed):
+    """Slope, divisor and box of a shape, as a function of nothing."""
+
+    def __init__(self, shape: Field) -> None:
+        self._shape = shape
+        self.name = f"promise of {shape.name}"
+        self.signature = ()
+        corner = shape.point_type
+        self.result = tuple_type((FLOAT, FLOAT, corner, corner))
+
+    def compose(self, assembly: Assembly) -> str:
+        body = Body()
+        node = self._shape.node
+        values = Values(assembly)
+        found = Promises(values).of(body, node, values.all(node))
+        bounds = body.let("bounds", found.bounds)
+        low, high = field_of(bounds, "low"), field_of(bounds, "high")
+        whole = Construct((found.slope, found.divisor, low, high), self.result)
+        body.statements.append(Return(whole))
+        return assembly.define("promise", (), self.result, body.statements, node.place)
+
+
+# The classes of shapes that are no library shape's own; the room of methods fills it.
+PLAIN: dict[bool, type[Field]] = {}
+
+
+def bound(
+    rule: Rule, args: Sequence[Any], kwargs: Mapping[str, Any], place: Span | None
+) -> tuple[dict[str, Number], dict[str, Any]]:
+    """A rule's numbers and constants from what the author gave."""
+    given = arguments(
+        _functions(rule),
+        args,
+        kwargs,
+        what=rule.name,
+        limits=rule.limits,
+        requires=rule.requires,
+        place=place,
+    )
+    numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
+    constants = {name: value for name, value in given.items() if name not in numbers}
+    return numbers, constants
+
+
+def _functions(rule: Rule) -> tuple[Func, ...]:
+    if isinstance(rule, Primitive):
+        return (rule.distance,)
+    made = (rule.point, rule.combine, rule.around, rule.finish)
+    return tuple(func for func in made if func is not None)
+
+
+def joining(
+    kind: str, smooth: Any, blend: str, extra: Mapping[str, Any], place: Span | None
+) -> tuple[Operator, dict[str, Number], dict[str, Any]]:
+    """The operator of a combination, its numbers and constants."""
+    plain = isinstance(smooth, int | float) and smooth == 0 and not extra
+    if plain and blend == "quadratic":
+        return OPERATORS[kind], {}, {}
+    rule = OPERATORS.get(f"{kind} {blend}")
+    if rule is None:
+        known = [n.removeprefix(f"{kind} ") for n in OPERATORS if n.startswith(f"{kind} ")]
+        refuse(f"there is no blend '{blend}' for a {kind}", ", ".join(known), place)
+    numbers, constants = bound(rule, (smooth,), extra, place)
+    return rule, numbers, constants
+
+
+def own_shape(
+    function: Func,
+    slope: float,
+    bounds: Any,
+    exact: bool,
+    numbers: Mapping[str, Any],
+    place: Span | None,
+) -> Any:
+    """A shape from an author's function."""
+    if not isinstance(function, Func):
+        refuse(
+            f"a shape is made from a @func, not from {function!r:.60}",
+            "write @func above it",
+            place,
+        )
+    flat = _is_flat(function, place)
+    given: dict[str, Any] = {**numbers}
+    box: Func | None = None
+    rule = Primitive(function.name, function, EXACT if exact else NOTHING)
+    found, constants = bound(rule, (), given, place)
+    limits = {"slope": Limit.POSITIVE}
+    extra = arguments(
+        (boxes.given_slope,),
+        (slope,),
+        {},
+        what=function.name,
+        limits=limits,
+        requires=None,
+        place=place,
+    )
+    if bounds is not None:
+        box = boxes.given_bounds2 if flat else boxes.given_bounds
+        low, high = bounds
+        extra.update(
+            arguments(
+                (box,), (low, high), {}, what=function.name, limits={}, requires=None, place=place
+            )
+        )
+    rule = replace(rule, slope=boxes.given_slope, bounds=box)
+    found.update(extra)
+    return Field._of(Node(rule, flat, (), found, constants, place))
+
+
+def _is_flat(function: Func, place: Span | None) -> bool:
+    from distal.frontend.headers import read_header
+
+    slots = read_header(function.overloads[0]).slots
+    annotation = next((s.annotation for s in slots if s.name == "p"), None)
+    type = getattr(annotation, "__distal_type__", None)
+    if not isinstance(type, Vector) or type not in (VEC2, VEC3):
+        refuse(
+            f"'{function.name}' is no field: it needs a parameter p: vec3 (or vec2)",
+            f"def {function.name}(p: vec3) -> float",
+            place,
+        )
+    return type is VEC2

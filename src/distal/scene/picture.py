@@ -1,0 +1,200 @@
+"""A scene's function from a pixel to its light, put together.
+
+What flows in: a scene. What flows out: functions in a program: distance, surface, lights, what is
+around, rays, and one that joins them by a renderer of the library. Everything that a renderer may
+ask for is known by name; it takes what it names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from distal.frontend import Assembly
+from distal.ir.build import add, boolean, compare, field, integer, number
+from distal.ir.nodes import (
+    CompareOp,
+    Construct,
+    Expr,
+    FunctionRef,
+    If,
+    Param,
+    Read,
+    Return,
+)
+from distal.ir.types import FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.render import bounce, film, settings, tonemap, views
+from distal.render.camera import Ray
+from distal.render.lights import LightSample
+from distal.scene.attributes import Material, Part, Site, attribute
+from distal.scene.compose import Composer
+from distal.scene.field import ZERO_CELL
+from distal.scene.values import Body
+
+if TYPE_CHECKING:
+    from distal.scene.scene import Scene
+
+RENDERERS = {"plain": bounce.seen_plain, "mirrored": bounce.seen_mirrored}
+RENDERERS["refracted"] = bounce.seen_refracted
+
+
+class Picturing:
+    """Puts one scene's functions into one program."""
+
+    def __init__(self, assembly: Assembly, scene: Scene) -> None:
+        self._assembly = assembly
+        self._scene = scene
+        self._node = scene.shape.node
+        self.composer = Composer(assembly, [self._node])
+        self._numbers = {
+            name: self.composer.number(value, name) for name, value in scene.numbers.items()
+        }
+        self.parts: list[Any] = []
+
+    def main(self, view: str, *, transparent: bool, sampled: bool, encoded: bool) -> str:
+        """The function of the frame that gives a pixel."""
+        frame = Read("frame", FRAME)
+        body = Body(taken={"frame"})
+        given = self.given(body, field(frame, "resolution"))
+        given["coord"] = field(frame, "coord")
+        given["radiance"] = self._radiance(view, field(frame, "resolution"))
+        given["transparent"] = boolean(transparent)
+        given["samples"] = self._assembly.number("Samples", INT, 1) if sampled else integer(1)
+        color = body.let("color", self.composer.call(film.exposed, given))
+        if encoded:
+            color = self.displayed(color)
+        body.statements.append(Return(color))
+        params = (Param("frame", FRAME),)
+        return self._assembly.define("picture", params, VEC4, body.statements, self._scene.place)
+
+    def displayed(self, color: Expr) -> Expr:
+        """Linear light encoded for display."""
+        given = {
+            "color": color,
+            "exposure": self._numbers["exposure"],
+            "tone_map": integer(tonemap.NAMES.index(self._scene.tone_map)),
+        }
+        return self.composer.call(tonemap.display, given)
+
+    def given(self, body: Body, resolution: Expr) -> dict[str, Expr]:
+        """Everything that a renderer may ask for, by name."""
+        composer, scene, node = self.composer, self._scene, self._node
+        values = composer.values.all(node)
+        promise = composer.promises.of(body, node, values)
+        given: dict[str, Expr] = {
+            **self._numbers,
+            "resolution": resolution,
+            "divisor": promise.divisor,
+            "slope": promise.slope,
+            "field": composer.field(node, values, ZERO_CELL),
+            "surface": self._surface(),
+            "lights": self._lights(),
+            "ambient": self._ambient(),
+            "background": self._background(),
+            "camera": self._camera(resolution),
+            "steps": integer(scene.steps),
+            "bounces": integer(scene.bounces),
+            "light_count": integer(len(self._samples())),
+            "shadow_steps": integer(64 if scene.shadows else 0),
+        }
+        room = {"bounds": promise.bounds}
+        given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
+        given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
+        given["look"] = body.let("look", composer.call(settings.look, given))
+        return given
+
+    def _function(
+        self,
+        name: str,
+        params: Sequence[tuple[str, Type]],
+        make: Callable[[Body, Mapping[str, Expr]], Expr],
+    ) -> FunctionRef:
+        """A function of its own, as a value."""
+        body = Body(taken={n for n, _ in params})
+        result = make(body, {n: Read(n, t) for n, t in params})
+        body.statements.append(Return(result))
+        declared = tuple(Param(n, t) for n, t in params)
+        defined = self._assembly.define(name, declared, result.type, body.statements)
+        return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result.type))
+
+    def _radiance(self, view: str, resolution: Expr) -> FunctionRef:
+        ray = self._assembly.struct(Ray)
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            asked = {**self.given(body, Read("resolution", VEC2)), **given}
+            if view != "color":
+                return self.composer.call(views.VIEWS[view], asked)
+            return self.composer.call(RENDERERS[self._scene.renderer], asked)
+
+        body = Body(taken={"ray", "resolution"})
+        params = (Param("ray", ray), Param("resolution", VEC2))
+        reads = {p.name: Read(p.name, p.type) for p in params}
+        result = make(body, reads)
+        body.statements.append(Return(result))
+        name = self._assembly.define("radiance", params, VEC4, body.statements)
+        return FunctionRef(name, (resolution,), FunctionType((ray,), VEC4))
+
+    def _surface(self) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            site = Site(given["p"], ZERO_CELL, self.composer.values.all(self._node))
+            kind = Material(self.composer, self._scene.material)
+            return attribute(body, kind, self._node, site)
+
+        return self._function("surface", (("p", VEC3),), make)
+
+    def part(self) -> FunctionRef:
+        """The number of the part that a place belongs to; ``parts`` then has the nodes."""
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            site = Site(given["p"], ZERO_CELL, self.composer.values.all(self._node))
+            kind = Part(self.composer)
+            found = attribute(body, kind, self._node, site)
+            self.parts = kind.nodes
+            return found
+
+        return self._function("part", (("p", VEC3),), make)
+
+    def _samples(self) -> list[Any]:
+        return [light.sample for light in self._scene.lights if light.sample is not None]
+
+    def _lights(self) -> FunctionRef:
+        """The light of a number, as a place sees it: one place asks for all, in a loop."""
+        sample = self._assembly.struct(LightSample)
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            site = {"p": given["p"]}
+            calls = [light.emit(self.composer, site) for light in self._samples()]
+            if not calls:
+                zero = number(0.0, VEC3)
+                return Construct((zero, number(0.0), zero, number(0.0)), sample)
+            for i, call in enumerate(calls[:-1]):
+                chosen = compare(CompareOp.EQ, given["i"], integer(i))
+                body.statements.append(If(chosen, (Return(call),), ()))
+            return calls[-1]
+
+        return self._function("light", (("i", INT), ("p", VEC3)), make)
+
+    def _ambient(self) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            total: Expr = number(0.0, VEC3)
+            for light in self._scene.lights:
+                if light.ambient is not None:
+                    part = light.ambient.emit(self.composer, {"n": given["n"]})
+                    total = body.let("total", add(total, part))
+            return total
+
+        return self._function("ambient", (("n", VEC3),), make)
+
+    def _background(self) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            return self._scene.background.emit(self.composer, given)
+
+        return self._function("background", (("direction", VEC3),), make)
+
+    def _camera(self, resolution: Expr) -> FunctionRef:
+        ray = self._assembly.struct(Ray)
+        params = (Param("uv", VEC2), Param("resolution", VEC2))
+        reads = {p.name: Read(p.name, p.type) for p in params}
+        value = self._scene.camera.emit(self.composer, reads)
+        name = self._assembly.define("camera_ray", params, ray, (Return(value),))
+        return FunctionRef(name, (resolution,), FunctionType((VEC2,), ray))

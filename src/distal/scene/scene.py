@@ -1,0 +1,308 @@
+"""A scene: shapes, lights and a camera, ready to become a picture.
+
+What flows in: the author's objects. What flows out: one function from a pixel to linear light, made
+of the library's cameras, marchers and shaders around the shapes' own functions; and a second one
+that encodes light for display. The cheapest renderer is chosen that shows all materials.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ClassVar, Final
+
+from distal.scene.backgrounds import as_background
+
+from distal.diagnostics import Span
+from distal.executor_hook import executor
+from distal.fields.claims import Limit
+from distal.frontend import Assembly
+from distal.ir.nodes import EntryKind, Param, Read, Return
+from distal.ir.types import FRAME, VEC4
+from distal.lang import Func, func, vec3
+from distal.lang.composed import Composed
+from distal.render import tonemap, views
+from distal.scene.cameras import BaseCamera, Camera
+from distal.scene.field import Field
+from distal.scene.lights import DistantLight, HemisphereLight, Light
+from distal.scene.materials import as_material
+from distal.scene.numbers import arguments
+from distal.scene.picture import Picturing
+from distal.scene.places import author_place
+from distal.scene.refusals import refuse, refuse_kind
+
+MOST_SAMPLES: Final = 65536
+_LIMITS: Final = {
+    "exposure": Limit.NOT_NEGATIVE,
+    "fog_density": Limit.NOT_NEGATIVE,
+    "ambient_occlusion": Limit.NOT_NEGATIVE,
+    "near": Limit.NOT_NEGATIVE,
+    "far": Limit.POSITIVE,
+}
+
+
+class Scene(Composed):
+    """Shapes, lights and a camera.
+
+    Args:
+        shape: What is seen: a solid shape, or several.
+        lights: What it is lit by; a sun and a sky where none are given.
+        camera: Where it is seen from.
+        background: What rays show that meet nothing: a color, a ``Sky``, an ``Environment``, a
+            ``@func`` of the direction.
+        exposure: A factor on all light before it is shown.
+        tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
+            or "neutral".
+        default_material: What unpainted shapes look like.
+        fog: The color of fog.
+        fog_density: How thick it is: a share of 1/e is left after 1/density; 0: clear air.
+        shadows: Whether lights cast shadows.
+        ambient_occlusion: How far ambient light looks for what hides it, in scene units; 0: not.
+        bounces: How often light is followed through mirrors and glass.
+        steps: The most steps of a ray.
+        near: Where rays begin.
+        far: Where rays end.
+
+    Raises:
+        CompileError: At the author's line, when something does not go together.
+    """
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+
+    def __init__(
+        self,
+        shape: Any,
+        lights: Any = None,
+        camera: Any = None,
+        background: Any = None,
+        *,
+        exposure: Any = 1.0,
+        tone_map: str = "none",
+        default_material: Any = (0.8, 0.8, 0.8),
+        fog: Any = (0.0, 0.0, 0.0),
+        fog_density: Any = 0.0,
+        shadows: bool = True,
+        ambient_occlusion: Any = 0.4,
+        bounces: int = 6,
+        steps: int = 160,
+        near: Any = 0.001,
+        far: Any = 100.0,
+        name: str = "scene",
+    ) -> None:
+        place = self.place = author_place()
+        self.name = name
+        self.shape = one_shape(shape, place)
+        self.lights = checked_lights(lights, place)
+        if camera is not None and not isinstance(camera, BaseCamera):
+            refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
+        self.camera = camera if camera is not None else Camera((3.0, 2.0, 5.0))
+        self.background = as_background(background, self.lights)
+        self.material = as_material(default_material)
+        if tone_map not in tonemap.NAMES:
+            refuse(f"there is no tone map '{tone_map}'", ", ".join(tonemap.NAMES), place)
+        self.tone_map = tone_map
+        self.shadows = bool(shadows)
+        self.bounces, self.steps = int(bounces), int(steps)
+        given = {
+            "exposure": exposure,
+            "fog": fog,
+            "fog_density": fog_density,
+            "ambient_occlusion": ambient_occlusion,
+            "near": near,
+            "far": far,
+        }
+        self.numbers = arguments(
+            scene_numbers, (), given, what="Scene", limits=_LIMITS, colors=("fog",), place=place
+        )
+        self.display = Display(self)
+        self._pictures: dict[tuple[Any, ...], Composed] = {}
+
+    @property
+    def renderer(self) -> str:
+        """The cheapest renderer that shows all materials."""
+        found = [n.material for n in self.shape.node.walk() if n.material is not None]
+        found += [n.cut_material for n in self.shape.node.walk() if n.cut_material is not None]
+        found.append(self.material)
+        if self.bounces == 0:
+            return "plain"
+        if any(m.refracts for m in found):
+            return "refracted"
+        return "mirrored" if any(m.reflects for m in found) else "plain"
+
+    def render(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        device: str = "cpu",
+        threads: int | None = None,
+        progress: Callable[[float], Any] | None = None,
+        cancel: Any = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+        *,
+        samples: int = 1,
+        view: str = "color",
+        transparent: bool = False,
+        freeze: bool = False,
+    ) -> Any:
+        """Compute the picture.
+
+        Args:
+            size: Width and height in pixels.
+            time: Seconds.
+            params: Values of parameters by name; the others have their defaults.
+            device: "cpu" or "reference".
+            threads: How many to use; None for all the machine lends.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            mouse: As for ``Image.render``.
+            index: The frame's number.
+            seed: What random numbers start from.
+            samples: Rays for each pixel.
+            view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
+                "steps", "material", "slope" or "slice".
+            transparent: Whether alpha is 0 where nothing is met.
+            freeze: Make constants of all numbers: slower to compile, a little faster to run.
+        """
+        if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
+            raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
+        return executor().render(
+            self.view(view, transparent=transparent, sampled=samples > 1),
+            size=size,
+            time=time,
+            params=params,
+            device=device,
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+            mouse=mouse,
+            index=index,
+            seed=seed,
+            settings={"Samples": samples} if samples > 1 else {},
+            freeze=freeze,
+        )
+
+    def view(
+        self, name: str, *, transparent: bool = False, sampled: bool = False, encoded: bool = False
+    ) -> Composed:
+        """The scene seen in another way: "normal", "depth" …; itself for "color".
+
+        Args:
+            name: What is shown.
+            transparent: Whether alpha is 0 where nothing is met.
+            sampled: Whether a pixel is the mean of ``Samples`` rays.
+            encoded: Whether pixels are display values instead of linear light.
+        """
+        if name != "color" and name not in views.VIEWS:
+            known = ", ".join(["color", *views.VIEWS])
+            raise ValueError(f"there is no view '{name}'; views: {known}")
+        key = (name, transparent, sampled, encoded)
+        if key == ("color", False, False, False):
+            return self
+        if key not in self._pictures:
+            self._pictures[key] = View(self, *key)
+        return self._pictures[key]
+
+    def text(self) -> Composed:
+        """What a text of it shows: display values."""
+        return self.view("color", encoded=True)
+
+    def compose(self, assembly: Assembly) -> str:
+        """Its picture in linear light, as a function of the frame."""
+        made = Picturing(assembly, self)
+        return made.main("color", transparent=False, sampled=False, encoded=False)
+
+    def functions(self) -> Iterable[Func]:
+        """The functions that it is made of."""
+        yield from self.shape.functions()
+        for part in (*self.lights, self.camera, self.background, self.material):
+            yield from part.functions()
+
+
+class View(Composed):
+    """A scene seen in another way."""
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+
+    def __init__(
+        self, scene: Scene, view: str, transparent: bool, sampled: bool, encoded: bool
+    ) -> None:
+        self.name = scene.name if view == "color" else f"{scene.name} ({view})"
+        self._scene = scene
+        self._view = view
+        self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
+        self.display = scene.display if view == "color" and not encoded else None
+
+    def compose(self, assembly: Assembly) -> str:
+        """The picture, as a function of the frame."""
+        return Picturing(assembly, self._scene).main(
+            self._view,
+            transparent=self._transparent,
+            sampled=self._sampled,
+            encoded=self._encoded and self._view == "color",
+        )
+
+    def functions(self) -> Iterable[Func]:
+        """The functions that it is made of."""
+        return self._scene.functions()
+
+
+class Display(Composed):
+    """What makes display values of a scene's linear light."""
+
+    signature = (("color", VEC4),)
+    result = VEC4
+
+    def __init__(self, scene: Scene) -> None:
+        self.name = f"display of {scene.name}"
+        self._scene = scene
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function of a linear color."""
+        made = Picturing(assembly, self._scene)
+        value = made.displayed(Read("color", VEC4))
+        return assembly.define("display_color", (Param("color", VEC4),), VEC4, (Return(value),))
+
+
+@func
+def scene_numbers(
+    exposure: float,
+    fog: vec3,
+    fog_density: float,
+    ambient_occlusion: float,
+    near: float,
+    far: float,
+) -> float:
+    """The numbers of a scene by name; never called."""
+    return exposure
+
+
+def one_shape(shape: Any, place: Span | None) -> Field:
+    """One solid of what the author gave: a shape, or several."""
+    shapes = list(shape) if isinstance(shape, Sequence) else [shape]
+    if not shapes:
+        refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
+    for one in shapes:
+        if not isinstance(one, Field):
+            refuse_kind(f"a scene shows shapes, not {one!r:.60}", None, place)
+        if one.flat:
+            hint = "make it solid: .extrude(height) or .revolve()"
+            refuse(f"'{one.name}' is a flat shape; a scene shows solids", hint, place)
+    first: Field = shapes[0]
+    return first.union(*shapes[1:]) if len(shapes) > 1 else first
+
+
+def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
+    """The lights of a scene; a sun and a sky where the author says nothing."""
+    if lights is None:
+        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
+    given = tuple(lights) if isinstance(lights, Sequence) else (lights,)
+    for light in given:
+        if not isinstance(light, Light):
+            refuse_kind(f"a light is wanted, not {light!r:.60}", "PointLight((2, 3, 4))", place)
+    return given

@@ -1,0 +1,328 @@
+"""Shapes and their methods: placing, repeating, deforming, thickening.
+
+What flows in: the author's numbers. What flows out: ever new shapes; none changes. Every method is
+a row of the field library, found by its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Self
+
+from distal.fields.claims import Operator
+from distal.frontend.problems import did_you_mean
+from distal.ir.types import VEC2, VEC3
+from distal.scene.field import PLAIN, Field
+from distal.scene.library import OPERATORS
+from distal.scene.numbers import slots_of
+from distal.scene.places import author_place
+from distal.scene.refusals import refuse
+
+
+class _Placed(Field):
+    """What solid and flat shapes can do alike."""
+
+    def _joined(self, operator: str, other: Any, **numbers: Any) -> Any:
+        place = author_place()
+        if not isinstance(other, Field) or other.flat != self.flat:
+            kind = "flat" if self.flat else "solid"
+            refuse(f"'{operator}' takes another {kind} shape, not {other!r:.60}", None, place)
+        rule = OPERATORS[operator]
+        return self._under(rule, (), numbers, place, flat=self.flat, others=(other,))
+
+    def _lifted(
+        self, operator: str, args: Sequence[Any], kwargs: dict[str, Any], *, flat: bool
+    ) -> Any:
+        place = author_place()
+        if operator not in OPERATORS:
+            refuse(f"there is no operator '{operator}'", None, place)
+        return self._under(OPERATORS[operator], args, kwargs, place, flat=flat)
+
+    def apply(self, operator: str, *args: Any, others: Sequence[Field] = (), **kwargs: Any) -> Any:
+        """The shape under an operator of the library by its name, as the catalogue lists it.
+
+        What it gives lies in space where the operator's own point does.
+        """
+        place = author_place()
+        if operator not in OPERATORS:
+            refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
+        rule = OPERATORS[operator]
+        flat = is_flat_operator(rule, self.flat)
+        return self._under(rule, args, kwargs, place, flat=flat, others=tuple(others))
+
+    def translate(self, *offset: Any, **parts: Any) -> Self:
+        """The shape moved: ``translate(1, 0, 0)``, ``translate((1, 0, 0))`` or ``translate(x=1)``."""
+        return self._with("translate", *offset, **parts)
+
+    def scale(self, *factors: Any) -> Self:
+        """The shape larger by a factor, or by one for each axis (no longer exact then)."""
+        if len(factors) == 1 and not isinstance(factors[0], tuple | list):
+            return self._with("scale", *factors)
+        return self._with("scale axes", *factors)
+
+    def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
+        """The half that ``normal`` points to, and its image on the other side of the plane.
+
+        Args:
+            normal: Length 1.
+            offset: How far the plane lies along the normal from the origin.
+        """
+        return self._with("mirror", normal, offset)
+
+    def symmetry(self, axes: str) -> Self:
+        """The positive side of the axes named, mirrored to the negative one: ``symmetry("xz")``."""
+        known = "xy" if self.flat else "xyz"
+        if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
+            refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
+        return self._with("symmetry", **{axis: axis in axes for axis in known})
+
+    def kaleidoscope(self, count: int) -> Self:
+        """The shape's wedge repeated ``count`` times about the y axis, every other one mirrored."""
+        return self._with("kaleidoscope", count)
+
+    def round(self, radius: Any) -> Self:
+        """The shape grown by ``radius``, its edges round."""
+        return self._with("round", radius)
+
+    def offset(self, distance: Any) -> Self:
+        """The shape grown by a distance, or shrunk by a negative one."""
+        return self._with("offset", distance)
+
+    def shell(self, thickness: Any, where: str = "centre") -> Self:
+        """The shape hollow; its wall lies "inner", "centre" or "outer" of the old surface."""
+        if where not in ("inner", "centre", "outer"):
+            refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
+        return self._with(f"shell {where}", thickness)
+
+
+class Shape(_Placed):
+    """A solid: a signed distance in space. Shapes never change; methods give new ones."""
+
+    flat = False
+    point_type = VEC3
+
+    def rotate(
+        self,
+        angle: Any = None,
+        axis: Any = None,
+        *,
+        x: Any = None,
+        y: Any = None,
+        z: Any = None,
+        quaternion: Any = None,
+        matrix: Any = None,
+    ) -> Self:
+        """The shape turned about the origin; angles in radians.
+
+        Args:
+            angle: About ``axis``.
+            axis: Of length 1.
+            x: About the fixed x axis, first.
+            y: About the fixed y axis, then.
+            z: About the fixed z axis, last.
+            quaternion: (x, y, z, w), of length 1.
+            matrix: Three rows, orthonormal.
+        """
+        euler = {name: value for name, value in (("x", x), ("y", y), ("z", z)) if value is not None}
+        ways = [angle is not None or axis is not None, bool(euler)]
+        ways += [quaternion is not None, matrix is not None]
+        if sum(ways) != 1:
+            hint = "rotate(y=0.5), rotate(0.5, axis=(0, 1, 0)), quaternion=… or matrix=…"
+            refuse("a rotation is told in one way", hint, author_place())
+        if euler:
+            if len(euler) == 1:
+                ((name, value),) = euler.items()
+                return self._with(f"rotate {name}", value)
+            return self._with("rotate euler", tuple(euler.get(n, 0.0) for n in "xyz"))
+        if quaternion is not None:
+            return self._with("rotate quaternion", quaternion)
+        if matrix is not None:
+            return self._with("rotate matrix", *_columns(matrix))
+        if axis is None or angle is None:
+            refuse(
+                "a rotation needs an angle and an axis",
+                "rotate(0.5, axis=(0, 1, 0))",
+                author_place(),
+            )
+        return self._with("rotate", axis=axis, angle=angle)
+
+    def orient(self, source: Any, target: Any) -> Self:
+        """The shape turned the shortest way, so that ``source`` points where ``target`` does."""
+        return self._with("orient", source, target)
+
+    def shear(self, xy: Any = 0.0, xz: Any = 0.0, yz: Any = 0.0) -> Self:
+        """The shape leaning: x moved by ``xy`` times y and ``xz`` times z, y by ``yz`` times z."""
+        return self._with("shear", xy, xz, yz)
+
+    def repeat(
+        self,
+        *spacing: Any,
+        count: Sequence[int] | None = None,
+        neighbours: int = 0,
+        mirrored: bool = False,
+    ) -> Self:
+        """The shape again and again, in cells of a grid; its middle cell is where the shape is.
+
+        Args:
+            spacing: From cell to cell, for each axis; 0 for an axis along which it is not repeated.
+                One number is meant for all three.
+            count: How many along each axis; without it there is no end.
+            neighbours: How many cells around are asked too: 0 where the shape keeps within its
+                cell, 1 or 2 where it reaches into others.
+            mirrored: Whether every other cell is mirrored, so that neighbours meet.
+        """
+        if mirrored:
+            return self._with("repeat mirrored", *spacing)
+        if count is None:
+            if neighbours:
+                return self._with("repeat neighbours", *spacing, neighbours=neighbours)
+            return self._with("repeat", *spacing)
+        try:
+            counts = {f"count_{axis}": n for axis, n in zip("xyz", count, strict=True)}
+        except (TypeError, ValueError):
+            refuse(
+                f"count is three whole numbers, not {count!r:.40}",
+                "count=(3, 1, 3)",
+                author_place(),
+            )
+        if neighbours:
+            counts["neighbours"] = neighbours
+            return self._with("repeat limited neighbours", *spacing, **counts)
+        return self._with("repeat limited", *spacing, **counts)
+
+    def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
+        """The shape ``count`` times around the y axis; itself in the direction of x."""
+        if neighbours:
+            return self._with("repeat polar neighbours", count=count, neighbours=neighbours)
+        return self._with("repeat polar", count=count)
+
+    def repeat_half(self, *spacing: Any) -> Self:
+        """The shape again and again towards the positive side of each axis only."""
+        return self._with("repeat half", *spacing)
+
+    def repeat_ring(self, *spacing: Any, count: Sequence[int]) -> Self:
+        """The shape along the rim of a rectangle in the xz plane; ``count`` for x and for z."""
+        try:
+            count_x, count_z = count
+        except (TypeError, ValueError):
+            refuse(f"count is two whole numbers, not {count!r:.40}", "count=(5, 3)", author_place())
+        return self._with("repeat ring", *spacing, count_x=count_x, count_z=count_z)
+
+    def array(
+        self,
+        positions: Any = None,
+        *,
+        start: Any = None,
+        end: Any = None,
+        count: int | None = None,
+    ) -> Self:
+        """The shape at given places, or ``count`` times evenly along a line.
+
+        Args:
+            positions: An (n, 3) array.
+            start: Where the line begins.
+            end: Where it ends.
+            count: How many on the line.
+        """
+        if positions is not None and start is None and end is None and count is None:
+            return self._with("repeat at", positions)
+        if positions is None and start is not None and end is not None and count is not None:
+            return self._with("repeat line", start=start, end=end, count=count)
+        hint = "array(positions) or array(start=…, end=…, count=…)"
+        refuse("an array is told by positions, or by a line and a count", hint, author_place())
+
+    def morph(self, other: Field, t: Any) -> Self:
+        """Between two shapes: this one at t = 0, the other at 1."""
+        return self._joined("morph", other, t=t)
+
+    def displace(self, field: Any, height: Any = 1.0) -> Self:
+        """The surface moved out by what a field gives, times ``height``.
+
+        Args:
+            field: A shape, or a ``@func`` of a point (its slope is then taken for 1).
+            height: A factor.
+        """
+        other = field if isinstance(field, Field) else self.from_function(field)
+        return self._joined("displace", other, height=height)
+
+    def engrave(self, other: Field, depth: Any) -> Self:
+        """A groove of a depth where the other shape's surface meets this one."""
+        return self._joined("engrave", other, k=depth)
+
+    def pipe(self, other: Field, radius: Any) -> Self:
+        """A round pipe where the two surfaces meet, and nothing else."""
+        return self._joined("pipe", other, k=radius)
+
+    def groove(self, other: Field, depth: Any, width: Any) -> Self:
+        """A groove of a rectangular profile where the surfaces meet."""
+        return self._joined("groove", other, depth=depth, width=width)
+
+    def tongue(self, other: Field, depth: Any, width: Any) -> Self:
+        """A ridge of a rectangular profile where the surfaces meet."""
+        return self._joined("tongue", other, depth=depth, width=width)
+
+    def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
+        """Both parts that a plane cuts it into: what lies below, and what lies above."""
+        below = self._with("split below", normal, offset)
+        return below, self._with("split above", normal, offset)
+
+    def slice(self, **plane: Any) -> Shape2D:
+        """The flat shape that a plane cuts out; arguments as the library's row has them."""
+        return self._lifted("slice", (), plane, flat=True)
+
+
+class Shape2D(_Placed):
+    """A flat shape: a signed distance in the plane."""
+
+    flat = True
+    point_type = VEC2
+
+    def rotate(self, angle: Any) -> Self:
+        """The shape turned about the origin, counter-clockwise; radians."""
+        return self._with("rotate", angle)
+
+    def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
+        """The solid of this outline along z, ``height`` in all, its middle at 0.
+
+        Args:
+            height: From end to end.
+            rounding: Radius of the edges.
+            chamfer: Size of the edges' bevels.
+        """
+        if rounding is not None:
+            return self._lifted("extrude rounded", (height, rounding), {}, flat=False)
+        if chamfer is not None:
+            return self._lifted("extrude chamfered", (height, chamfer), {}, flat=False)
+        return self._lifted("extrude", (height,), {}, flat=False)
+
+    def revolve(self, offset: Any = 0.0, angle: Any = None) -> Shape:
+        """The solid of this outline turned about the y axis; x > 0 is outwards.
+
+        Args:
+            offset: How far the outline is moved outwards first.
+            angle: How far it is turned; all around without it.
+        """
+        if angle is None:
+            return self._lifted("revolve", (offset,), {}, flat=False)
+        return self._lifted("revolve partly", (offset, angle), {}, flat=False)
+
+
+def is_flat_operator(rule: Operator, child: bool) -> bool:
+    """Whether what an operator makes lies in the plane: where its own point does."""
+    for func in (rule.point, rule.around, rule.finish, rule.combine):
+        slots = () if func is None else slots_of(func)
+        for slot in slots:
+            if slot.name == "p":
+                return slot.type is VEC2
+    return child
+
+
+def _columns(matrix: Any) -> tuple[Any, ...]:
+    try:
+        rows = [tuple(row) for row in matrix]
+        return tuple(zip(*rows, strict=True))
+    except (TypeError, ValueError):
+        refuse("a rotation's matrix has three rows of three numbers", None, author_place())
+
+
+PLAIN.update({False: Shape, True: Shape2D})
