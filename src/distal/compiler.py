@@ -74,6 +74,8 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
     """
     if not isinstance(obj, Func | Composed):
         raise TypeError(f"only a scene, an @image or a @func can be compiled, not {type(obj).__name__}")
+    if isinstance(obj, Composed):
+        obj = obj.text()
     if after is not None and after not in ("lower", *PASS_NAMES):
         raise ValueError(f"there is no pass '{after}'; passes: lower, {', '.join(PASS_NAMES)}")
     if after is not None and target != IR_TARGET:

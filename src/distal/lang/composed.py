@@ -46,6 +46,10 @@ class Composed(ABC):
             CompileError: The object says what scene code cannot say.
         """
 
+    def text(self) -> Composed:
+        """What an emitted text shows: for a picture, display values."""
+        return self
+
     def functions(self) -> Iterable[Func]:
         """The author's own functions within, for whoever must know whether they changed."""
         return ()
