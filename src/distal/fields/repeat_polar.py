@@ -237,7 +237,7 @@ REPEAT_POLAR = operator(
     bounds=kaleidoscope_bounds,
     requires=polar_requirement,
     needs="a shape beside the y axis whose box fits in its sector, with a little room: set "
-    "neighbours=1 for a wider one, or mirrored=True for one that is symmetric in its sector",
+    "neighbours=1 for a wider one, or kaleidoscope for one that is symmetric in its sector",
 )
 REPEAT_POLAR_NEIGHBOURS = operator(
     "repeat polar neighbours",

@@ -175,10 +175,12 @@ def sigmoid(a: float, b: float, k: float) -> float:
     """A profile that fades exponentially; acts everywhere.
 
     The bulge is k * v / (exp(v) - 1) with v = |a - b| / k: 0/0 where the two are equal, so a series
-    of it stands there (its next term is below 1e-6 for v < 1/2).
+    of it stands there (its next term is below 1e-10 for v < 1/2, so that the two meet).
     """
     v = min(abs(a - b) / max(k, SHARP), 80.0)
-    series = 1.0 + v * (-0.5 + v * (1.0 / 12.0 - v * v / 720.0))
+    s = v * v
+    even = s * (1.0 / 12.0 + s * (-1.0 / 720.0 + s * (1.0 / 30240.0 - s / 1209600.0)))
+    series = 1.0 - 0.5 * v + even
     bulge = select(v < 0.5, series, v / (exp(max(v, 0.5)) - 1.0))
     return min(a, b) - k * bulge
 
@@ -187,7 +189,8 @@ def sigmoid(a: float, b: float, k: float) -> float:
 def sigmoid_mix(a: float, b: float, k: float) -> float:
     """The share of ``b`` in ``sigmoid``."""
     v = min(abs(a - b) / max(k, SHARP), 80.0)
-    series = 0.5 + v * (-1.0 / 6.0 + v * v / 180.0)
+    s = v * v
+    series = 0.5 + v * (-1.0 / 6.0 + s * (1.0 / 180.0 - s / 5040.0))
     falling = 1.0 / (exp(max(v, 0.5)) - 1.0)
     direct = falling * (v * (1.0 + falling) - 1.0)
     return share_of_second(a, b, max(select(v < 0.5, series, direct), 0.0))
