@@ -196,7 +196,10 @@ class PythonExecutor:
         uniforms = _all_values(Declared([module]), params or {}, seconds)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
-        kernel = self._kernel(lowered, "cpu", 64 if double else 32)
+        if rows:
+            kernel = self._kernel(lowered, "cpu", 64 if double else 32)
+        else:  # one value of parameters alone is not worth machine code
+            kernel = self._kernel(lowered, "reference", 64)
         result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
 

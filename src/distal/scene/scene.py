@@ -29,6 +29,7 @@ from distal.scene.numbers import arguments
 from distal.scene.picture import Picturing
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
+from distal.scene.steepness import check_slopes
 
 MOST_SAMPLES: Final = 65536
 _LIMITS: Final = {
@@ -93,6 +94,7 @@ class Scene(Composed):
         place = self.place = author_place()
         self.name = name
         self.shape = one_shape(shape, place)
+        check_slopes(self.shape.node)
         self.lights = checked_lights(lights, place)
         if camera is not None and not isinstance(camera, BaseCamera):
             refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
