@@ -30,6 +30,9 @@ from distal.lang import (
     vec2,
 )
 
+# Ends of what lies between two points, unless told otherwise.
+LEFT: Final = vec2(-0.5, 0.0)
+RIGHT: Final = vec2(0.5, 0.0)
 PI: Final = 3.141592653589793
 HALF_ROOT: Final = 0.7071067811865476  # sqrt(1/2)
 # Keeps a division defined where numbers vanish; far below any length that a scene has.
