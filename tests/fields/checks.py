@@ -82,7 +82,7 @@ def _promises_are_numbers(subject: Subject, report: Report) -> bool:
 
 
 def _surface_is_sound(subject: Subject, surface: Surface, report: Report) -> None:
-    if not len(surface.points):
+    if not len(surface.points) and not subject.empty:
         report.add(subject, "has no surface in its region")
     if len(surface.jumps):
         report.add(
@@ -90,7 +90,8 @@ def _surface_is_sound(subject: Subject, surface: Surface, report: Report) -> Non
             f"the sign jumps at {_at(surface.jumps[0])}, where the value is"
             f" {subject.value(surface.jumps[:1])[0]:.4g} ({len(surface.jumps)} places)",
         )
-    if subject.solid and len(surface.points) and not _has_inside(subject, surface):
+    bare = len(surface.points) > 0 and not _has_inside(subject, surface)
+    if subject.signed and not subject.hollow and bare:
         report.add(subject, "says it has an inside, but is nowhere negative")
     if not subject.signed:
         low, high = subject.region

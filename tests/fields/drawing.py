@@ -12,9 +12,9 @@ from typing import Any, Final
 import numpy as np
 
 from distal.fields.claims import Limit, Operator, Primitive
-from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, VEC4, Vector
+from distal.ir.types import BOOL, FLOAT, INT, TEXTURE_2D, VEC2, VEC3, VEC4, Texture, Vector
 from distal.ir.types import Buffer as BufferType
-from distal.lang.resources import Buffer
+from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
 from tests.fields.rows import Sample, Slot, default_of, slots_of
 
 TRIES: Final = 2000
@@ -46,6 +46,9 @@ def sample_with(row: Primitive, given: Mapping[str, Any]) -> Sample:
         value = given.get(slot.name, None)
         if value is None:
             values[slot.name] = _default(slot, np.random.default_rng(1))
+        elif isinstance(slot.type, Texture):
+            kind = Texture2D if slot.type is TEXTURE_2D else Texture3D
+            values[slot.name] = kind(value, wrap="clamp")
         elif isinstance(slot.type, BufferType):
             values[slot.name] = Buffer([v if np.ndim(v) == 0 else tuple(v) for v in value])
         elif isinstance(slot.type, Vector):
@@ -57,7 +60,12 @@ def sample_with(row: Primitive, given: Mapping[str, Any]) -> Sample:
 
 
 def random_sample(row: Primitive, rng: np.random.Generator) -> Sample | None:
-    """A shape with random numbers, or None where none were found that go together."""
+    """A shape with random numbers, or None where none were found that go together.
+
+    What a texture holds is made for the default numbers, and so these stay.
+    """
+    if any(isinstance(s.type, Texture) for s in slots_of(row.distance)):
+        return default_sample(row)
     for _ in range(TRIES):
         values = drawn(slots_of(row.distance), row.limits, rng)
         if fits(row, values):
@@ -121,6 +129,8 @@ def _default(slot: Slot, rng: np.random.Generator) -> Any:
     found = default_of(slot)
     if found is not None and not isinstance(slot.type, BufferType):
         return found
+    if isinstance(slot.type, Texture):
+        return _texture(slot.type)
     return _points(slot, rng, 0.0)
 
 
@@ -132,6 +142,15 @@ def _points(slot: Slot, rng: np.random.Generator, jitter: float) -> Buffer:
         points[:, 3] *= rng.uniform(1.0 - jitter, 1.0 + jitter, len(points))
         return Buffer(points)
     return Buffer(points + rng.uniform(-jitter, jitter, points.shape))
+
+
+def _texture(type: Texture) -> TextureValue:
+    """Distances to a ball of radius 0.3 in a square or cube of size 1."""
+    flat = type is TEXTURE_2D
+    axes = np.meshgrid(*[(np.arange(24) + 0.5) / 24 - 0.5] * (2 if flat else 3), indexing="ij")
+    values = np.sqrt(sum(a * a for a in axes)) - 0.3
+    texels = np.repeat(values[..., None], 4, axis=-1).astype(np.float32)
+    return (Texture2D if flat else Texture3D)(texels, wrap="clamp")
 
 
 def _draw(slot: Slot, limit: Limit | None, rng: np.random.Generator) -> Any:
@@ -149,7 +168,7 @@ def _draw(slot: Slot, limit: Limit | None, rng: np.random.Generator) -> Any:
     if slot.type is INT:
         low = 1 if limit is Limit.POSITIVE else 0
         return int(max(low, (default or 3) + rng.integers(-2, 4)))
-    return _points(slot, rng, 0.12)
+    return _texture(slot.type) if isinstance(slot.type, Texture) else _points(slot, rng, 0.12)
 
 
 def _number(default: float | None, limit: Limit | None, rng: np.random.Generator) -> float:

@@ -77,7 +77,7 @@ def _read(line: str) -> Measured:
 
 
 def _value(node: ast.expr) -> Any:
-    """A literal; ``Buffer([…])`` is the list in it."""
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Buffer":
+    """A literal; ``Buffer([…])`` and ``Texture2D([…])`` are the lists in them."""
+    if isinstance(node, ast.Call):
         (node,) = node.args
     return ast.literal_eval(node)

@@ -166,7 +166,7 @@ class Sample:
 
     def __str__(self) -> str:
         shown = {
-            n: v if not isinstance(v, Buffer) else f"{len(v.data)} points"
+            n: v if not isinstance(v, Buffer | TextureValue) else f"{len(v.data)} values"
             for n, v in {**self.numbers, **self.choices}.items()
         }
         return f"{self.row.name}({', '.join(f'{n}={_short(v)}' for n, v in shown.items())})"

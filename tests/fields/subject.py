@@ -29,7 +29,8 @@ class Subject:
         low: Lower corner of its box; minus infinity where it has no end.
         high: Upper corner.
         signed: Whether it may have an inside.
-        solid: Whether it must have one: with a wall of thickness 0 it has none.
+        hollow: Whether its inside may be empty all the same, with a wall of thickness 0 for one.
+        empty: Whether even its surface may be: an intersection's may.
         estimate: Whether its slope is an estimate.
     """
 
@@ -41,7 +42,8 @@ class Subject:
     low: Doubles
     high: Doubles
     signed: bool = True
-    solid: bool = True
+    hollow: bool = False
+    empty: bool = False
     estimate: bool = False
 
     def value(self, points: Doubles) -> Doubles:
@@ -76,6 +78,6 @@ def subject_of(sample: Sample) -> Subject:
         low,
         high,
         row.signed,
-        row.signed and not zeros,
-        row.estimate,
+        hollow=zeros,
+        estimate=row.estimate,
     )

@@ -15,7 +15,7 @@ import pytest
 from distal.fields.claims import Operator
 from tests.fields.checks import examined
 from tests.fields.library import operators
-from tests.fields.trees import Tree, random_tree
+from tests.fields.trees import Tree, accepted_tree
 
 SAMPLES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "1"))
 EFFORT: Final = 0.6 if SAMPLES < 10 else 2.0
@@ -24,9 +24,9 @@ ROWS: Final = [pytest.param(row, id=name) for name, row in operators().items()]
 
 def _trees(row: Operator) -> list[Tree]:
     rng = np.random.default_rng(zlib.crc32(row.name.encode()))
-    nodes = [random_tree(row, rng) for _ in range(SAMPLES)]
-    assert None not in nodes, f"no numbers of '{row.name}' go together"
-    return [Tree(node) for node in nodes if node is not None]
+    trees = [accepted_tree(row, rng) for _ in range(SAMPLES)]
+    assert None not in trees, f"'{row.name}' refused every random shape"
+    return [tree for tree in trees if tree is not None]
 
 
 @pytest.mark.parametrize("row", ROWS)

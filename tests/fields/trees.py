@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from distal.devices import cpu, reference
-from distal.fields.claims import OPERATORS, PRIMITIVES, Operator
+from distal.fields.claims import OPERATORS, PRIMITIVES, UNBOUNDED, Operator
 from distal.frontend import Assembly, lower
 from distal.ir.nodes import Gradient, Module, Param, Read, Return
 from distal.ir.printer import print_identity
@@ -20,10 +20,10 @@ from distal.lang import Func
 from distal.lang.composed import Composed
 from distal.scene import shapes  # the classes come from the rows that importing it declares
 from distal.scene.compose import Composer
+from distal.scene.field import ZERO_CELL, Field, PromiseOf, bound
 from distal.scene.node import Node
 from distal.scene.numbers import RESERVED
 from distal.scene.numbers import slots_of as scene_slots_of
-from distal.scene.shape import ZERO_CELL, Field, PromiseOf, bound
 from tests.fields.drawing import drawn, fits, random_sample
 from tests.fields.rows import Doubles, Slot, endless
 from tests.fields.subject import Subject
@@ -49,39 +49,53 @@ BETWEEN: Final = {
 }
 
 
-def random_tree(operator: Operator, rng: np.random.Generator, depth: int = 1) -> Node | None:
-    """The operator on random shapes, or None where no numbers were found."""
+def random_tree(
+    operator: Operator, rng: np.random.Generator, depth: int = 1, *, small: bool = False
+) -> Node | None:
+    """The operator on random shapes, or None where no numbers were found.
+
+    ``small``: on small shapes off the centre, for operators that set shapes beside each other.
+    """
     flat, flat_children = flatness(operator, rng)
+    return _tree_of(operator, flat, flat_children, rng, depth, small)
+
+
+def _tree_of(
+    operator: Operator,
+    flat: bool,
+    flat_children: bool,
+    rng: np.random.Generator,
+    depth: int,
+    small: bool,
+) -> Node | None:
     count = 2 if operator.combine is not None else 1
-    children = [_random_shape(flat_children, rng, depth) for _ in range(count)]
+    children = [_random_shape(flat_children, rng, depth, small) for _ in range(count)]
     return _node(operator, flat, tuple(children), rng)
 
 
-def _random_shape(flat: bool, rng: np.random.Generator, depth: int) -> Node:
+def _random_shape(flat: bool, rng: np.random.Generator, depth: int, small: bool) -> Node:
     if depth > 0 and rng.random() < 0.4:
-        names = [n for n in BETWEEN[flat] if n in OPERATORS]
-        made = random_tree_of(OPERATORS[rng.choice(names)], flat, rng, depth - 1)
+        name = str(rng.choice([n for n in BETWEEN[flat] if n in OPERATORS]))
+        made = _tree_of(OPERATORS[name], flat, flat, rng, depth - 1, small)
         if made is not None:
             return made
     row = PRIMITIVES[str(rng.choice(FLATS if flat else SOLIDS))]
     sample = random_sample(row, rng)
     assert sample is not None
     numbers, constants = bound(row, (), {**sample.numbers, **sample.choices}, None)
-    leaf = Node(row, flat, (), numbers, constants)
+    node = Node(row, flat, (), numbers, constants)
+    if small:
+        node = _placed("scale", node, factor=float(rng.uniform(0.05, 0.3)))
     # Off the centre, so that two shapes meet at an angle.
-    name = "flat translate" if flat else "translate"
-    offset = tuple(rng.uniform(-0.35, 0.35, 2 if flat else 3).tolist())
-    moved, _ = bound(OPERATORS[name], (), {"offset": offset}, None)
-    return Node(OPERATORS[name], flat, (leaf,), moved)
+    reach = 1.2 if small else 0.35
+    offset = tuple(rng.uniform(-reach, reach, 2 if flat else 3).tolist())
+    return _placed("translate", node, offset=offset)
 
 
-def random_tree_of(
-    operator: Operator, flat: bool, rng: np.random.Generator, depth: int
-) -> Node | None:
-    """The operator on random shapes that are all flat or all solid."""
-    count = 2 if operator.combine is not None else 1
-    children = [_random_shape(flat, rng, depth) for _ in range(count)]
-    return _node(operator, flat, tuple(children), rng)
+def _placed(name: str, node: Node, **values: Any) -> Node:
+    rule = OPERATORS[f"flat {name}" if node.flat else name]
+    numbers, constants = bound(rule, (), values, None)
+    return Node(rule, node.flat, (node,), numbers, constants)
 
 
 def _node(
@@ -207,9 +221,30 @@ class Tree:
             endless(low[0]),
             endless(high[0]),
             self.node.signed,
-            False,  # an intersection may be empty, a difference too
-            self.node.estimate,
+            hollow=True,
+            empty=True,
+            estimate=self.node.estimate,
         )
+
+
+def accepted_tree(operator: Operator, rng: np.random.Generator, tries: int = 24) -> Tree | None:
+    """A random tree that is not refused: operators may say that they need other shapes.
+
+    It is not empty either, unless it always is.
+    """
+    found = None
+    for attempt in range(tries):
+        node = random_tree(operator, rng, small=attempt >= 2)
+        if node is None:
+            continue
+        tree = Tree(node)
+        subject = tree.subject()
+        if subject.slope < UNBOUNDED / 1000.0:
+            found = tree
+            points = rng.uniform(*subject.region, (2000, subject.dimension))
+            if not subject.signed or (subject.value(points) < 0.0).any():
+                return tree
+    return found
 
 
 def described(node: Node) -> str:
