@@ -18,50 +18,47 @@ from distal.scene.shape_names import SHAPE_NAMES
 from distal.version import __version__
 
 if TYPE_CHECKING:
-    from distal.backends.base import Artifact
-    from distal.compiler import compile
-    from distal.diagnostics import CompileError, LoadError
-    from distal.film.picture import Picture
-    from distal.lang.expressions import time
-    from distal.loading import gallery, load
-    from distal.scene.backgrounds import Background, Environment, Sky
-    from distal.scene.cameras import (
-        Camera,
-        FisheyeCamera,
-        OrbitCamera,
-        OrthographicCamera,
-        PanoramaCamera,
-    )
-    from distal.scene.lights import (
-        AmbientLight,
-        DistantLight,
-        HemisphereLight,
-        PointLight,
-        SpotLight,
-    )
-    from distal.scene.materials import (
-        Material,
-        emissive,
-        glass,
-        glossy,
-        matte,
-        metal,
-        mirror,
-        plastic,
-    )
-    from distal.scene.patterns import (
-        by_cell,
-        checker,
-        cube_map,
-        gradient,
-        image_pattern,
-        noise,
-        palette,
-        pattern,
-        stripes,
-    )
-    from distal.scene.scene import Scene
-    from distal.scene.shape import Shape, Shape2D
+    from distal.backends.base import Artifact as Artifact
+    from distal.compiler import compile as compile
+    from distal.diagnostics import CompileError as CompileError
+    from distal.diagnostics import LoadError as LoadError
+    from distal.film.picture import Picture as Picture
+    from distal.lang.expressions import time as time
+    from distal.loading import gallery as gallery
+    from distal.loading import load as load
+    from distal.scene.backgrounds import Background as Background
+    from distal.scene.backgrounds import Environment as Environment
+    from distal.scene.backgrounds import Sky as Sky
+    from distal.scene.cameras import Camera as Camera
+    from distal.scene.cameras import FisheyeCamera as FisheyeCamera
+    from distal.scene.cameras import OrbitCamera as OrbitCamera
+    from distal.scene.cameras import OrthographicCamera as OrthographicCamera
+    from distal.scene.cameras import PanoramaCamera as PanoramaCamera
+    from distal.scene.lights import AmbientLight as AmbientLight
+    from distal.scene.lights import DistantLight as DistantLight
+    from distal.scene.lights import HemisphereLight as HemisphereLight
+    from distal.scene.lights import PointLight as PointLight
+    from distal.scene.lights import SpotLight as SpotLight
+    from distal.scene.materials import Material as Material
+    from distal.scene.materials import emissive as emissive
+    from distal.scene.materials import glass as glass
+    from distal.scene.materials import glossy as glossy
+    from distal.scene.materials import matte as matte
+    from distal.scene.materials import metal as metal
+    from distal.scene.materials import mirror as mirror
+    from distal.scene.materials import plastic as plastic
+    from distal.scene.patterns import by_cell as by_cell
+    from distal.scene.patterns import checker as checker
+    from distal.scene.patterns import cube_map as cube_map
+    from distal.scene.patterns import gradient as gradient
+    from distal.scene.patterns import image_pattern as image_pattern
+    from distal.scene.patterns import noise as noise
+    from distal.scene.patterns import palette as palette
+    from distal.scene.patterns import pattern as pattern
+    from distal.scene.patterns import stripes as stripes
+    from distal.scene.scene import Scene as Scene
+    from distal.scene.shape import Shape as Shape
+    from distal.scene.shape import Shape2D as Shape2D
     from distal.scene.shapes import *
 
 _ROOMS = {

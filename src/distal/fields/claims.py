@@ -18,7 +18,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Final, TypeAlias, TypeVar
 
-from distal.lang import Func, func, struct, vec2, vec3
+from distal.lang import func, struct, vec2, vec3
+from distal.lang.functions import Func
 
 # Stands for infinity in boxes: finite, so that it can be added and turned. A side beyond a
 # thousandth of it is infinite.

@@ -14,6 +14,8 @@ from typing import (
 
 from distal.film.picture import Picture
 from distal.ir.types import Type as Type
+from distal.lang.functions import Func as _Func
+from distal.lang.functions import Image as _Image
 from distal.lang.names import LangForm as LangForm
 from distal.lang.names import LangFunction as LangFunction
 from distal.lang.parameters import Parameter as Parameter
@@ -48,17 +50,16 @@ Field3: TypeAlias = Callable[[vec3], float]
 
 BUILTINS: dict[str, LangFunction]
 
-class Func(Generic[_P, _R]):
+class Func(_Func, Generic[_P, _R]):
     __name__: str
     def __call__(self, *args: _P.args, **kwargs: _P.kwargs) -> _R: ...
     def overload(self, function: Callable[..., Any]) -> Func[..., Any]: ...
     def parameters(self) -> list[Parameter]: ...
     @property
     def name(self) -> str: ...
-    @property
-    def overloads(self) -> list[Any]: ...
+    overloads: list[Any]
 
-class Image(Func[[Frame], Any]):
+class Image(Func[[Frame], Any], _Image):
     def render(
         self,
         size: tuple[int, int] = (640, 480),

@@ -10,11 +10,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any
 
-from distal.render.material import mix_surfaces
-
 from distal.fields.claims import Operator, Primitive
 from distal.ir.build import builtin, compare, number, select
 from distal.ir.nodes import CompareOp, Expr, Gradient
+from distal.render.material import mix_surfaces
 from distal.scene.compose import Composer
 from distal.scene.node import Node
 from distal.scene.values import Body

@@ -16,7 +16,7 @@ from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, Expr, FunctionRef, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
-from distal.lang import Func
+from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.node import Node
 from distal.scene.promises import PROMISED, Promises

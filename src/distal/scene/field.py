@@ -27,8 +27,8 @@ from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Construct, Gradient, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, Vector, tuple_type
-from distal.lang import Func
 from distal.lang.composed import Composed
+from distal.lang.functions import Func
 from distal.scene.compose import Composer
 from distal.scene.conversion import Number
 from distal.scene.library import OPERATORS
@@ -116,12 +116,13 @@ class Field(Composed):
 
     # Making others
 
-    def _with(self, operator: str, *args: Any, **kwargs: Any) -> Any:
+    def _with(self, operator: str, *args: Any, **kwargs: Any) -> Self:
         """This shape under an operator of the library."""
         place = author_place()
         flat = f"flat {operator}" if self.flat else operator
         rule = OPERATORS.get(flat) or OPERATORS[operator]
-        return self._under(rule, args, kwargs, place, flat=self.flat)
+        made: Self = self._under(rule, args, kwargs, place, flat=self.flat)
+        return made
 
     def _under(
         self,
@@ -173,23 +174,27 @@ class Field(Composed):
                 root, sigmoid, or an edge: chamfer, round, columns, stairs, soft.
             k: ``count``: how many columns or stairs.
         """
-        return self._combined("union", others, smooth, blend, **k)
+        joined: Self = self._combined("union", others, smooth, blend, **k)
+        return joined
 
     def intersection(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
         """What is in all of them; ``&``. Arguments as for ``union``."""
-        return self._combined("intersection", others, smooth, blend, **k)
+        joined: Self = self._combined("intersection", others, smooth, blend, **k)
+        return joined
 
     def difference(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
         """This without the others; ``-``. Arguments as for ``union``."""
-        return self._combined("difference", others, smooth, blend, **k)
+        joined: Self = self._combined("difference", others, smooth, blend, **k)
+        return joined
 
     def xor(self, *others: Any) -> Self:
         """What is in one of two, and not in the other; ``^``."""
-        return self._combined("xor", others, 0.0, "quadratic")
+        joined: Self = self._combined("xor", others, 0.0, "quadratic")
+        return joined
 
     def __or__(self, other: Any) -> Self:
         return self.union(other) if isinstance(other, Field) else NotImplemented
@@ -212,17 +217,20 @@ class Field(Composed):
 
     def paint(self, material: Any) -> Self:
         """The shape in a material, or in a color; the outermost ``paint`` wins."""
-        return self._of(replace(self.node, material=as_material(material)))
+        changed: Self = self._of(replace(self.node, material=as_material(material)))
+        return changed
 
     def cut_material(self, material: Any) -> Self:
         """What the faces show that this shape cuts into others; else they show what is cut."""
-        return self._of(replace(self.node, cut_material=as_material(material)))
+        changed: Self = self._of(replace(self.node, cut_material=as_material(material)))
+        return changed
 
     def named(self, name: str) -> Self:
         """The shape under a name: of its function in emitted text, and in messages."""
         if not isinstance(name, str) or not name.strip():
             refuse(f"a name is a text, not {name!r}", None, author_place())
-        return self._of(replace(self.node, label=name))
+        changed: Self = self._of(replace(self.node, label=name))
+        return changed
 
     @classmethod
     def from_function(
@@ -370,6 +378,7 @@ def own_shape(
     box: Func | None = None
     rule = Primitive(function.name, function, EXACT if exact else NOTHING)
     found, constants = bound(rule, (), given, place)
+    extra: dict[str, Any]
     limits = {"slope": Limit.POSITIVE}
     extra = arguments(
         (boxes.given_slope,),

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 from distal.diagnostics import Span
 from distal.fields.claims import EXACT, Claim, Operator, Primitive
-from distal.lang import Func
+from distal.lang.functions import Func
 from distal.scene.conversion import Number
 
 Rule: TypeAlias = Primitive | Operator

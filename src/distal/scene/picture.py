@@ -8,7 +8,7 @@ ask for is known by name; it takes what it names.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
@@ -23,6 +23,7 @@ from distal.ir.nodes import (
     Return,
 )
 from distal.ir.types import FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.lang.functions import Func
 from distal.render import bounce, film, settings, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
@@ -34,8 +35,11 @@ from distal.scene.values import Body
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
 
-RENDERERS = {"plain": bounce.seen_plain, "mirrored": bounce.seen_mirrored}
-RENDERERS["refracted"] = bounce.seen_refracted
+RENDERERS: Final[dict[str, Func]] = {
+    "plain": bounce.seen_plain,
+    "mirrored": bounce.seen_mirrored,
+    "refracted": bounce.seen_refracted,
+}
 
 
 class Picturing:
@@ -123,7 +127,8 @@ class Picturing:
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, Read("resolution", VEC2)), **given}
             if view != "color":
-                return self.composer.call(views.VIEWS[view], asked)
+                shown: Func = views.VIEWS[view]  # type: ignore[assignment]  # the stub's functions differ
+                return self.composer.call(shown, asked)
             return self.composer.call(RENDERERS[self._scene.renderer], asked)
 
         body = Body(taken={"ray", "resolution"})
@@ -170,7 +175,8 @@ class Picturing:
             for i, call in enumerate(calls[:-1]):
                 chosen = compare(CompareOp.EQ, given["i"], integer(i))
                 body.statements.append(If(chosen, (Return(call),), ()))
-            return calls[-1]
+            last: Expr = calls[-1]
+            return last
 
         return self._function("light", (("i", INT), ("p", VEC3)), make)
 

@@ -15,7 +15,7 @@ from distal.fields.claims import Bounds2, Claim, Operator, Primitive
 from distal.ir.build import builtin, multiply
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Expr
-from distal.lang import Func
+from distal.lang.functions import Func
 from distal.scene.node import Node
 from distal.scene.values import Body, Values
 

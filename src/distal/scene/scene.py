@@ -10,17 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Final
 
-from distal.scene.backgrounds import as_background
-
 from distal.diagnostics import Span
 from distal.executor_hook import executor
 from distal.fields.claims import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
 from distal.ir.types import FRAME, VEC4
-from distal.lang import Func, func, vec3
+from distal.lang import func, vec3
 from distal.lang.composed import Composed
+from distal.lang.functions import Func
 from distal.render import tonemap, views
+from distal.scene.backgrounds import as_background
 from distal.scene.cameras import BaseCamera, Camera
 from distal.scene.field import Field
 from distal.scene.lights import DistantLight, HemisphereLight, Light
@@ -114,7 +114,7 @@ class Scene(Composed):
             "near": near,
             "far": far,
         }
-        self.numbers = arguments(
+        self.numbers: Mapping[str, Any] = arguments(
             scene_numbers, (), given, what="Scene", limits=_LIMITS, colors=("fog",), place=place
         )
         self.display = Display(self)
@@ -220,7 +220,8 @@ class Scene(Composed):
     def functions(self) -> Iterable[Func]:
         """The functions that it is made of."""
         yield from self.shape.functions()
-        for part in (*self.lights, self.camera, self.background, self.material):
+        parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
+        for part in parts:
             yield from part.functions()
 
 

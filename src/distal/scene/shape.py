@@ -7,7 +7,7 @@ a row of the field library, found by its name.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, Self, cast
 
 from distal.fields.claims import Operator
 from distal.frontend.problems import did_you_mean
@@ -22,13 +22,14 @@ from distal.scene.refusals import refuse
 class _Placed(Field):
     """What solid and flat shapes can do alike."""
 
-    def _joined(self, operator: str, other: Any, **numbers: Any) -> Any:
+    def _joined(self, operator: str, other: Any, **numbers: Any) -> Self:
         place = author_place()
         if not isinstance(other, Field) or other.flat != self.flat:
             kind = "flat" if self.flat else "solid"
             refuse(f"'{operator}' takes another {kind} shape, not {other!r:.60}", None, place)
         rule = OPERATORS[operator]
-        return self._under(rule, (), numbers, place, flat=self.flat, others=(other,))
+        made: Self = self._under(rule, (), numbers, place, flat=self.flat, others=(other,))
+        return made
 
     def _lifted(
         self, operator: str, args: Sequence[Any], kwargs: dict[str, Any], *, flat: bool
@@ -268,7 +269,8 @@ class Shape(_Placed):
 
     def slice(self, **plane: Any) -> Shape2D:
         """The flat shape that a plane cuts out; arguments as the library's row has them."""
-        return self._lifted("slice", (), plane, flat=True)
+        made: Shape2D = self._lifted("slice", (), plane, flat=True)
+        return made
 
 
 class Shape2D(_Placed):
@@ -290,10 +292,14 @@ class Shape2D(_Placed):
             chamfer: Size of the edges' bevels.
         """
         if rounding is not None:
-            return self._lifted("extrude rounded", (height, rounding), {}, flat=False)
+            return cast(
+                "Shape", self._lifted("extrude rounded", (height, rounding), {}, flat=False)
+            )
         if chamfer is not None:
-            return self._lifted("extrude chamfered", (height, chamfer), {}, flat=False)
-        return self._lifted("extrude", (height,), {}, flat=False)
+            return cast(
+                "Shape", self._lifted("extrude chamfered", (height, chamfer), {}, flat=False)
+            )
+        return cast("Shape", self._lifted("extrude", (height,), {}, flat=False))
 
     def revolve(self, offset: Any = 0.0, angle: Any = None) -> Shape:
         """The solid of this outline turned about the y axis; x > 0 is outwards.
@@ -303,8 +309,8 @@ class Shape2D(_Placed):
             angle: How far it is turned; all around without it.
         """
         if angle is None:
-            return self._lifted("revolve", (offset,), {}, flat=False)
-        return self._lifted("revolve partly", (offset, angle), {}, flat=False)
+            return cast("Shape", self._lifted("revolve", (offset,), {}, flat=False))
+        return cast("Shape", self._lifted("revolve partly", (offset, angle), {}, flat=False))
 
 
 def is_flat_operator(rule: Operator, child: bool) -> bool:

@@ -12,8 +12,8 @@ from distal.frontend import Assembly
 from distal.ir.build import number
 from distal.ir.nodes import Construct, Return
 from distal.ir.types import FLOAT, tuple_type
-from distal.lang import Func
 from distal.lang.composed import Composed
+from distal.lang.functions import Func
 from distal.scene.node import Node
 from distal.scene.promises import Promises
 from distal.scene.refusals import refuse
