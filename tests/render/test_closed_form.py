@@ -77,7 +77,7 @@ def test_weights_without_fresnel_hold_as_they_stand():
         found = material.shares(surface, cosine, False)
         assert tuple_of(found.diffuse) == pytest.approx((0.025, 0.05, 0.0125))
         assert tuple_of(found.mirrored) == pytest.approx((0.1, 0.1, 0.1))
-        assert tuple_of(found.transmitted) == pytest.approx((0.85, 0.85, 0.85))
+        assert tuple_of(found.transmitted) == pytest.approx((0.425, 0.85, 0.2125))
 
 
 def test_total_reflection_without_fresnel_mirrors_what_would_go_through():

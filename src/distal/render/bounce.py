@@ -11,11 +11,9 @@ from collections.abc import Callable
 from distal.fields.claims import Bounds
 from distal.lang import (
     Field3,
-    array,
     dot,
     exp,
     func,
-    max,
     reflect,
     refract,
     struct,
@@ -25,8 +23,9 @@ from distal.lang import (
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import Hit, March, march
-from distal.render.material import Surface
-from distal.render.shade import direct_light, fogged, mirrored, surface_normal
+from distal.render.material import Surface, brightest, shares
+from distal.render.normals import EXACT, normal
+from distal.render.shade import direct_light, fogged
 
 STACK = 12
 DIMMEST = 0.004  # rays that would add less than a display's step are not followed
@@ -61,23 +60,26 @@ def seen_plain(
     steps: int,
     light_count: int,
     shadow_steps: int,
+    normals: int = EXACT,
+    normal_step: float = 1e-3,
 ) -> vec4:
     """Direct light on the first surface; alpha is 0 where there is none."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(background(ray.direction), 0.0)
     p = place_on(ray, hit)
-    n = hit.side * surface_normal(field, p)
+    n = hit.side * normal(field, p, normals, normal_step)
     lifted = p + (2.0 * numbers.threshold * hit.t + 1e-4) * n
+    material = surface(p)
     color = direct_light(
         field,
         lights,
         ambient,
-        surface(p),
+        material,
+        shares(material, -dot(n, ray.direction), hit.side < 0.0),
         lifted,
         n,
         -ray.direction,
-        hit.side,
         bounds,
         numbers,
         light_count,
@@ -102,6 +104,8 @@ def seen_mirrored(
     light_count: int,
     shadow_steps: int,
     bounces: int,
+    normals: int = EXACT,
+    normal_step: float = 1e-3,
 ) -> vec4:
     """As ``seen_plain``, and what mirrors show: one ray goes on."""
     color = vec3(0.0)
@@ -109,7 +113,7 @@ def seen_mirrored(
     alpha = 0.0
     origin = ray.origin
     direction = ray.direction
-    for i in range(bounces + 1):
+    for _ in range(bounces + 1):
         here = Ray(origin, direction)
         hit = march(field, here, bounds, numbers, steps)
         if not hit.found:
@@ -117,18 +121,19 @@ def seen_mirrored(
             break
         alpha = 1.0
         p = place_on(here, hit)
-        n = hit.side * surface_normal(field, p)
+        n = hit.side * normal(field, p, normals, normal_step)
         lift = 2.0 * numbers.threshold * hit.t + 1e-4
         material = surface(p)
+        parts = shares(material, -dot(n, direction), hit.side < 0.0)
         direct = direct_light(
             field,
             lights,
             ambient,
             material,
+            parts,
             p + lift * n,
             n,
             -direction,
-            hit.side,
             bounds,
             numbers,
             light_count,
@@ -137,9 +142,8 @@ def seen_mirrored(
         )
         color += throughput * fogged(direct, hit.t, look.fog_color, look.fog_density)
         clear = exp(-look.fog_density * hit.t)
-        share = mirrored(material, dot(n, direction), 1.0) * (1.0 - material.roughness)
-        throughput = throughput * share * clear
-        if max(throughput.x, max(throughput.y, throughput.z)) < DIMMEST:
+        throughput = throughput * parts.mirrored * ((1.0 - material.roughness) * clear)
+        if brightest(throughput) < DIMMEST:
             break
         origin = p + lift * n
         direction = reflect(direction, n)
@@ -161,12 +165,14 @@ def seen_refracted(
     light_count: int,
     shadow_steps: int,
     bounces: int,
+    normals: int = EXACT,
+    normal_step: float = 1e-3,
 ) -> vec4:
     """As ``seen_mirrored``, and what glass shows: mirrored and refracted rays both go on."""
-    origins: array[vec3, STACK] = [ray.origin] * STACK
-    directions: array[vec3, STACK] = [ray.direction] * STACK
-    throughputs: array[vec3, STACK] = [vec3(1.0)] * STACK
-    depths: array[int, STACK] = [0] * STACK
+    origins = [ray.origin] * STACK
+    directions = [ray.direction] * STACK
+    throughputs = [vec3(1.0)] * STACK
+    depths = [0] * STACK
     waiting = 1
     color = vec3(0.0)
     alpha = 0.0
@@ -184,9 +190,10 @@ def seen_refracted(
             continue
         alpha = 1.0
         p = place_on(here, hit)
-        n = hit.side * surface_normal(field, p)
+        n = hit.side * normal(field, p, normals, normal_step)
         lift = 2.0 * numbers.threshold * hit.t + 1e-4
         material = surface(p)
+        parts = shares(material, -dot(n, direction), hit.side < 0.0)
         if hit.side < 0.0:
             throughput = throughput * exp(-material.absorption * hit.t)
         direct = direct_light(
@@ -194,10 +201,10 @@ def seen_refracted(
             lights,
             ambient,
             material,
+            parts,
             p + lift * n,
             n,
             -direction,
-            hit.side,
             bounds,
             numbers,
             light_count,
@@ -211,35 +218,20 @@ def seen_refracted(
         if depth >= bounces:
             continue
         eta = material.ior if hit.side < 0.0 else 1.0 / material.ior
+        # Where all is mirrored there is no bent ray, and nothing for it to carry.
         bent = refract(direction, n, eta)
-        total = dot(bent, bent) < 0.5
-        share = mirrored(material, dot(n, direction), hit.side)
-        through = material.color * material.transmission
-        if material.fresnel > 0.5:
-            through = through * (1.0 - share)
-        if total:
-            share = share + through
-            if material.transmission > 0.0:
-                share = max(share, material.color * material.transmission)
-            through = vec3(0.0)
-        mirror_share = throughput * share * (1.0 - material.roughness)
-        through_share = throughput * through
-        if largest(mirror_share) >= DIMMEST and waiting < STACK:
+        mirror_share = throughput * parts.mirrored * (1.0 - material.roughness)
+        through_share = throughput * parts.transmitted
+        if brightest(mirror_share) >= DIMMEST and waiting < STACK:
             origins[waiting] = p + lift * n
             directions[waiting] = reflect(direction, n)
             throughputs[waiting] = mirror_share
             depths[waiting] = depth + 1
             waiting += 1
-        if largest(through_share) >= DIMMEST and waiting < STACK:
+        if brightest(through_share) >= DIMMEST and waiting < STACK:
             origins[waiting] = p - lift * n
             directions[waiting] = bent
             throughputs[waiting] = through_share
             depths[waiting] = depth + 1
             waiting += 1
     return vec4(color, alpha)
-
-
-@func
-def largest(v: vec3) -> float:
-    """The largest component."""
-    return max(v.x, max(v.y, v.z))

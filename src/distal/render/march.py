@@ -44,7 +44,7 @@ class Hit:
 
 @func
 def crossing(ray: Ray, bounds: Bounds) -> vec2:
-    """Where a ray enters and leaves a box; empty (x > y) where it passes by. Infinite sides work."""
+    """Where a ray enters and leaves a box, of infinite sides too; empty (x > y) if it passes by."""
     tiny = 1e-9
     direction = select(abs(ray.direction) < tiny, ray.direction * 0.0 + tiny, ray.direction)
     near = (bounds.low - ray.origin) / direction
@@ -59,7 +59,10 @@ def crossing(ray: Ray, bounds: Bounds) -> vec2:
 
 @func
 def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -> Hit:
-    """The first surface along a ray."""
+    """The first surface along a ray.
+
+    ``bounds`` have room around the surface (``settings.grown_bounds``): rays end at their sides.
+    """
     span = crossing(ray, bounds)
     t = max(span.x, numbers.near)
     end = min(span.y, numbers.far)
@@ -79,7 +82,8 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
         if i == 0 and d < 0.0:
             side = -1.0
             d = -d
-        if relaxation > 1.0 and abs(d) + previous < step:
+        # Head on, balls on either side of a surface touch exactly: there the sign tells.
+        if relaxation > 1.0 and (d < 0.0 or abs(d) + previous < step):
             step -= relaxation * step
             relaxation = 1.0
         else:
@@ -92,6 +96,9 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
                 break
             step = relaxation * d
         previous = abs(d)
+        if relaxation > 1.0 and t + step > end and t + previous < end:
+            # The promise ends before the ray does: the longer step is tried at the ray's end.
+            step = end - t
         t += step
     ran_out = taken == steps and not found and t < end
     if ran_out and best < FORGIVING * numbers.threshold:

@@ -18,7 +18,8 @@ class Surface:
     """A material at one place. Every field is a number that mixes linearly in blends.
 
     Attributes:
-        color: Share of red, green and blue that comes back from the diffuse part; a metal's tint.
+        color: Share of red, green and blue that is scattered, that a metal mirrors, that goes
+            through.
         diffuse: Weight of the light that is scattered evenly.
         specular: Weight of the light that is mirrored.
         transmission: Weight of the light that goes through.
@@ -168,10 +169,11 @@ def shares(surface: Surface, cosine: float, inside: bool) -> Shares:
     whole = surface.diffuse + surface.specular + surface.transmission
     mirrored = mix(surface.specular * tint, whole * of_fresnel, surface.fresnel)
     left = 1.0 - surface.fresnel * of_fresnel
+    through = left * surface.color * surface.transmission
     return Shares(
         diffuse=surface.color * surface.diffuse * left,
-        mirrored=mirrored + (1.0 - surface.fresnel) * total_reflection * surface.transmission,
-        transmitted=left * (surface.transmission * (1.0 - total_reflection)),
+        mirrored=mirrored + through * total_reflection,
+        transmitted=through * (1.0 - total_reflection),
     )
 
 

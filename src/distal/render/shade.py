@@ -16,42 +16,19 @@ from distal.lang import (
     dot,
     exp,
     func,
-    gradient,
     max,
     min,
     mix,
-    normalize,
+    reflect,
     vec3,
 )
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March, crossing
-from distal.render.material import Surface
+from distal.render.material import Shares, Surface, highlight
 
-PI = 3.141592653589793
 SHARPEST = 0.003  # tangent of the smallest half angle a light fills: sharper is noise
 OCCLUSION_TAPS = 5
-
-
-@func
-def surface_normal(field: Field3, p: vec3) -> vec3:
-    """The exact normal: which way the distance grows."""
-    return normalize(gradient(field, p))
-
-
-@func
-def normal_by_six_taps(field: Field3, p: vec3, step: float) -> vec3:
-    """The normal by central differences."""
-    x = vec3(step, 0.0, 0.0)
-    y = vec3(0.0, step, 0.0)
-    z = vec3(0.0, 0.0, step)
-    return normalize(
-        vec3(
-            field(p + x) - field(p - x),
-            field(p + y) - field(p - y),
-            field(p + z) - field(p - z),
-        )
-    )
 
 
 @func
@@ -92,83 +69,32 @@ def ambient_occlusion(field: Field3, p: vec3, n: vec3, reach: float, divisor: fl
 
 
 @func
-def fresnel_dielectric(cosine: float, eta: float) -> float:
-    """The share of unpolarised light that a clear surface mirrors.
-
-    ``cosine`` is that of the angle to the normal, ``eta`` the index outside over that inside; 1
-    beyond the critical angle.
-    """
-    c = clamp(abs(cosine), 0.0, 1.0)
-    sine2 = eta * eta * (1.0 - c * c)
-    if sine2 >= 1.0:
-        return 1.0
-    inner = (1.0 - sine2) ** 0.5
-    parallel = (c - eta * inner) / (c + eta * inner)
-    crossed = (eta * c - inner) / (eta * c + inner)
-    return 0.5 * (parallel * parallel + crossed * crossed)
-
-
-@func
-def highlight(surface: Surface, n: vec3, view: vec3, light: vec3) -> float:
-    """The mirrored shape of a light: GGX with Smith's shadowing, times the cosine.
-
-    In units where a white scattering surface shows 1 (Walter et al., "Microfacet models for
-    refraction through rough surfaces", 2007).
-    """
-    half = normalize(view + light)
-    alpha = max(surface.roughness * surface.roughness, 0.002)
-    a2 = alpha * alpha
-    nh = clamp(dot(n, half), 0.0, 1.0)
-    nl = clamp(dot(n, light), 0.0, 1.0)
-    nv = clamp(dot(n, view), 1e-3, 1.0)
-    base = nh * nh * (a2 - 1.0) + 1.0
-    spread = a2 / max(base * base, 1e-9)
-    smith = nl * (nv * nv * (1.0 - a2) + a2) ** 0.5 + nv * (nl * nl * (1.0 - a2) + a2) ** 0.5
-    return min(spread * 0.5 * nl / max(smith, 1e-5), 64.0)
-
-
-@func
-def mirrored(surface: Surface, cosine: float, side: float) -> vec3:
-    """The share of light that a surface mirrors, by color."""
-    if surface.fresnel < 0.5:
-        return mix(vec3(1.0), surface.color, surface.metal) * surface.specular
-    eta = surface.ior if side < 0.0 else 1.0 / surface.ior
-    clear = fresnel_dielectric(cosine, eta)
-    grazing = (1.0 - clamp(abs(cosine), 0.0, 1.0)) ** 5.0
-    metallic = surface.color + (1.0 - surface.color) * grazing
-    return mix(vec3(clear), metallic * surface.specular, surface.metal)
-
-
-@func
-def scattered(surface: Surface, mirror: vec3) -> vec3:
-    """The share of light that a surface scatters, by color; what a coat mirrors is missing."""
-    left = 1.0 - surface.fresnel * max(mirror.x, max(mirror.y, mirror.z))
-    return surface.color * (surface.diffuse * left)
-
-
-@func
 def direct_light(
     field: Field3,
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     surface: Surface,
+    parts: Shares,
     p: vec3,
     n: vec3,
     view: vec3,
-    side: float,
     bounds: Bounds,
     numbers: March,
     light_count: int,
     shadow_steps: int,
     occlusion: float,
 ) -> vec3:
-    """What a place sends to the eye by itself and from the lights, without reflections."""
-    mirror = mirrored(surface, dot(n, view), side)
-    scatter = scattered(surface, mirror)
-    around = ambient(n)
+    """What a place sends to the eye by itself and from the lights, without mirrored surroundings.
+
+    What a rough surface mirrors of its surroundings is blurred: that share is taken from the
+    ambient light.
+    """
+    around = parts.diffuse * ambient(n)
+    if surface.roughness > 0.0:
+        around += parts.mirrored * surface.roughness * ambient(reflect(-view, n))
     if occlusion > 0.0:
         around = around * ambient_occlusion(field, p, n, occlusion, numbers.divisor)
-    color = surface.emission + scatter * around
+    color = surface.emission + around
     for i in range(light_count):
         light = lights(i, p)
         facing = dot(n, light.direction)
@@ -176,8 +102,8 @@ def direct_light(
             shadow = 1.0
             if shadow_steps > 0:
                 shadow = soft_shadow(field, p, light, bounds, numbers, shadow_steps)
-            shine = highlight(surface, n, view, light.direction)
-            color += light.radiance * shadow * (scatter * facing + mirror * shine)
+            shine = highlight(surface, n, view, light.direction, light.radius)
+            color += light.radiance * shadow * (parts.diffuse * facing + parts.mirrored * shine)
     return color
 
 

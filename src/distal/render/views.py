@@ -25,7 +25,7 @@ from distal.render.bounce import place_on
 from distal.render.camera import Ray
 from distal.render.march import March, march
 from distal.render.material import Surface
-from distal.render.shade import surface_normal
+from distal.render.normals import exact_normal
 from distal.render.tonemap import encode_srgb
 
 EMPTY = vec3(0.08, 0.08, 0.1)
@@ -56,7 +56,7 @@ def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    return vec4(0.5 + 0.5 * hit.side * surface_normal(field, place_on(ray, hit)), 1.0)
+    return vec4(0.5 + 0.5 * hit.side * exact_normal(field, place_on(ray, hit)), 1.0)
 
 
 @func
