@@ -386,8 +386,8 @@ def own_shape(
         {},
         what=function.name,
         limits=limits,
-        requires=None,
         place=place,
+        reserved=(),
     )
     if bounds is not None:
         box = boxes.given_bounds2 if flat else boxes.given_bounds

@@ -95,11 +95,12 @@ class Scene(Composed):
         self.name = name
         self.shape = one_shape(shape, place)
         check_slopes(self.shape.node)
-        self.lights = checked_lights(lights, place)
+        given_lights = checked_lights(lights, place)
+        self.background = as_background(background, given_lights, place)
+        self.lights = all_lights(lights is None, given_lights, self.background.light)
         if camera is not None and not isinstance(camera, BaseCamera):
             refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
         self.camera = camera if camera is not None else Camera((3.0, 2.0, 5.0))
-        self.background = as_background(background, self.lights)
         self.material = as_material(default_material)
         if tone_map not in tonemap.NAMES:
             refuse(f"there is no tone map '{tone_map}'", ", ".join(tonemap.NAMES), place)
@@ -301,11 +302,20 @@ def one_shape(shape: Any, place: Span | None) -> Field:
 
 
 def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
-    """The lights of a scene; a sun and a sky where the author says nothing."""
+    """The lights that the author gave; one light may stand for a list of one."""
     if lights is None:
-        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
+        return ()
     given = tuple(lights) if isinstance(lights, Sequence) else (lights,)
     for light in given:
         if not isinstance(light, Light):
             refuse_kind(f"a light is wanted, not {light!r:.60}", "PointLight((2, 3, 4))", place)
     return given
+
+
+def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
+    """The lights of a scene: those given, what is around if that shines, else a sun and a sky."""
+    if around is not None:
+        return (*given, around)
+    if unsaid:
+        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
+    return tuple(given)
