@@ -245,6 +245,7 @@ REPEAT_SCALED = operator(
     keeps=INSIDE_AND_BOUND,
     slope=rescaled_slope,
     bounds=rescaled_bounds,
+    limits={"ratio": Limit.POSITIVE},
     requires=ratio_requirement,
     needs="a shape beside the origin whose farthest point is less than ratio times as far as its "
     "nearest",
