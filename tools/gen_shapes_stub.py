@@ -2,7 +2,7 @@
 
 The classes are made from the field library's rows when they are imported. This writes
 ``src/distal/scene/shapes.pyi`` with their signatures and first sentences, and
-``src/distal/scene/shape_names.py`` with their names alone, for ``import distal`` to know them
+``src/distal/shape_names.py`` with their names alone, for ``import distal`` to know them
 without loading them. Run it after any change of the library; a test fails when it was forgotten.
 """
 
@@ -88,7 +88,7 @@ def names() -> str:
     return f"{NAMES_HEAD}SHAPE_NAMES: Final = (\n{listed})\n"
 
 
-FILES = {ROOM / "shapes.pyi": stub, ROOM / "shape_names.py": names}
+FILES = {ROOM / "shapes.pyi": stub, ROOM.parent / "shape_names.py": names}
 
 if __name__ == "__main__":
     for path, text in FILES.items():

@@ -14,7 +14,7 @@ from distal.executor_hook import (
     set_combiner_loader,
     set_executor_loader,
 )
-from distal.scene.shape_names import SHAPE_NAMES
+from distal.shape_names import SHAPE_NAMES
 from distal.version import __version__
 
 if TYPE_CHECKING:

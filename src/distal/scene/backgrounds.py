@@ -8,6 +8,7 @@ no light counts twice.
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
@@ -25,7 +26,6 @@ from distal.render import environment as environment_library
 from distal.render import sky as library
 from distal.scene.calls import Composer, FunctionCall
 from distal.scene.conversion import unwrapped
-from distal.scene.images import light_texture, texture_light
 from distal.scene.lights import Light
 from distal.scene.numbers import arguments, slots_of
 from distal.scene.places import author_place
@@ -207,7 +207,7 @@ class Environment(Surroundings):
         self, image: Any, intensity: Any = 1.0, turn: Any = 0.0, *, light: bool = False
     ) -> None:
         place = author_place()
-        texture = light_texture(image, "Environment", place)
+        texture = _images().light_texture(image, "Environment", place)
         given = {"image": texture, "intensity": intensity, "turn": turn}
         whole = _call("Environment", environment_library.environment, given, place)
         self._surround(whole, light=bool(light))
@@ -220,7 +220,7 @@ class Environment(Surroundings):
         """``(n) -> vec3``, what a surface facing n gets of its light."""
         if self._ambient is None:
             whole = self.background
-            pixels = texture_light(self._texture, "Environment", whole.place)
+            pixels = _images().texture_light(self._texture, "Environment", whole.place)
             harmonics = BufferData(environment_library.harmonics(pixels))
             values = {**whole.values, "harmonics": harmonics}
             call = FunctionCall(whole.what, environment_light, values, whole.place)
@@ -314,3 +314,8 @@ def _call(
 
 def _sun(sun: tuple[float, ...]) -> str | None:
     return None if any(sun) else "sun is a vector of zeros, which points nowhere"
+
+
+def _images() -> Any:
+    """What decodes pictures, loaded when there is one: the compile path needs no NumPy."""
+    return importlib.import_module("distal.scene.images")

@@ -9,6 +9,7 @@ index of the repetition it lies in). The formulas are scene code of ``render.pat
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -20,7 +21,6 @@ from distal.lang.functions import Func
 from distal.render import patterns as library
 from distal.scene.calls import PLACE_NAMES, Pattern
 from distal.scene.conversion import is_scalar
-from distal.scene.images import cube_texture, light_texture
 from distal.scene.materials import Material, accept, as_material, mixed, own_pattern
 from distal.scene.numbers import arguments
 from distal.scene.places import author_place
@@ -217,7 +217,7 @@ def image_pattern(image: Any, mapping: str = "planar", size: Any = 1.0) -> Patte
     if mapping not in _MAPPINGS:
         hint = f"one of {', '.join(_MAPPINGS)}"
         refuse(f"there is no mapping {mapping!r:.40} for an image_pattern", hint, place)
-    texture = light_texture(image, "image_pattern", place)
+    texture = _images().light_texture(image, "image_pattern", place)
     given = {"image": texture, "size": size}
     return _pattern("image_pattern", _MAPPINGS[mapping], given, place)
 
@@ -234,7 +234,7 @@ def cube_map(images: Any) -> Pattern:
         TypeError: Something is of another kind.
     """
     place = author_place()
-    texture = cube_texture(images, "cube_map", place)
+    texture = _images().cube_texture(images, "cube_map", place)
     return _pattern("cube_map", library.cube_map, {"image": texture}, place)
 
 
@@ -282,3 +282,8 @@ def _goes_somewhere(**given: Any) -> str | None:
     if "start" in given and given["start"] == given["end"]:
         return "start and end are the same place"
     return None
+
+
+def _images() -> Any:
+    """What decodes pictures, loaded when there is one: the compile path needs no NumPy."""
+    return importlib.import_module("distal.scene.images")

@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 
 from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
-from distal.lang.resources import Buffer, TextureValue
+from distal.lang.resources import Buffer, Texture3D, TextureValue
 from distal.scene.shape import Shape, Shape2D
 
 Number: TypeAlias = float | Parameter | Expression
@@ -43,21 +43,6 @@ class OrientedRectangle(Shape2D):
         end: Vector = ...,
         thickness: Number = 0.25,
     ) -> None: ...
-
-class Rhombus2(Shape2D):
-    """Rhombus with its diagonals along the axes."""
-
-    def __init__(self, size: Vector = ...) -> None: ...
-
-class IsoscelesTrapezoid(Shape2D):
-    """Trapezoid whose slanted sides mirror each other; halfway up at y = 0."""
-
-    def __init__(self, bottom: Number = 1.0, top: Number = 0.6, height: Number = 0.7) -> None: ...
-
-class Parallelogram(Shape2D):
-    """Parallelogram with two sides along x."""
-
-    def __init__(self, width: Number = 0.8, height: Number = 0.6, skew: Number = 0.3) -> None: ...
 
 class Cross(Shape2D):
     """Two equal bars across each other."""
@@ -282,6 +267,41 @@ class LogarithmicSpiral(Shape2D):
         radius: Number = 0.02,
     ) -> None: ...
 
+class Polygon(Shape2D):
+    """Any polygon; where it crosses itself, inside is what it goes around an odd number of times."""
+
+    def __init__(self, points: Points = ...) -> None: ...
+
+class RoundedPolygon(Shape2D):
+    """A polygon grown by a radius, so that its outer corners are round."""
+
+    def __init__(self, points: Points = ..., radius: Number = 0.1) -> None: ...
+
+class Polyline(Shape2D):
+    """A line through points, as wide as a disc drawn along it."""
+
+    def __init__(
+        self,
+        points: Points = ...,
+        radius: Number = 0.05,
+        closed: bool = False,
+    ) -> None: ...
+
+class Rhombus2(Shape2D):
+    """Rhombus with its diagonals along the axes."""
+
+    def __init__(self, size: Vector = ...) -> None: ...
+
+class IsoscelesTrapezoid(Shape2D):
+    """Trapezoid whose slanted sides mirror each other; halfway up at y = 0."""
+
+    def __init__(self, bottom: Number = 1.0, top: Number = 0.6, height: Number = 0.7) -> None: ...
+
+class Parallelogram(Shape2D):
+    """Parallelogram with two sides along x."""
+
+    def __init__(self, width: Number = 0.8, height: Number = 0.6, skew: Number = 0.3) -> None: ...
+
 class EquilateralTriangle(Shape2D):
     """Triangle with equal sides, a corner up, its middle at the origin."""
 
@@ -332,26 +352,6 @@ class RegularStar(Shape2D):
 
     def __init__(self, radius: Number = 0.5, inner: Number = 0.25, count: int = 7) -> None: ...
 
-class Polygon(Shape2D):
-    """Any polygon; where it crosses itself, inside is what it goes around an odd number of times."""
-
-    def __init__(self, points: Points = ...) -> None: ...
-
-class RoundedPolygon(Shape2D):
-    """A polygon grown by a radius, so that its outer corners are round."""
-
-    def __init__(self, points: Points = ..., radius: Number = 0.1) -> None: ...
-
-class Polyline(Shape2D):
-    """A line through points, as wide as a disc drawn along it."""
-
-    def __init__(
-        self,
-        points: Points = ...,
-        radius: Number = 0.05,
-        closed: bool = False,
-    ) -> None: ...
-
 class GearProfile(Shape2D):
     """A gear with involute teeth, one of them up; gears of one tooth size mesh."""
 
@@ -382,6 +382,54 @@ class ImageField(Shape2D):
     """A shape whose distances are the texels of an image, in their first channel."""
 
     def __init__(self, image: Image = ..., size: Vector = ..., scale: Number = 1.0) -> None: ...
+
+class CubicLattice(Shape):
+    """Struts along the edges of cubes, a node at the origin."""
+
+    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.06) -> None: ...
+
+class BccLattice(Shape):
+    """Struts from the corners of cubes to their middles (body-centred cubic)."""
+
+    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
+
+class FccLattice(Shape):
+    """Struts from the corners of cubes to the middles of their faces (face-centred cubic)."""
+
+    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
+
+class OctetLattice(Shape):
+    """The octet truss: the edges of octahedra and tetrahedra that fill space."""
+
+    def __init__(self, cell_size: Number = 0.75, radius: Number = 0.05) -> None: ...
+
+class ValueNoiseSolid(Shape):
+    """Lumps of value noise, in line with the axes."""
+
+    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+
+class GradientNoiseSolid(Shape):
+    """Lumps of Perlin's noise."""
+
+    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+
+class SimplexNoiseSolid(Shape):
+    """Lumps of simplex noise, rounder and smaller than those of Perlin's."""
+
+    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+
+class FbmSolid(Shape):
+    """Rugged lumps: noise at several scales."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        level: Number = 0.0,
+        octaves: int = 4,
+        lacunarity: Number = 2.0,
+        gain: Number = 0.5,
+        seed: int = 0,
+    ) -> None: ...
 
 class Corner(Shape):
     """The eighth of space where x, y and z are all negative."""
@@ -726,6 +774,128 @@ class Quad(Shape):
         d: Vector = ...,
     ) -> None: ...
 
+class Gyroid(Shape):
+    """Schoen's gyroid: no straight lines, no mirrors, two mazes that never meet."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class SchwarzP(Shape):
+    """Schwarz's primitive surface: tubes along the axes that meet in every cell's middle."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Diamond(Shape):
+    """Schwarz's diamond surface: tubes along the bonds of a diamond's atoms."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Neovius(Shape):
+    """Neovius' surface: as Schwarz's primitive one, with tubes along the edges too."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Lidinoid(Shape):
+    """Lidin's surface, a twisted kin of the gyroid."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class SplitP(Shape):
+    """A surface between the gyroid and Schwarz's primitive one."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class IWP(Shape):
+    """Schoen's I-WP surface: tubes along the diagonals of a cube."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class VoronoiWalls(Shape):
+    """The walls between the cells of scattered points: a closed foam, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        thickness: Number = 0.08,
+        jitter: Number = 0.8,
+        seed: int = 0,
+    ) -> None: ...
+
+class VoronoiCells(Shape):
+    """The cells of scattered points, a gap between them: rubble, packed grains, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        gap: Number = 0.08,
+        jitter: Number = 0.8,
+        seed: int = 0,
+    ) -> None: ...
+
+class VoronoiLines(Shape2D):
+    """The borders between the cells of points scattered in the plane, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        thickness: Number = 0.08,
+        jitter: Number = 0.8,
+        seed: int = 0,
+    ) -> None: ...
+
+class ScatteredBalls(Shape):
+    """Balls around scattered points, or all that is not in them: gravel, a sponge, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        radius: Number = 0.2,
+        jitter: Number = 0.8,
+        seed: int = 0,
+        holes: bool = False,
+    ) -> None: ...
+
 CLASSES: dict[str, type[Shape] | type[Shape2D]]
 
 __all__ = [
@@ -734,9 +904,6 @@ __all__ = [
     "RoundedRectangle",
     "ChamferedRectangle",
     "OrientedRectangle",
-    "Rhombus2",
-    "IsoscelesTrapezoid",
-    "Parallelogram",
     "Cross",
     "Tunnel",
     "Stairs",
@@ -769,6 +936,12 @@ __all__ = [
     "CoolS",
     "ArchimedeanSpiral",
     "LogarithmicSpiral",
+    "Polygon",
+    "RoundedPolygon",
+    "Polyline",
+    "Rhombus2",
+    "IsoscelesTrapezoid",
+    "Parallelogram",
     "EquilateralTriangle",
     "IsoscelesTriangle",
     "Triangle2",
@@ -779,13 +952,18 @@ __all__ = [
     "Hexagram",
     "Pentagram",
     "RegularStar",
-    "Polygon",
-    "RoundedPolygon",
-    "Polyline",
     "GearProfile",
     "TangentCam",
     "ArcCam",
     "ImageField",
+    "CubicLattice",
+    "BccLattice",
+    "FccLattice",
+    "OctetLattice",
+    "ValueNoiseSolid",
+    "GradientNoiseSolid",
+    "SimplexNoiseSolid",
+    "FbmSolid",
     "Corner",
     "Box",
     "BoxCheap",
@@ -847,4 +1025,15 @@ __all__ = [
     "Wedge",
     "Triangle",
     "Quad",
+    "Gyroid",
+    "SchwarzP",
+    "Diamond",
+    "Neovius",
+    "Lidinoid",
+    "SplitP",
+    "IWP",
+    "VoronoiWalls",
+    "VoronoiCells",
+    "VoronoiLines",
+    "ScatteredBalls",
 ]
