@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from distal.fields.claims import Bounds
 from distal.lang import Frame, exp, func, image, length, max, min, sin, vec2, vec3, vec4
-from distal.render import bounce, heightfield_march, march, material, patterns, sky, tonemap
+from distal.render import (
+    bounce,
+    heightfield_march,
+    legend,
+    march,
+    material,
+    patterns,
+    sky,
+    tonemap,
+    views,
+)
 from distal.render.camera import Ray, look_at
 from distal.render.lights import LightSample, distant_light, point_light
 
@@ -138,3 +148,13 @@ def traced(frame: Frame) -> vec4:
     """As ``hybrid``, by sphere tracing."""
     hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(), 400)
     return vec4(sea_color(hit.t, hit.found), float(max(hit.steps, 0)))
+
+
+@image
+def cost(frame: Frame) -> vec4:
+    """The steps of the hybrid march, under a legend."""
+    stride = heightfield_march.Stride(0.13, 0.05, 1.05)
+    seen = views.view_steps(
+        sea_ray(frame), sea, everywhere(), sea_numbers(), 64, hybrid=True, stride=stride
+    )
+    return legend.with_legend(seen, frame.coord, frame.resolution, 64)

@@ -273,8 +273,8 @@ def test_checkers_alternate_and_do_not_flicker_on_their_borders():
 def test_noise_is_within_its_range_and_uses_it():
     p = np.random.default_rng(3).uniform(-20, 20, (4000, 3))
     shown = np.asarray(patterns.clouds(p, 1.0, 3))
-    assert 0 <= shown.min() < 0.2
-    assert 0.8 < shown.max() <= 1
+    assert 0 <= shown.min() < 0.3
+    assert 0.7 < shown.max() <= 1
     assert shown.mean() == pytest.approx(0.5, abs=0.03)
 
 

@@ -21,11 +21,13 @@ from distal.lang import (
     vec4,
 )
 from distal.render.camera import Ray
+from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.lights import LightSample
 from distal.render.march import Hit, March, march
 from distal.render.material import Surface, brightest, shares
 from distal.render.normals import EXACT, normal
 from distal.render.shade import direct_light, fogged
+from distal.render.trace import first_surface
 
 STACK = 12
 DIMMEST = 0.004  # rays that would add less than a display's step are not followed
@@ -62,9 +64,11 @@ def seen_plain(
     shadow_steps: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
 ) -> vec4:
     """Direct light on the first surface; alpha is 0 where there is none."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return vec4(background(ray.direction), 0.0)
     p = place_on(ray, hit)
@@ -106,6 +110,8 @@ def seen_mirrored(
     bounces: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
 ) -> vec4:
     """As ``seen_plain``, and what mirrors show: one ray goes on."""
     color = vec3(0.0)
@@ -115,7 +121,7 @@ def seen_mirrored(
     direction = ray.direction
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
-        hit = march(field, here, bounds, numbers, steps)
+        hit = first_surface(field, here, bounds, numbers, steps, hybrid, stride)
         if not hit.found:
             color += throughput * background(direction)
             break

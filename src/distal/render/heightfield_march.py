@@ -33,6 +33,9 @@ class Stride:
     growth: float = 1.05
 
 
+STRIDE = Stride()
+
+
 @func
 def start_below(ray: Ray, top: float, t: float) -> float:
     """Where a ray from above comes down to ``top``; ``t`` where it starts below."""

@@ -7,6 +7,7 @@ the index of the repetition it lies in, and the numbers of a pattern. What flows
 
 from __future__ import annotations
 
+from distal.fields.noise import fbm
 from distal.lang import (
     Texture2D,
     TextureCube,
@@ -19,7 +20,6 @@ from distal.lang import (
     func,
     length,
     max,
-    mix,
     normalize,
     sample,
     sin,
@@ -115,23 +115,6 @@ def mixing_hash(p: vec3) -> float:
 
 
 @func
-def cloud(p: vec3) -> float:
-    """Value noise: a random number at each corner of a grid of cubes, smoothly between."""
-    corner = floor(p)
-    inside = p - corner
-    weight = inside * inside * inside * (inside * (inside * 6.0 - 15.0) + 10.0)
-    total = 0.0
-    # The four edges along x, joined by the weights of their ends' faces.
-    for y in range(2):
-        for z in range(2):
-            at = corner + vec3(0.0, float(y), float(z))
-            edge = mix(mixing_hash(at), mixing_hash(at + vec3(1.0, 0.0, 0.0)), weight.x)
-            above = weight.y if y == 1 else 1.0 - weight.y
-            total += edge * above * (weight.z if z == 1 else 1.0 - weight.z)
-    return total
-
-
-@func
 def clouds(p: vec3, size: float = 1.0, octaves: int = 4) -> float:
     """Noise in layers, each half as large and half as strong as the one before.
 
@@ -140,17 +123,7 @@ def clouds(p: vec3, size: float = 1.0, octaves: int = 4) -> float:
         size: How large the largest clouds are.
         octaves: How many layers.
     """
-    q = p / size
-    total = 0.0
-    whole = 0.0
-    strength = 1.0
-    for _ in range(octaves):
-        total += strength * cloud(q)
-        whole += strength
-        strength *= 0.5
-        # Not quite twice, so that the layers' grids do not meet.
-        q = q * 2.03 + vec3(17.3, 5.7, 9.1)
-    return total / max(whole, 1e-6)
+    return 0.5 + 0.5 * fbm(p / size, octaves)
 
 
 @func

@@ -10,7 +10,7 @@ from distal.render.march import March
 
 @func
 def march_numbers(divisor: float, near: float, far: float, resolution: vec2) -> March:
-    """A hit is within a third of a pixel of a usual lens, and never nearer than 32 bits can tell."""
+    """Hits are within a third of a pixel of a usual lens, and no nearer than 32 bits can tell."""
     return March(max(divisor, 0.05), near, far, clamp(0.25 / resolution.y, 1e-4, 1e-3))
 
 

@@ -21,14 +21,14 @@ def encode_srgb(c: vec3) -> vec3:
 
 @func
 def decode_srgb(c: vec3) -> vec3:
-    """sRGB's curve to linear light."""
+    """From sRGB's curve to linear light."""
     x = max(c, 0.0)
     return select(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
 
 
 @func
 def reinhard(c: vec3) -> vec3:
-    """c / (1 + c) (Reinhard et al., "Photographic tone reproduction", 2002)."""
+    """Each c becomes c / (1 + c) (Reinhard et al., "Photographic tone reproduction", 2002)."""
     return c / (1.0 + c)
 
 

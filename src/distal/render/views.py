@@ -23,10 +23,12 @@ from distal.lang import (
 )
 from distal.render.bounce import place_on
 from distal.render.camera import Ray
+from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.march import March, march
 from distal.render.material import Surface
 from distal.render.normals import exact_normal
 from distal.render.tonemap import encode_srgb
+from distal.render.trace import first_surface
 
 EMPTY = vec3(0.08, 0.08, 0.1)
 
@@ -69,9 +71,17 @@ def view_depth(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: i
 
 
 @func
-def view_steps(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+def view_steps(
+    ray: Ray,
+    field: Field3,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
+) -> vec4:
     """What a ray costs: how many times the field was asked, of the most allowed."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     return vec4(heat(float(hit.steps) / float(steps)), 1.0)
 
 
