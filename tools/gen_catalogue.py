@@ -28,7 +28,7 @@ from tests.fields.drawing import default_sample, random_sample  # noqa: E402
 from tests.fields.library import docstring, operators, primitives  # noqa: E402
 from tests.fields.rows import Slot, default_of, dimension_of, slots_of  # noqa: E402
 from tests.fields.subject import subject_of  # noqa: E402
-from tests.fields.trees import accepted_tree, operator_slots  # noqa: E402
+from tests.fields.trees import accepted_tree, operator_functions, operator_slots  # noqa: E402
 
 PAGE: Final = ROOT / "docs/reference/catalogue.md"
 SAMPLES: Final = 3  # sets of random numbers for a shape, besides its defaults; trees of an operator
@@ -91,9 +91,9 @@ def sections() -> Iterator[Section]:
                 title = kind if tier == 1 else f"{kind}: {_TIERS[tier]}"
                 yield Section(title, columns, rows)
     columns = ("operator", "numbers", "keeps", "slope", "box")
-    for title, wanted in _GROUPS.items():
-        chosen = [row for row in operators().values() if _group(row) == title]
-        assert wanted or chosen
+    for title in _GROUPS:
+        ordered = sorted(operators().values(), key=_operator_module)
+        chosen = [row for row in ordered if _group(row) == title]
         cells = [(_operator_cells(row), _operator_measure(row)) for row in chosen]
         if cells:
             yield Section(title, columns, cells)
@@ -104,6 +104,10 @@ _TIERS: Final = {2: "surfaces, lattices, noise, tubes", 3: "fractals"}
 
 def _module(row: Primitive) -> str:
     return row.distance.__module__
+
+
+def _operator_module(row: Operator) -> str:
+    return operator_functions(row)[0].__module__
 
 
 # Shapes
@@ -184,7 +188,7 @@ def _figures(
 # Operators
 
 _BLENDED: Final = ("union", "intersection", "difference", "xor")
-_GROUPS: Final = {"Combinations": True, "Blends and edges": True, "Other operators": True}
+_GROUPS: Final = ("Combinations", "Blends and edges", "Other operators")
 
 
 def _group(row: Operator) -> str:
