@@ -25,7 +25,7 @@ from distal.fields.claims import (
 from distal.frontend import Assembly
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Construct, Gradient, Param, Read, Return
+from distal.ir.nodes import Call, Construct, Gradient, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, Vector, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
@@ -64,7 +64,13 @@ class Field(Composed):
     def compose(self, assembly: Assembly) -> str:
         """Its distance as a function of scene code."""
         composer = Composer(assembly, [self.node])
-        return composer.field(self.node, composer.values.all(self.node), ZERO_CELL).name
+        found = composer.field(self.node, composer.values.all(self.node), ZERO_CELL)
+        if not found.captures:
+            return found.name
+        value = Call(found.name, (Read("p", self.point_type), *found.captures), FLOAT)
+        params = (Param("p", self.point_type),)
+        name = f"{plain_name(self.name)}_distance"
+        return assembly.define(name, params, FLOAT, (Return(value),), self.node.place)
 
     def functions(self) -> Iterable[Func]:
         """The functions that it is made of."""

@@ -91,7 +91,7 @@ class Picturing:
             "divisor": promise.divisor,
             "slope": promise.slope,
             "field": composer.field(node, values, ZERO_CELL),
-            "surface": self._surface(),
+            "surface": self.surface(),
             "lights": self._lights(),
             "ambient": self._ambient(),
             "background": self._background(),
@@ -139,7 +139,9 @@ class Picturing:
         name = self._assembly.define("radiance", params, VEC4, body.statements)
         return FunctionRef(name, (resolution,), FunctionType((ray,), VEC4))
 
-    def _surface(self) -> FunctionRef:
+    def surface(self) -> FunctionRef:
+        """What a place looks like: ``(p) -> Surface``."""
+
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
             site = Site(given["p"], ZERO_CELL, self.composer.values.all(self._node))
             kind = Material(self.composer, self._scene.material)
