@@ -15,8 +15,8 @@ from distal.fields.claims import EXACT, Bounds2, Limit, primitive
 from distal.fields.flats_edges import HALF_ROOT, TINY, centred_bounds, disc_bounds, nearer
 from distal.lang import abs, dot, func, length, max, min, pow, select, sqrt, vec2
 
-# The largest root of t^3 = t + 1: bounds that of t^3 + a t = b by the larger of its two terms.
 WIDE: Final = vec2(0.7, 0.4)
+# The largest root of t^3 = t + 1: bounds that of t^3 + a t = b by the larger of its two terms.
 PLASTIC: Final = 1.3247179572447460
 # The root of c^2 + c^3 = 1, a little less.
 BELOW_BOTH: Final = 0.7548

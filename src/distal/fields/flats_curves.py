@@ -24,14 +24,14 @@ from distal.lang import (
     vec2,
 )
 
-# Steps from each end of a parabola: beside its evolute, where they converge slowest, the distance
-# is then right to 3e-7 of the curve's size. Newton's method needs 12 for that (both measured).
 LOWER_LEFT: Final = vec2(-0.5, -0.3)
 LOWER_RIGHT: Final = vec2(0.5, -0.3)
 UPPER_RIGHT: Final = vec2(0.5, 0.3)
 TOP: Final = vec2(0.0, 0.7)
 UPWARDS: Final = vec2(-0.3, 0.7)
 FROM_BELOW: Final = vec2(0.3, -0.7)
+# Steps from each end of a parabola: beside its evolute, where they converge slowest, the distance
+# is then right to 3e-7 of the curve's size. Newton's method needs 12 for that (both measured).
 BEZIER_STEPS: Final = 7
 CUBIC_PIECES: Final = 4
 

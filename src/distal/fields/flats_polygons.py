@@ -31,11 +31,11 @@ from distal.lang import (
     vec2,
 )
 
-ROOT_3: Final = 1.7320508075688772
-# Where the edges of a five-pointed star cross, as a share of its radius: (3 - sqrt(5)) / 2.
 LEFT_CORNER: Final = vec2(-0.5, -0.4)
 RIGHT_CORNER: Final = vec2(0.5, -0.3)
 TOP_CORNER: Final = vec2(0.1, 0.5)
+ROOT_3: Final = 1.7320508075688772
+# Where the edges of a five-pointed star cross, as a share of its radius: (3 - sqrt(5)) / 2.
 PENTAGRAM_INNER: Final = 0.3819660112501051
 
 

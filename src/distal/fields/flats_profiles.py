@@ -252,7 +252,7 @@ def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: floa
     Measured:
         image_field((3.0, 0.0), Texture2D([[0.5, 0.5], [0.5, 0.5]]), (2.0, 2.0)) = 3.0
         image_field((0.0, 0.0), Texture2D([[0.0, 1.0], [0.0, 1.0]]), (2.0, 2.0)) = 0.5
-        image_field((0.0, 0.5), Texture2D([[0.0, 0.0], [1.0, 1.0]]), (2.0, 2.0), 3.0) = 3.0
+        image_field((0.0, 0.5), Texture2D([[1.0, 1.0], [0.0, 0.0]]), (2.0, 2.0), 3.0) = 3.0
     """
     texels = vec2(size_of(image))
     # The middles of the outermost texels bound what is interpolated.
