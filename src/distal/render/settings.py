@@ -5,6 +5,7 @@ from __future__ import annotations
 from distal.fields.claims import Bounds
 from distal.lang import clamp, func, max, vec2, vec3
 from distal.render.bounce import Look
+from distal.render.heightfield_march import Stride
 from distal.render.march import March
 
 
@@ -12,6 +13,12 @@ from distal.render.march import March
 def march_numbers(divisor: float, near: float, far: float, resolution: vec2) -> March:
     """Hits are within a third of a pixel of a usual lens, and no nearer than 32 bits can tell."""
     return March(max(divisor, 0.05), near, far, clamp(0.25 / resolution.y, 1e-4, 1e-3))
+
+
+@func
+def stride_over(bounds: Bounds, stride: float, stride_growth: float) -> Stride:
+    """How terrain is stepped over: nothing of it is above its box."""
+    return Stride(bounds.high.y, stride, stride_growth)
 
 
 @func

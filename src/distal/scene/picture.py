@@ -24,7 +24,7 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
-from distal.render import bounce, film, settings, tonemap, views
+from distal.render import bounce, film, legend, settings, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.scene.attributes import Material, Part, Site, attribute
@@ -34,6 +34,9 @@ from distal.scene.values import Body
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
+
+# How normals are found, in the order of ``render.normals``.
+NORMALS: Final = ("exact", "six_taps", "tetrahedron", "forward")
 
 RENDERERS: Final[dict[str, Func]] = {
     "plain": bounce.seen_plain,
@@ -65,6 +68,10 @@ class Picturing:
         given["transparent"] = boolean(transparent)
         given["samples"] = self._assembly.number("Samples", INT, 1) if sampled else integer(1)
         color = body.let("color", self.composer.call(film.exposed, given))
+        if view == "steps":
+            given["color"] = color
+            given["most"] = integer(self._scene.steps)
+            color = body.let("color", self.composer.call(legend.with_legend, given))
         if encoded:
             color = self.displayed(color)
         body.statements.append(Return(color))
@@ -98,12 +105,15 @@ class Picturing:
             "camera": self._camera(resolution),
             "steps": integer(scene.steps),
             "bounces": integer(scene.bounces),
+            "hybrid": boolean(scene.march == "heightfield"),
+            "normals": integer(NORMALS.index(scene.normals)),
             "light_count": integer(len(self._samples())),
             "shadow_steps": integer(64 if scene.shadows else 0),
         }
         room = {"bounds": promise.bounds}
         given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
+        given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))
         return given
 

@@ -26,7 +26,7 @@ from distal.scene.field import Field
 from distal.scene.lights import DistantLight, HemisphereLight, Light
 from distal.scene.materials import as_material
 from distal.scene.numbers import arguments
-from distal.scene.picture import Picturing
+from distal.scene.picture import NORMALS, Picturing
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
 from distal.scene.steepness import check_slopes
@@ -38,6 +38,8 @@ _LIMITS: Final = {
     "ambient_occlusion": Limit.NOT_NEGATIVE,
     "near": Limit.NOT_NEGATIVE,
     "far": Limit.POSITIVE,
+    "stride": Limit.POSITIVE,
+    "stride_growth": Limit.POSITIVE,
 }
 
 
@@ -59,6 +61,10 @@ class Scene(Composed):
         shadows: Whether lights cast shadows.
         ambient_occlusion: How far ambient light looks for what hides it, in scene units; 0: not.
         bounces: How often light is followed through mirrors and glass.
+        normals: "exact", or by differences: "six_taps", "tetrahedron" or "forward".
+        march: "sphere", or "heightfield" for terrain and water: long steps over it, then bisection.
+        stride: The shortest step of that march at the start.
+        stride_growth: The factor it grows by from step to step.
         steps: The most steps of a ray.
         near: Where rays begin.
         far: Where rays end.
@@ -86,9 +92,13 @@ class Scene(Composed):
         shadows: bool = True,
         ambient_occlusion: Any = 0.4,
         bounces: int = 6,
+        normals: str = "exact",
+        march: str = "sphere",
+        stride: Any = 0.05,
+        stride_growth: Any = 1.05,
         steps: int = 160,
         near: Any = 0.001,
-        far: Any = 100.0,
+        far: Any = 200.0,
         name: str = "scene",
     ) -> None:
         place = self.place = author_place()
@@ -102,9 +112,9 @@ class Scene(Composed):
             refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
         self.camera = camera if camera is not None else Camera((3.0, 2.0, 5.0))
         self.material = as_material(default_material)
-        if tone_map not in tonemap.NAMES:
-            refuse(f"there is no tone map '{tone_map}'", ", ".join(tonemap.NAMES), place)
-        self.tone_map = tone_map
+        self.tone_map = one_of("tone map", tone_map, tonemap.NAMES, place)
+        self.normals = one_of("way to find normals", normals, NORMALS, place)
+        self.march = one_of("march", march, ("sphere", "heightfield"), place)
         self.shadows = bool(shadows)
         self.bounces, self.steps = int(bounces), int(steps)
         given = {
@@ -114,6 +124,8 @@ class Scene(Composed):
             "ambient_occlusion": ambient_occlusion,
             "near": near,
             "far": far,
+            "stride": stride,
+            "stride_growth": stride_growth,
         }
         self.numbers: Mapping[str, Any] = arguments(
             scene_numbers, (), given, what="Scene", limits=_LIMITS, colors=("fog",), place=place
@@ -281,9 +293,18 @@ def scene_numbers(
     ambient_occlusion: float,
     near: float,
     far: float,
+    stride: float,
+    stride_growth: float,
 ) -> float:
     """The numbers of a scene by name; never called."""
     return exposure
+
+
+def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
+    """A choice by its name."""
+    if name not in known:
+        refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
+    return str(name)
 
 
 def one_shape(shape: Any, place: Span | None) -> Field:
