@@ -1,0 +1,312 @@
+"""Fractals: a sponge with a true bound, and sets whose distance is estimated.
+
+What flows in: a point, how often the map is repeated, its numbers. What flows out: a lower bound
+for the sponge; for the others an estimate from how fast the map spreads neighbouring points. Beyond
+the ball or box that holds a set, the way there and the estimate at its edge are joined at a right
+angle, so that the estimate never has to serve far away. The slopes hold for 999 of 1000 places
+(measured).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.claims import LOWER_BOUND, NOTHING, Bounds, Limit, primitive
+from distal.lang import (
+    abs,
+    atan2,
+    clamp,
+    cos,
+    dot,
+    floor,
+    func,
+    length,
+    log,
+    max,
+    min,
+    pow,
+    select,
+    sin,
+    sqrt,
+    vec2,
+    vec3,
+    vec4,
+)
+
+TINY: Final = 1e-12
+# Beyond this the orbit is gone; large, because the estimate is the better the farther it went.
+ESCAPED: Final = 256.0
+JULIA: Final = vec4(-0.2, 0.8, 0.0, 0.0)
+
+
+@func
+def cube_bounds(size: float) -> Bounds:
+    """The cube around the origin."""
+    return Bounds(vec3(-0.5 * size), vec3(0.5 * size))
+
+
+def _repeats_are_few(iterations: int) -> str | None:
+    if not 1 <= iterations <= 64:
+        return "iterations must lie between 1 and 64"
+    return None
+
+
+@primitive(
+    "MengerSponge",
+    LOWER_BOUND,
+    bounds=cube_bounds,
+    limits={"size": Limit.POSITIVE},
+    requires=_repeats_are_few,
+    tier=3,
+)
+@func
+def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:
+    """Menger's sponge: a cube without its middle cross, and so on for the 20 cubes that are left.
+
+    Args:
+        p: Point.
+        size: Edge of the cube.
+        iterations: How many sizes of holes.
+
+    Source: Inigo Quilez, "Menger fractal" (https://iquilezles.org/articles/menger/).
+
+    Measured:
+        menger_sponge((5.0, 0.0, 0.0), 1.0, 1) = 4.5
+        menger_sponge((0.0, 0.0, 0.0), 3.0, 1) = 0.5
+        menger_sponge((1.0, 1.0, 1.0), 3.0, 1) = -0.5
+    """
+    half = 0.5 * size
+    q = abs(p) - half
+    d = length(max(q, 0.0)) + min(max(max(q.x, q.y), q.z), 0.0)
+    third = size / 3.0
+    for _ in range(iterations):
+        # The nearest cross of this size, one in the middle of each cube three times as wide.
+        edge = 3.0 * third
+        s = abs(p - edge * floor(p / edge + 0.5))
+        bars = max(s, s.yzx)
+        hole = min(min(bars.x, bars.y), bars.z) - 0.5 * third
+        d = max(d, -hole)
+        third /= 3.0
+    return d
+
+
+@func
+def beyond_ball(p: vec3, radius: float) -> float:
+    """How far outside a ball around the origin."""
+    return max(length(p) - radius, 0.0)
+
+
+@func
+def held_in_ball(p: vec3, radius: float) -> vec3:
+    """The nearest point of a ball around the origin."""
+    return p * min(radius / max(length(p), TINY), 1.0)
+
+
+@func
+def escape_distance(size: float, spread: float) -> float:
+    """The distance to the set of points whose orbit stays, from an orbit that has left it.
+
+    Source: the Hubbard-Douady potential; John Hart, Daniel Sandin and Louis Kauffman, "Ray Tracing
+    Deterministic 3-D Fractals" (1989).
+    """
+    r = max(size, TINY)
+    # Inside, orbits come together and would make it endless.
+    return 0.5 * r * log(r) / max(spread, select(r < 1.0, 1.0, TINY))
+
+
+def _power_is_more(power: int, iterations: int) -> str | None:
+    if power < 2:
+        return "power must be 2 or more"
+    return _repeats_are_few(iterations)
+
+
+@func
+def mandelbulb_radius(power: int) -> float:
+    """Orbits that ever go beyond it, leave: there the power is more than twice the radius."""
+    return pow(2.0, 1.0 / float(power - 1))
+
+
+@func
+def mandelbulb_bounds(power: int) -> Bounds:
+    """The cube around the ball that holds the set."""
+    radius = mandelbulb_radius(power)
+    return Bounds(vec3(-radius), vec3(radius))
+
+
+@func
+def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
+    """From the orbit of z -> z^power + c: lengths to the power, both angles times the power."""
+    z = c
+    r = length(z)
+    spread = 1.0
+    for _ in range(iterations):
+        if r > ESCAPED:
+            break
+        stretch = pow(r, float(power - 1))
+        spread = float(power) * stretch * spread + 1.0
+        polar = float(power) * atan2(length(z.xz), z.y)
+        azimuth = float(power) * atan2(z.z, z.x)
+        across = sin(polar)
+        direction = vec3(across * cos(azimuth), cos(polar), across * sin(azimuth))
+        z = stretch * r * direction + c
+        r = length(z)
+    return escape_distance(r, spread)
+
+
+@primitive(
+    "Mandelbulb",
+    NOTHING,
+    slope=1.5,
+    bounds=mandelbulb_bounds,
+    requires=_power_is_more,
+    estimate=True,
+    tier=3,
+)
+@func
+def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
+    """The Mandelbulb, around the y axis: points whose powers stay, in polar coordinates.
+
+    Args:
+        p: Point.
+        power: Of the map, 2 or more.
+        iterations: How long orbits are followed; more show finer detail.
+
+    Source: Daniel White and Paul Nylander (2009); Inigo Quilez, "Mandelbulb"
+    (https://iquilezles.org/articles/mandelbulb/).
+
+    Measured:
+        mandelbulb((0.0, 0.0, 0.0), 8, 4) = 0.0
+        mandelbulb((1.0, 0.0, 0.0), 2, 1) = 0.0816882
+        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 1.0750557
+    """
+    radius = mandelbulb_radius(power)
+    estimate = mandelbulb_estimate(held_in_ball(p, radius), power, iterations)
+    beyond = beyond_ball(p, radius)
+    return select(beyond > 0.0, length(vec2(beyond, max(estimate, 0.0))), estimate)
+
+
+@func
+def julia_radius(c: vec4) -> float:
+    """Orbits that ever go beyond it, leave: there the square is more than the radius and c."""
+    return 0.5 + sqrt(0.25 + length(c))
+
+
+@func
+def julia_bounds(c: vec4) -> Bounds:
+    """The cube around the ball that holds the set."""
+    return Bounds(vec3(-julia_radius(c)), vec3(julia_radius(c)))
+
+
+@func
+def julia_estimate(start: vec4, c: vec4, iterations: int) -> float:
+    """From the orbit of z -> z^2 + c in quaternions."""
+    z = start
+    r = length(z)
+    spread = 1.0
+    for _ in range(iterations):
+        if r > ESCAPED:
+            break
+        spread = 2.0 * r * spread
+        z = vec4(z.x * z.x - dot(z.yzw, z.yzw), 2.0 * z.x * z.yzw) + c
+        r = length(z)
+    return escape_distance(r, spread)
+
+
+@primitive(
+    "QuaternionJulia",
+    NOTHING,
+    slope=1.25,
+    bounds=julia_bounds,
+    requires=_repeats_are_few,
+    estimate=True,
+    tier=3,
+)
+@func
+def quaternion_julia(p: vec3, c: vec4 = JULIA, cut: float = 0.0, iterations: int = 10) -> float:
+    """A slice of a Julia set of quaternions.
+
+    Args:
+        p: Point.
+        c: What is added to the square: real part, then i, j, k.
+        cut: The fourth coordinate of the slice.
+        iterations: How long orbits are followed; more show finer detail.
+
+    Source: John Hart, Daniel Sandin and Louis Kauffman, "Ray Tracing Deterministic 3-D Fractals"
+    (1989).
+
+    Measured:
+        quaternion_julia((0.5, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.0, 3) = -0.0108304
+        quaternion_julia((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.0, 3) = 0.0
+        quaternion_julia((0.0, 0.0, 4.0), (0.0, 0.0, 0.0, 0.0), 0.0, 3) = 3.0
+    """
+    radius = julia_radius(c)
+    estimate = julia_estimate(vec4(held_in_ball(p, radius), cut), c, iterations)
+    beyond = beyond_ball(p, radius)
+    return select(beyond > 0.0, length(vec2(beyond, max(estimate, 0.0))), estimate)
+
+
+@func
+def mandelbox_reach(scale: float) -> float:
+    """Half of the edge of the cube that holds the set."""
+    return select(scale > 0.0, 2.0 * (scale + 1.0) / max(scale - 1.0, TINY), 2.0)
+
+
+@func
+def mandelbox_estimate(c: vec3, scale: float, iterations: int) -> float:
+    """From the orbit of folding at a cube and at two balls, scaling and moving by c."""
+    reach = mandelbox_reach(scale)
+    z = c
+    spread = 1.0
+    for _ in range(iterations):
+        z = 2.0 * clamp(z, -1.0, 1.0) - z
+        square = dot(z, z)
+        # Points near the middle are inverted at the ball of radius 1, but not beyond a factor of 4.
+        grow = scale * clamp(1.0 / max(square, TINY), 1.0, 4.0)
+        z = grow * z + c
+        spread = abs(grow) * spread + 1.0
+        if dot(z, z) > ESCAPED * ESCAPED:
+            break
+    q = abs(z) - reach
+    return (length(max(q, 0.0)) + min(max(max(q.x, q.y), q.z), 0.0)) / spread
+
+
+def _scale_folds(scale: float, iterations: int) -> str | None:
+    if -1.0 <= scale <= 1.0:
+        return "scale must be above 1 or below -1"
+    return _repeats_are_few(iterations)
+
+
+@primitive(
+    "Mandelbox",
+    NOTHING,
+    slope=1.25,
+    bounds=cube_bounds,
+    limits={"size": Limit.POSITIVE},
+    requires=_scale_folds,
+    estimate=True,
+    tier=3,
+)
+@func
+def mandelbox(p: vec3, size: float = 1.5, scale: float = 2.0, iterations: int = 8) -> float:
+    """The Mandelbox: points whose foldings at a cube and a ball stay.
+
+    Args:
+        p: Point.
+        size: Edge of the cube that holds it.
+        scale: Of the folded space, above 1 or below -1.
+        iterations: How often it is folded; more show finer detail.
+
+    Source: Tom Lowe (2010); the folds' spread as a running derivative, after "Rrrola" on
+    fractalforums.com.
+
+    Measured:
+        mandelbox((0.0, 0.0, 0.0), 12.0, 2.0, 1) = -0.6666667
+        mandelbox((0.0, 0.0, 8.0), 12.0, 2.0, 1) = 2.0
+        mandelbox((0.0, 0.5, 0.0), 4.0, -1.5, 1) = 0.0714286
+    """
+    half = 0.5 * size
+    shrink = mandelbox_reach(scale) / half
+    held = clamp(p, -half, half)
+    estimate = mandelbox_estimate(held * shrink, scale, iterations) / shrink
+    beyond = length(p - held)
+    return select(beyond > 0.0, length(vec2(beyond, max(estimate, 0.0))), estimate)
