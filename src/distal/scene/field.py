@@ -34,7 +34,7 @@ from distal.scene.conversion import Number
 from distal.scene.library import OPERATORS
 from distal.scene.materials import as_material
 from distal.scene.node import Node, Rule
-from distal.scene.numbers import arguments
+from distal.scene.numbers import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.places import author_place
 from distal.scene.promises import Promises
 from distal.scene.refusals import refuse
@@ -336,6 +336,7 @@ def bound(
         limits=rule.limits,
         requires=rule.requires,
         place=place,
+        reserved=RESERVED_OF_SHAPES if isinstance(rule, Primitive) else RESERVED,
     )
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
     constants = {name: value for name, value in given.items() if name not in numbers}

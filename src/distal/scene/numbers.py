@@ -46,6 +46,8 @@ _BOXES: Final = ("bounds", "bounds_a", "bounds_b")
 RESERVED: Final = frozenset(
     ("p", "d", "a", "b", "field", "cell", "slope", "slope_a", "slope_b", *_BOXES)
 )
+# Those that a shape of its own keeps from its numbers: it has no distances to join.
+RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d"}
 # One number stands for all components of these.
 _SPLATTED: Final = frozenset(
     ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")
@@ -339,6 +341,7 @@ def _plain(value: Given) -> Any:
 
 __all__ = [
     "RESERVED",
+    "RESERVED_OF_SHAPES",
     "Accept",
     "Asked",
     "Given",
