@@ -22,7 +22,7 @@ from distal.ir.nodes import (
     Read,
     Return,
 )
-from distal.ir.types import FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.ir.types import FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
 from distal.render import bounce, film, legend, settings, tonemap, views
 from distal.render.camera import Ray
@@ -136,6 +136,9 @@ class Picturing:
 
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, Read("resolution", VEC2)), **given}
+            if view == "slice":
+                asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
+                asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
             if view != "color":
                 shown: Func = views.VIEWS[view]  # type: ignore[assignment]  # the stub's functions differ
                 return self.composer.call(shown, asked)

@@ -161,6 +161,7 @@ class Scene(Composed):
         samples: int = 1,
         view: str = "color",
         transparent: bool = False,
+        plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
         freeze: bool = False,
     ) -> Any:
         """Compute the picture.
@@ -180,10 +181,15 @@ class Scene(Composed):
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
             transparent: Whether alpha is 0 where nothing is met.
+            plane: What "slice" shows: the plane's normal, of length 1, and its distance from the
+                origin along it.
             freeze: Make constants of all numbers: slower to compile, a little faster to run.
         """
         if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
             raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
+        settings: dict[str, Any] = {"Samples": samples} if samples > 1 else {}
+        if view == "slice":
+            settings |= {"Slice_normal": tuple(plane[0]), "Slice_offset": float(plane[1])}
         return executor().render(
             self.view(view, transparent=transparent, sampled=samples > 1),
             size=size,
@@ -196,7 +202,7 @@ class Scene(Composed):
             mouse=mouse,
             index=index,
             seed=seed,
-            settings={"Samples": samples} if samples > 1 else {},
+            settings=settings,
             freeze=freeze,
         )
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any, Self, cast
 
 from distal.fields.claims import Operator
+from distal.fields.ease import EASES
 from distal.frontend.problems import did_you_mean
 from distal.ir.types import VEC2, VEC3
 from distal.scene.field import PLAIN, Field
@@ -22,13 +23,16 @@ from distal.scene.refusals import refuse
 class _Placed(Field):
     """What solid and flat shapes can do alike."""
 
-    def _joined(self, operator: str, other: Any, **numbers: Any) -> Self:
+    def _joined(
+        self, operator: str, other: Any, *, flat: bool | None = None, **numbers: Any
+    ) -> Self:
         place = author_place()
         if not isinstance(other, Field) or other.flat != self.flat:
             kind = "flat" if self.flat else "solid"
             refuse(f"'{operator}' takes another {kind} shape, not {other!r:.60}", None, place)
         rule = OPERATORS[operator]
-        made: Self = self._under(rule, (), numbers, place, flat=self.flat, others=(other,))
+        lies = self.flat if flat is None else flat
+        made: Self = self._under(rule, (), numbers, place, flat=lies, others=(other,))
         return made
 
     def _lifted(
@@ -232,6 +236,69 @@ class Shape(_Placed):
         hint = "array(positions) or array(start=…, end=…, count=…)"
         refuse("an array is told by positions, or by a line and a count", hint, author_place())
 
+    def elongate(self, *lengths: Any) -> Self:
+        """The shape cut at the origin and pulled apart, ``lengths`` in all along each axis."""
+        return self._with("elongate", *lengths)
+
+    def twist(self, rate: Any) -> Self:
+        """The shape turned about the y axis ever more: ``rate`` radians for each unit of height."""
+        return self._with("twist", rate)
+
+    def bend(self, rate: Any) -> Self:
+        """The shape bent in the xy plane: ``rate`` radians for each unit along x."""
+        return self._with("bend", rate)
+
+    def bend_linear(self, start: Any, end: Any, shift: Any, ease: str = "linear") -> Self:
+        """The shape moved by ``shift`` more and more on the way from ``start`` to ``end``."""
+        return self._with("bend linear", start, end, shift, ease=ease_number(ease))
+
+    def bend_radial(self, inner: Any, outer: Any, rise: Any, ease: str = "linear") -> Self:
+        """The shape lifted by ``rise`` more and more from a radius to another about the y axis."""
+        return self._with("bend radial", inner, outer, rise, ease=ease_number(ease))
+
+    def taper(self, bottom: Any, top: Any, factor: Any) -> Self:
+        """The shape narrower upwards: full at height ``bottom``, times ``factor`` at ``top``."""
+        return self._with("taper", bottom, top, factor)
+
+    def wrap(self, radius: Any) -> Self:
+        """The shape's x axis wrapped around a cylinder about the y axis."""
+        return self._with("wrap", radius)
+
+    def attract(self, center: Any, radius: Any, strength: Any) -> Self:
+        """The shape pulled towards a place, within a radius of it."""
+        return self._with("attract", center, radius, strength)
+
+    def repel(self, center: Any, radius: Any, strength: Any) -> Self:
+        """The shape pushed away from a place, within a radius of it."""
+        return self._with("repel", center, radius, strength)
+
+    def warp(self, amount: Any, frequency: Any = 1.0, seed: int = 0) -> Self:
+        """The shape shaken by noise: every place moved by up to about ``amount``."""
+        return self._with("warp", amount, frequency, seed)
+
+    def transition_linear(self, other: Field, start: Any, end: Any, ease: str = "linear") -> Self:
+        """This shape at ``start``, another at ``end``, and between them in between."""
+        return self._joined(
+            "transition linear", other, start=start, end=end, ease=ease_number(ease)
+        )
+
+    def transition_radial(self, other: Field, inner: Any, outer: Any, ease: str = "linear") -> Self:
+        """This shape within a radius about the y axis, another beyond a larger one."""
+        numbers = {"inner": inner, "outer": outer, "ease": ease_number(ease)}
+        return self._joined("transition radial", other, **numbers)
+
+    def clearance(self, other: Field, gap: Any) -> Self:
+        """The shape with room for another: cut wherever that is nearer than ``gap``."""
+        return self._joined("clearance", other, gap=gap)
+
+    def carve(self, other: Field, depth: Any) -> Self:
+        """The other shape sunk into this one's surface, ``depth`` deep."""
+        return self._joined("carve", other, depth=depth)
+
+    def emboss(self, other: Field, height: Any) -> Self:
+        """The other shape raised from this one's surface, ``height`` high."""
+        return self._joined("emboss", other, height=height)
+
     def morph(self, other: Field, t: Any) -> Self:
         """Between two shapes: this one at t = 0, the other at 1."""
         return self._joined("morph", other, t=t)
@@ -267,10 +334,18 @@ class Shape(_Placed):
         below = self._with("split below", normal, offset)
         return below, self._with("split above", normal, offset)
 
-    def slice(self, **plane: Any) -> Shape2D:
-        """The flat shape that a plane cuts out; arguments as the library's row has them."""
-        made: Shape2D = self._lifted("slice", (), plane, flat=True)
-        return made
+    def slice(self, origin: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 0.0, 1.0)) -> Shape2D:
+        """The flat shape that a plane cuts out.
+
+        Args:
+            origin: A place on the plane; the flat shape's origin.
+            normal: The plane's, of length 1.
+        """
+        return cast("Shape2D", self._lifted("slice", (origin, normal), {}, flat=True))
+
+    def project(self, count: int = 32) -> Shape2D:
+        """The shape's shadow on the xy plane, looked for at ``count`` depths."""
+        return cast("Shape2D", self._lifted("project", (), {"count": count}, flat=True))
 
 
 class Shape2D(_Placed):
@@ -311,6 +386,45 @@ class Shape2D(_Placed):
         if angle is None:
             return cast("Shape", self._lifted("revolve", (offset,), {}, flat=False))
         return cast("Shape", self._lifted("revolve partly", (offset, angle), {}, flat=False))
+
+    def loft(self, other: Field, height: Any = 1.0, ease: str = "linear") -> Shape:
+        """The solid that goes from this outline at -height/2 along z to another at height/2."""
+        numbers = {"height": height, "ease": ease_number(ease)}
+        return cast("Shape", self._joined("loft", other, flat=False, **numbers))
+
+    def twist_extrude(self, height: Any, angle: Any) -> Shape:
+        """The solid of this outline along z, turned by ``angle`` from end to end."""
+        return cast("Shape", self._lifted("extrude twisted", (height, angle), {}, flat=False))
+
+    def taper_extrude(self, height: Any, top: Any) -> Shape:
+        """The solid of this outline along z, at the top end ``top`` times as large."""
+        return cast("Shape", self._lifted("extrude tapered", (height, top), {}, flat=False))
+
+    def sweep(self, points: Any, up: Any = (0.0, 1.0, 0.0)) -> Shape:
+        """The solid of this outline along a polyline through (n, 3) points."""
+        return cast("Shape", self._lifted("sweep", (points, up), {}, flat=False))
+
+    def sweep_bezier(
+        self, start: Any, control: Any, end: Any, up: Any = (0.0, 1.0, 0.0), pieces: int = 16
+    ) -> Shape:
+        """The solid of this outline along a quadratic curve."""
+        numbers = {"start": start, "control": control, "end": end, "up": up, "pieces": pieces}
+        return cast("Shape", self._lifted("sweep bezier", (), numbers, flat=False))
+
+    def wrap_cylinder(self, radius: Any, height: Any) -> Shape:
+        """The solid of this outline wrapped around a cylinder about the y axis."""
+        return cast("Shape", self._lifted("wrap cylinder", (radius, height), {}, flat=False))
+
+    def relief(self, *numbers: Any) -> Shape:
+        """The ground raised to the height that this flat field gives at each place (x, z)."""
+        return cast("Shape", self._lifted("relief", numbers, {}, flat=False))
+
+
+def ease_number(name: str) -> int:
+    """The number of an easing by its name."""
+    if name not in EASES:
+        refuse(f"there is no easing {name!r:.40}", ", ".join(EASES), author_place())
+    return EASES.index(name)
 
 
 def is_flat_operator(rule: Operator, child: bool) -> bool:
