@@ -9,6 +9,7 @@ import pytest
 
 from distal.fields import deform, ease, extents, place
 from distal.fields.claims import UNBOUNDED, Bounds
+from distal.fields.combine import displaced
 from distal.fields.repeat import (
     limited,
     limited_around,
@@ -312,3 +313,8 @@ def test_polar_copies_are_counted_from_above():
         angle = 0.5 * np.pi * k + 0.1
         site = repeated_polar((np.cos(angle), 0.0, -np.sin(angle)), 4, box)
         assert tuple(site.cell) == (float(k), 0.0, 0.0)
+
+
+def test_a_field_above_0_moves_the_surface_out():
+    assert displaced(0.25, 0.5, 0.5) == 0.0
+    assert displaced(0.5, 9.0, 0.5) == 0.0

@@ -109,11 +109,11 @@ def morph_mix(a: float, b: float, t: float) -> float:
 
 @func
 def displaced(a: float, b: float, height: float) -> float:
-    """The first shape's surface moved in by the second field, times ``height``.
+    """The first shape's surface moved out by the second field, times ``height``.
 
     The field counts from -1 to 1; what it has beyond is cut off, or there would be no box.
     """
-    return a + height * clamp(b, -1.0, 1.0)
+    return a - height * clamp(b, -1.0, 1.0)
 
 
 @func
