@@ -66,6 +66,7 @@ def examined(subject: Subject, seed: int, *, effort: float = 1.0) -> Report:
         return report
     report.points = len(points)
     if len(surface.points):
+        _steps_are_safe(subject, surface.points, points, d, report)
         _distances_hold(subject, surface.points, points, d, g, report)
     _slope_holds(subject, surface.points, rng, report, effort)
     return report
@@ -145,6 +146,22 @@ def _points(subject: Subject, surface: Surface, rng: np.random.Generator, count:
         spread = 10.0 ** rng.uniform(-3.0, -0.7, (count, 1))
         parts.append(near + rng.normal(size=near.shape) * spread * scale)
     return np.concatenate(parts)
+
+
+def _steps_are_safe(
+    subject: Subject, surface: Doubles, points: Doubles, d: Doubles, report: Report
+) -> None:
+    """No step from outside goes farther than the nearest surface."""
+    nearest, index = cKDTree(surface).query(points)
+    step = np.where(d > 0.0, d / max(subject.divisor, 1e-9), 0.0)
+    over = step - nearest - OVER * (subject.scale + np.linalg.norm(points, axis=1))
+    worst = int(np.argmax(over))
+    if over[worst] > 0.0 and not subject.estimate:
+        report.add(
+            subject,
+            f"a step from {_at(points[worst])} goes {step[worst]:.6g} far, past the surface at"
+            f" {_at(surface[index[worst]])}, {nearest[worst]:.6g} away",
+        )
 
 
 def _distances_hold(

@@ -26,6 +26,7 @@ class Subject:
         dimension: 2 or 3.
         claims: What it promises besides its slope.
         slope: Bound on |gradient| everywhere.
+        divisor: What a marcher divides values by before it steps that far.
         low: Lower corner of its box; minus infinity where it has no end.
         high: Upper corner.
         signed: Whether it may have an inside.
@@ -39,6 +40,7 @@ class Subject:
     dimension: int
     claims: frozenset[Claim]
     slope: float
+    divisor: float
     low: Doubles
     high: Doubles
     signed: bool = True
@@ -75,6 +77,7 @@ def subject_of(sample: Sample) -> Subject:
         dimension_of(row.distance),
         row.claims,
         slope,
+        1.0 if Claim.LOWER_BOUND in row.claims else slope,
         low,
         high,
         row.signed,

@@ -15,6 +15,8 @@ import pytest
 from distal.fields.claims import Operator
 from tests.fields.checks import examined
 from tests.fields.library import operators
+from tests.fields.subject import Subject
+from tests.fields.surface import surface_of
 from tests.fields.trees import Tree, accepted_tree
 
 SAMPLES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "1"))
@@ -40,4 +42,18 @@ def test_claims_slope_and_box(row):
         difference = np.abs(tree.evaluate(points)[0] - tree.evaluate(points, "reference")[0])
         if not difference.max() <= 1e-9 * subject.scale * max(subject.slope, 1.0):
             findings.append(f"{subject.name}: CPU and reference differ by {difference.max()}")
+        findings += _site_findings(tree, subject, i)
     assert not findings, "\n".join(findings)
+
+
+def _site_findings(tree: Tree, subject: Subject, seed: int) -> list[str]:
+    """On the surface, the place whose material shows lies on the child's surface.
+
+    What keeps a marcher from stepping past a cell must not draw a surface of its own.
+    """
+    surface = surface_of(subject, np.random.default_rng(seed), edges=400, walkers=400).points
+    at_site = tree.at_site(surface) if len(surface) else None
+    if at_site is None or np.abs(at_site).max() <= 1e-5 * subject.scale:
+        return []
+    worst = int(np.argmax(np.abs(at_site)))
+    return [f"{subject.name}: at {surface[worst]} the site's own distance is {at_site[worst]:.4g}"]

@@ -116,6 +116,7 @@ def test_a_flat_shape_passes():
 BROKEN = {
     "steeper everywhere": (replace(BALL, distance=steep_ball), "promises slope 1"),
     "too far outside": (replace(BALL, distance=steep_ball), "outside at"),
+    "steps that go too far": (replace(BALL, distance=steep_ball, claims=NOTHING), "a step from"),
     "steeper at one place": (
         replace(BALL, distance=steep_at_one_place, claims=NOTHING),
         "promises slope 1",

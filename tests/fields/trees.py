@@ -24,6 +24,7 @@ from distal.scene.field import ZERO_CELL, Field, PromiseOf, bound
 from distal.scene.node import Node
 from distal.scene.numbers import RESERVED
 from distal.scene.numbers import slots_of as scene_slots_of
+from distal.scene.values import Body
 from tests.fields.drawing import drawn, fits, random_sample
 from tests.fields.rows import Doubles, Slot, endless
 from tests.fields.subject import Subject
@@ -182,6 +183,34 @@ class FieldOf(Composed):
         return assembly.define("with_gradient", params, self.result, (Return(value),))
 
 
+class SiteOf(Composed):
+    """The child's distance at the place that an operator's ``site``, or ``point``, tells."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self.name = f"site of {node.name}"
+        self._point = VEC2 if node.flat else VEC3
+        self.signature = (("p", self._point),)
+        self.result = FLOAT
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function in a program."""
+        node, body = self._node, Body(taken={"p"})
+        assert isinstance(node.rule, Operator)
+        composer = Composer(assembly, [node])
+        p = Read("p", self._point)
+        given, (values,) = composer.given(body, node, p, ZERO_CELL, composer.values.all(node))
+        if node.rule.site is not None:
+            given["field"] = composer.field(node.children[0], values, ZERO_CELL)
+            place = composer.call(node.rule.site, given)
+            inner, cell = composer.site(body, place, ZERO_CELL)
+        else:
+            inner, cell = composer.moved(body, node.rule, given)
+        d = composer.distance(body, node.children[0], inner, cell, values)
+        body.statements.append(Return(d))
+        return assembly.define("at_site", (Param("p", self._point),), FLOAT, body.statements)
+
+
 _KERNELS: dict[tuple[str, str], Any] = {}
 
 
@@ -208,16 +237,25 @@ class Tree:
         d, g = _evaluate(self._field, [np.ascontiguousarray(points, np.float64)], device)
         return np.broadcast_to(d, len(points)), np.broadcast_to(g, points.shape)
 
+    def at_site(self, points: Doubles) -> Doubles | None:
+        """The child's distance in the cell of a repetition; None where nothing is repeated."""
+        rule = self.node.rule
+        if not isinstance(rule, Operator) or not (rule.site or _gives_site(rule.point)):
+            return None
+        found = _evaluate(lower(SiteOf(self.node)), [np.ascontiguousarray(points)], "reference")
+        return np.broadcast_to(found, len(points))
+
     def subject(self) -> Subject:
         """The shape with its promises."""
         promise = _evaluate(lower(PromiseOf(self.shape)), [], "reference")
-        slope, _, low, high = promise
+        slope, divisor, low, high = promise
         return Subject(
             described(self.node),
             self.evaluate,
             2 if self.node.flat else 3,
             self.node.claims,
             float(slope[0]),
+            float(divisor[0]),
             endless(low[0]),
             endless(high[0]),
             self.node.signed,
@@ -245,6 +283,10 @@ def accepted_tree(operator: Operator, rng: np.random.Generator, tries: int = 24)
             if not subject.signed or (subject.value(points) < 0.0).any():
                 return tree
     return found
+
+
+def _gives_site(point: Func | None) -> bool:
+    return point is not None and "Site" in str(point.python_function.__annotations__["return"])
 
 
 def described(node: Node) -> str:
