@@ -7,6 +7,7 @@ every name its functions use means the same object as then; a notebook rebinds n
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import fields
 from enum import Enum
 from types import CodeType, ModuleType
 from typing import Any, Final
@@ -63,8 +64,8 @@ class Captured:
                     yield _MISSING
             for name in names:
                 yield from _with_members(python.__globals__.get(name, _MISSING), names)
-            yield from python.__defaults__ or ()
-            yield from (python.__kwdefaults__ or {}).values()
+            defaults = (*(python.__defaults__ or ()), *(python.__kwdefaults__ or {}).values())
+            yield from _with_members(defaults, names)
 
 
 def _names(code: CodeType) -> Iterator[str]:
@@ -78,15 +79,28 @@ def _with_members(value: Any, names: tuple[str, ...]) -> Iterator[Any]:
     yield value
     if isinstance(value, Func):
         yield from value.overloads
+    if isinstance(value, tuple):
+        for item in value:
+            yield from _with_members(item, names)
+    if _is_struct(value):
+        # A struct's value may be changed in place from Python.
+        for field in fields(value):
+            yield from _with_members(getattr(value, field.name), names)
     if isinstance(value, ModuleType | type):
         # ``settings.radius``: the module or class stays, its members may change.
         yield from (vars(value).get(name, _MISSING) for name in names)
+
+
+def _is_struct(value: Any) -> bool:
+    return "__distal_struct__" in vars(type(value))
 
 
 def _lasts(value: Any) -> bool:
     if isinstance(value, tuple):
         return all(map(_lasts, value))
     if isinstance(value, (*_UNCHANGING, Func, Overload, ModuleType)):
+        return True
+    if _is_struct(value):  # what it holds is looked at besides
         return True
     if getattr(value, "shape", None) == ():  # NumPy's numbers, but not its arrays of one number
         return not hasattr(value, "__setitem__")

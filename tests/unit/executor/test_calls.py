@@ -106,6 +106,19 @@ def settings_gain(x: float) -> float:
     return vec2(x, 2.0).x + Settings.gain
 
 
+near = Hit(0.5, vec3(0.0))
+
+
+@func
+def beyond(x: float, hit: Hit = near) -> float:
+    return x + hit.distance
+
+
+@func
+def beyond_the_near(x: float) -> float:
+    return beyond(x)
+
+
 @func
 def starred(*numbers: float) -> float:
     return 1.0
@@ -179,9 +192,16 @@ def test_what_changes_in_a_captured_class_is_seen() -> None:
     Settings.gain = 0.5
 
 
+def test_what_changes_in_a_captured_struct_is_seen() -> None:
+    assert beyond(1.0) == beyond_the_near(1.0) == 1.5
+    near.distance = 2.0
+    assert beyond(1.0) == beyond_the_near(1.0) == 3.0
+    near.distance = 0.5
+
+
 def test_what_cannot_change_is_not_looked_at_again() -> None:
     # Else every call would lower anew.
-    for function in (distance, farther, both, sized, settings_gain):
+    for function in (distance, farther, both, sized, settings_gain, beyond):
         assert Captured(function.overloads).is_fresh()
     assert not Captured(first_step.overloads).is_fresh()
 
