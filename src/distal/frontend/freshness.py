@@ -65,7 +65,8 @@ class Captured:
             for name in names:
                 yield from _with_members(python.__globals__.get(name, _MISSING), names)
             defaults = (*(python.__defaults__ or ()), *(python.__kwdefaults__ or {}).values())
-            yield from _with_members(defaults, names)
+            for default in defaults:
+                yield from _with_members(default, names)
 
 
 def _names(code: CodeType) -> Iterator[str]:
