@@ -105,6 +105,13 @@ def sharpest_bend(pieces: int, point_at: Callable[[int], vec3]) -> float:
 
 
 @func
+def from_disc(q: vec3, normal: vec3, radius: float) -> float:
+    """Distance to a disc about the origin."""
+    height = dot(q, normal)
+    return length(vec2(height, max(length(q - height * normal) - radius, 0.0)))
+
+
+@func
 def swept_along(
     field: Field2,
     p: vec3,
@@ -115,13 +122,18 @@ def swept_along(
 ) -> vec3:
     """The distance, and the place in the outline (y, z), of the nearest piece of a path.
 
-    Behind a joint's plane the next piece stands in, so that nothing is hollow there. That makes no
-    jump only where the joints are apart; else each piece is closed by its planes.
+    Behind a joint's plane the next piece stands in, so that nothing is hollow there: inside, only
+    the way to the path's own ends counts. That makes no jump where the joints are apart; else each
+    piece is closed by its planes.
     """
     joined = joints_are_apart(bounds, pieces, point_at)
     start = point_at(0)
     end = point_at(1)
     ahead = direction(end - start)
+    final = point_at(pieces)
+    arriving = direction(final - point_at(pieces - 1))
+    radius = circle_around(bounds)
+    inside_ends = -min(from_disc(p - start, ahead, radius), from_disc(p - final, arriving, radius))
     y = upright(ahead, up)
     past_start = dot(start - p, ahead)
     found = vec3(UNBOUNDED, 0.0, 0.0)
@@ -134,11 +146,7 @@ def swept_along(
         place = vec2(dot(q, cross(y, ahead)), dot(q, y))
         past_end = dot(p - end, end_plane)
         past = max(past_start, past_end)
-        # The path's own ends always cut.
-        own_start = select(i == 0, past_start, -UNBOUNDED)
-        own_end = select(last, past_end, -UNBOUNDED)
-        open_ended = joined and past <= 0.0
-        here = max(field(place), select(open_ended, max(own_start, own_end), past))
+        here = max(field(place), select(joined and past <= 0.0, inside_ends, past))
         found = select(here < found.x, vec3(here, place), found)
         # The frame's mirror image in the joint's plane.
         if not last:
