@@ -170,6 +170,26 @@ class Operator:
     keeps_exact: frozenset[Claim] = NOTHING
     needs: str = "shapes with a bounded slope"
 
+    def lies_flat(self, child: bool) -> bool:
+        """Whether the result lies in the plane: where the operator's own point does.
+
+        Args:
+            child: Whether what it works on does, which tells where no point is asked for.
+        """
+        for asked in (self.point, self.around, self.finish, self.combine):
+            annotation = asked and asked.python_function.__annotations__.get("p")
+            if annotation is not None:
+                return str(annotation) == "vec2"
+        return child
+
+    def takes_flat(self, lies: bool) -> bool:
+        """Whether it works on flat shapes, where its result lies in the plane or not."""
+        if self.around is not None:
+            return str(self.around.python_function.__annotations__["field"]) == "Field2"
+        if self.point is not None:
+            return str(self.point.python_function.__annotations__["return"]) in ("vec2", "Site2")
+        return lies
+
 
 PRIMITIVES: Final[dict[str, Primitive]] = {}
 OPERATORS: Final[dict[str, Operator]] = {}

@@ -12,7 +12,7 @@ from distal.render.camera import Ray
 
 RELAXATION = 1.2
 # When steps run out, the closest approach is a hit if it came within so many thresholds.
-FORGIVING = 6.0
+FORGIVING = 4.0
 
 
 @struct
@@ -78,16 +78,18 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
         if t > end:
             break
         taken += 1
-        d = side * field(ray.origin + t * ray.direction) / numbers.divisor
-        if i == 0 and d < 0.0:
+        value = side * field(ray.origin + t * ray.direction)
+        if i == 0 and value < 0.0:
             side = -1.0
-            d = -d
+            value = -value
+        d = value / numbers.divisor
         # Head on, balls on either side of a surface touch exactly: there the sign tells.
         if relaxation > 1.0 and (d < 0.0 or abs(d) + previous < step):
             step -= relaxation * step
             relaxation = 1.0
         else:
-            error = d / max(t, 1e-3)
+            # A hit is judged by the value itself: where the field is steep its share is far away.
+            error = value / max(t, 1e-3)
             if error < best:
                 best = error
                 best_t = t
@@ -100,7 +102,8 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
             # The promise ends before the ray does: the longer step is tried at the ray's end.
             step = end - t
         t += step
-    ran_out = taken == steps and not found and t < end
+    # A near miss long before the ray ran out of steps is none: that surface was passed.
+    ran_out = taken == steps and not found and t < end and best_t > 0.7 * t
     if ran_out and best < FORGIVING * numbers.threshold:
         found = True
     return Hit(best_t, found, taken, side)

@@ -12,7 +12,7 @@ from distal.render.march import March
 @func
 def march_numbers(divisor: float, near: float, far: float, resolution: vec2) -> March:
     """Hits are within a third of a pixel of a usual lens, and no nearer than 32 bits can tell."""
-    return March(max(divisor, 0.05), near, far, clamp(0.25 / resolution.y, 1e-4, 1e-3))
+    return March(max(divisor, 1.0), near, far, clamp(0.25 / resolution.y, 1e-4, 1e-3))
 
 
 @func

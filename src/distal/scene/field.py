@@ -140,6 +140,9 @@ class Field(Composed):
         flat: bool,
         others: Sequence[Field] = (),
     ) -> Any:
+        if rule.takes_flat(flat) is not self.flat:
+            kind, mend = ("solid", ".extrude(height)") if self.flat else ("flat", ".slice()")
+            refuse(f"{rule.name} works on {kind} shapes", f"{mend} first", place)
         numbers, constants = bound(rule, args, kwargs, place)
         children = (self.node, *(other.node for other in others))
         return self._of(Node(rule, flat, children, numbers, constants, place))

@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Self, cast
 
-from distal.fields.claims import Operator
 from distal.fields.ease import EASES
 from distal.frontend.problems import did_you_mean
 from distal.ir.types import VEC2, VEC3
 from distal.scene.field import PLAIN, Field
 from distal.scene.library import OPERATORS
-from distal.scene.numbers import slots_of
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse
 
@@ -52,7 +50,7 @@ class _Placed(Field):
         if operator not in OPERATORS:
             refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
         rule = OPERATORS[operator]
-        flat = is_flat_operator(rule, self.flat)
+        flat = rule.lies_flat(self.flat)
         return self._under(rule, args, kwargs, place, flat=flat, others=tuple(others))
 
     def translate(self, *offset: Any, **parts: Any) -> Self:
@@ -425,16 +423,6 @@ def ease_number(name: str) -> int:
     if name not in EASES:
         refuse(f"there is no easing {name!r:.40}", ", ".join(EASES), author_place())
     return EASES.index(name)
-
-
-def is_flat_operator(rule: Operator, child: bool) -> bool:
-    """Whether what an operator makes lies in the plane: where its own point does."""
-    for func in (rule.point, rule.around, rule.finish, rule.combine):
-        slots = () if func is None else slots_of(func)
-        for slot in slots:
-            if slot.name == "p":
-                return slot.type is VEC2
-    return child
 
 
 def _columns(matrix: Any) -> tuple[Any, ...]:

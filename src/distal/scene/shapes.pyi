@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 
 from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
-from distal.lang.resources import Buffer, Texture3D, TextureValue
+from distal.lang.resources import Buffer, TextureValue
 from distal.scene.shape import Shape, Shape2D
 
 Number: TypeAlias = float | Parameter | Expression
