@@ -9,7 +9,7 @@ import numpy as np
 from distal import AmbientLight, Camera, DistantLight, PointLight, Scene, Sphere
 from distal.lang import slider
 
-brightness = slider("Point lights", 10.0, high=30.0, help="Intensity of the red and the green light.")
+brightness = slider("Point lights", 10.0, high=30.0, help="Of the red and the green one.")
 ambient = slider("Ambient", 0.1, high=0.5, help="Light from all around.")
 
 scene = Scene(

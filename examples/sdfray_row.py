@@ -31,4 +31,6 @@ scene = Scene(
     camera=Camera((0.0, height, -10.0), target=(0.0, -0.2, 0.0), fov_deg=24.0, mirror=True),
     background="#000",
     ambient_occlusion=0.0,
+    exposure=0.8,
+    tone_map="aces",
 )

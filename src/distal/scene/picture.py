@@ -108,7 +108,7 @@ class Picturing:
             "hybrid": boolean(scene.march == "heightfield"),
             "normals": integer(NORMALS.index(scene.normals)),
             "light_count": integer(len(self._samples())),
-            "shadow_steps": integer(64 if scene.shadows else 0),
+            "shadow_steps": integer(max(64, 2 * scene.steps // 5) if scene.shadows else 0),
         }
         room = {"bounds": promise.bounds}
         given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
