@@ -194,7 +194,9 @@ class Sample:
             for s in slots_of(self.row.distance)
             if not s.is_choice
         ]
-        d, g = kernel.evaluate([np.ascontiguousarray(points, dtype), *numbers], {}, bound)
+        rows = [np.ascontiguousarray(points, dtype), *numbers]
+        # One thread: tests run side by side already.
+        d, g = kernel.evaluate(rows, {}, bound, threads=1)
         return np.broadcast_to(d, len(points)), np.broadcast_to(g, points.shape)
 
     def promise(self) -> tuple[float, Doubles, Doubles]:

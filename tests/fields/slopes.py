@@ -17,7 +17,7 @@ from tests.fields.rows import Doubles
 from tests.fields.subject import Subject
 
 HALVINGS: Final = 14
-CLIMBS: Final = 12
+CLIMBS: Final = 9
 SHORTEST: Final = 1e-6  # in scales: rounding of 64 bits stays far below what is measured
 
 
@@ -41,7 +41,7 @@ def steepest(
     for climb in range(CLIMBS):
         best = np.argsort(slope)[-64:]
         a, b = np.repeat(starts[best], 6, axis=0), np.repeat(ends[best], 6, axis=0)
-        reach = subject.scale * 0.1 * 0.4**climb
+        reach = subject.scale * 0.1 * 0.3**climb
         shift = rng.normal(size=a.shape) * reach * rng.choice([0.1, 1.0], (len(a), 1))
         length = np.linalg.norm(b - a, axis=1, keepdims=True)
         turn = rng.normal(size=a.shape) * length * rng.choice([0.1, 1.0], (len(a), 1))
