@@ -38,7 +38,7 @@ from distal.lang import (
 )
 
 # A spiral is drawn in this many pieces a turn, each of two parabolas.
-SPIRAL_PIECES: Final = 8
+SPIRAL_PIECES: Final = 12
 STEEPEST_WAVE: Final = 5.0 / 6.0 * math.pi
 # Of the S, half as high as 1: its lines stand this far apart, and the straight ones end here.
 COOL_S_STEP: Final = 0.4
@@ -197,8 +197,8 @@ def archimedean_spiral(
 ) -> float:
     """A line that winds outwards by the same amount each turn, counterclockwise from the x axis.
 
-    The distance is exact for the parabolas, 16 a turn, that follow the spiral within 1e-3 of its
-    radius.
+    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its outer
+    radius (measured).
 
     Args:
         p: Point.
@@ -233,8 +233,8 @@ def logarithmic_spiral(
 ) -> float:
     """A line that winds outwards by the same factor each turn, counterclockwise from the x axis.
 
-    The distance is exact for the parabolas, 16 a turn, that follow the spiral within 1e-3 of its
-    radius.
+    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its outer
+    radius (measured).
 
     Args:
         p: Point.
