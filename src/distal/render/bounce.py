@@ -29,6 +29,8 @@ from distal.render.normals import EXACT, normal
 from distal.render.shade import direct_light, fogged
 from distal.render.trace import first_surface
 
+# Alpha of a ray that begins inside a solid and finds no way out of it.
+ALL_INSIDE = -1.0
 STACK = 12
 DIMMEST = 0.004  # rays that would add less than a display's step are not followed
 
@@ -70,7 +72,7 @@ def seen_plain(
     """Direct light on the first surface; alpha is 0 where there is none."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
-        return vec4(background(ray.direction), 0.0)
+        return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
     p = place_on(ray, hit)
     n = hit.side * normal(field, p, normals, normal_step)
     lifted = p + (2.0 * numbers.threshold * hit.t + 1e-4) * n
@@ -122,8 +124,12 @@ def seen_mirrored(
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
         hit = first_surface(field, here, bounds, numbers, steps, hybrid, stride)
+        if hit.side < 0.0 and alpha > 0.0:
+            break  # mirrored into a crevice: what is there hides the rest
         if not hit.found:
             color += throughput * background(direction)
+            if hit.side < 0.0:
+                alpha = ALL_INSIDE
             break
         alpha = 1.0
         p = place_on(here, hit)
@@ -179,6 +185,7 @@ def seen_refracted(
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
     depths = [0] * STACK
+    insides = [True] * STACK  # whether a ray may begin inside; the eye may
     waiting = 1
     color = vec3(0.0)
     alpha = 0.0
@@ -191,8 +198,12 @@ def seen_refracted(
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
         hit = march(field, here, bounds, numbers, steps)
+        if hit.side < 0.0 and not insides[waiting]:
+            continue  # mirrored into a crevice: what is there hides the rest
         if not hit.found:
             color += throughput * background(direction)
+            if hit.side < 0.0 and depth == 0:
+                alpha = ALL_INSIDE
             continue
         alpha = 1.0
         p = place_on(here, hit)
@@ -233,11 +244,13 @@ def seen_refracted(
             directions[waiting] = reflect(direction, n)
             throughputs[waiting] = mirror_share
             depths[waiting] = depth + 1
+            insides[waiting] = hit.side < 0.0
             waiting += 1
         if brightest(through_share) >= DIMMEST and waiting < STACK:
             origins[waiting] = p - lift * n
             directions[waiting] = bent
             throughputs[waiting] = through_share
             depths[waiting] = depth + 1
+            insides[waiting] = hit.side > 0.0
             waiting += 1
     return vec4(color, alpha)

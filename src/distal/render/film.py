@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.lang import abs, func, max, min, sign, sqrt, vec2, vec4
+from distal.lang import abs, func, max, min, select, sign, sqrt, vec2, vec4
 from distal.render.camera import Ray
 
 
@@ -41,13 +41,14 @@ def exposed(
 ) -> vec4:
     """The linear light of a pixel: the mean of its samples.
 
-    Alpha is straight: colors are the mean of what is there. Opaque unless ``transparent``.
+    Alpha is straight: colors are the mean of what is there. Opaque unless ``transparent``, but for
+    rays that begin inside a solid and find no way out.
     """
     total = vec4(0.0)
     for i in range(max(samples, 1)):
         place = coord + sample_offset(i, samples)
         seen = radiance(camera((2.0 * place - resolution) / resolution.y))
-        weight = seen.w if transparent else 1.0
+        weight = max(seen.w, 0.0) if transparent else select(seen.w < 0.0, 0.0, 1.0)
         total += vec4(seen.xyz * weight, weight)
     mean = total.xyz / max(total.w, 1e-6)
     return vec4(mean, min(total.w / float(max(samples, 1)), 1.0))

@@ -63,7 +63,7 @@ class Scene(Composed):
         bounces: How often light is followed through mirrors and glass.
         normals: "exact", or by differences: "six_taps", "tetrahedron" or "forward".
         march: "sphere", or "heightfield" for terrain and water: long steps over it, then bisection.
-        stride: The shortest step of that march at the start.
+        stride: The shortest step of that march at the start, for each unit that it is away.
         stride_growth: The factor it grows by from step to step.
         steps: The most steps of a ray.
         near: Where rays begin.
@@ -94,7 +94,7 @@ class Scene(Composed):
         bounces: int = 6,
         normals: str = "exact",
         march: str = "sphere",
-        stride: Any = 0.05,
+        stride: Any = 0.03,
         stride_growth: Any = 1.05,
         steps: int = 160,
         near: Any = 0.001,
@@ -190,7 +190,7 @@ class Scene(Composed):
         settings: dict[str, Any] = {"Samples": samples} if samples > 1 else {}
         if view == "slice":
             settings |= {"Slice_normal": tuple(plane[0]), "Slice_offset": float(plane[1])}
-        return executor().render(
+        picture = executor().render(
             self.view(view, transparent=transparent, sampled=samples > 1),
             size=size,
             time=time,
@@ -205,6 +205,10 @@ class Scene(Composed):
             settings=settings,
             freeze=freeze,
         )
+        if view == "color" and not transparent and not picture.array[..., 3].any():
+            message = f"the camera is inside '{self.shape.name}', and no ray finds a way out"
+            refuse(message, "move the camera, or look at the shape with view='slice'", self.place)
+        return picture
 
     def view(
         self, name: str, *, transparent: bool = False, sampled: bool = False, encoded: bool = False
