@@ -197,8 +197,8 @@ def archimedean_spiral(
 ) -> float:
     """A line that winds outwards by the same amount each turn, counterclockwise from the x axis.
 
-    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its outer
-    radius (measured).
+    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its
+    outer radius (measured).
 
     Args:
         p: Point.
@@ -233,8 +233,8 @@ def logarithmic_spiral(
 ) -> float:
     """A line that winds outwards by the same factor each turn, counterclockwise from the x axis.
 
-    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its outer
-    radius (measured).
+    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its
+    outer radius (measured).
 
     Args:
         p: Point.
