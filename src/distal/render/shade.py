@@ -28,6 +28,7 @@ from distal.render.march import March, crossing
 from distal.render.material import Shares, Surface, highlight
 
 SHARPEST = 0.003  # tangent of the smallest half angle a light fills: sharper is noise
+HURRY = 0.04  # the least stride of a shadow ray late on its way, as a share of the way
 OCCLUSION_TAPS = 5
 
 
@@ -45,12 +46,15 @@ def soft_shadow(
     width = max(light.radius, SHARPEST)
     open_share = 1.0
     t = max(span.x, 0.0) + numbers.threshold
-    for _ in range(steps):
+    for i in range(steps):
         if t > end or open_share < -1.0:
             break
         d = field(origin + t * light.direction) / numbers.divisor
         open_share = min(open_share, d / (width * t))
-        t += clamp(abs(d), 0.1 * width * t + numbers.threshold, max(0.5, 0.25 * t))
+        # A ray that grazes a surface for half of its steps strides on with the others, or what
+        # hides the light farther on would be missed: bright lines within shadows.
+        least = (HURRY if 2 * i > steps else 0.1 * width) * t + numbers.threshold
+        t += clamp(abs(d), least, max(0.5, 0.25 * t))
     open_share = max(open_share, -1.0)
     return 0.25 * (1.0 + open_share) * (1.0 + open_share) * (2.0 - open_share)
 
