@@ -98,10 +98,13 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
                 break
             step = relaxation * d
         previous = abs(d)
-        if relaxation > 1.0 and t + step > end and t + previous < end:
-            # The promise ends before the ray does: the longer step is tried at the ray's end.
+        reached = t + step
+        if relaxation > 1.0 and reached > end and t + previous < end:
+            # The promise ends before the ray does: the longer step is tried at the ray's end,
+            # exactly: t + (end - t) may be rounded to beyond it, and would not be looked at.
             step = end - t
-        t += step
+            reached = end
+        t = reached
     # A near miss long before the ray ran out of steps is none: that surface was passed.
     ran_out = taken == steps and not found and t < end and best_t > 0.7 * t
     if ran_out and best < FORGIVING * numbers.threshold:
