@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from distal.fields.claims import Bounds
-from distal.lang import Frame, exp, func, image, length, max, min, sin, vec2, vec3, vec4
+from distal.lang import Frame, exp, func, image, length, min, sin, vec2, vec3, vec4
 from distal.render import (
     bounce,
     heightfield_march,
@@ -128,15 +128,15 @@ def sea_color(t: float, found: bool) -> vec3:
 
 
 @func
-def sea_numbers() -> march.March:
+def sea_numbers(threshold: float = 2e-4) -> march.March:
     # The slope's bound: 1 and the waves' steepest, 0.06 * 2.1 + 0.04 * 3.4 + 0.02 * 6.5.
-    return march.March(1.08, 0.0, 60.0, 2e-4)
+    return march.March(1.08, 0.0, 60.0, threshold)
 
 
 @image
 def hybrid(frame: Frame) -> vec4:
     """Red: the way, as brightness; alpha: evaluations of the field."""
-    stride = heightfield_march.Stride(0.13, 0.05, 1.05)
+    stride = heightfield_march.Stride(0.13, 0.015, 1.05)
     hit = heightfield_march.march_heightfield(
         sea, sea_ray(frame), everywhere(), sea_numbers(), stride, 400
     )
@@ -147,13 +147,20 @@ def hybrid(frame: Frame) -> vec4:
 def traced(frame: Frame) -> vec4:
     """As ``hybrid``, by sphere tracing."""
     hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(), 400)
-    return vec4(sea_color(hit.t, hit.found), float(max(hit.steps, 0)))
+    return vec4(sea_color(hit.t, hit.found), float(hit.steps))
+
+
+@image
+def true_sea(frame: Frame) -> vec4:
+    """As ``traced``, as near to the surface as 32 bits get."""
+    hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(2e-6), 4000)
+    return vec4(sea_color(hit.t, hit.found), 1.0)
 
 
 @image
 def cost(frame: Frame) -> vec4:
     """The steps of the hybrid march, under a legend."""
-    stride = heightfield_march.Stride(0.13, 0.05, 1.05)
+    stride = heightfield_march.Stride(0.13, 0.015, 1.05)
     seen = views.view_steps(
         sea_ray(frame), sea, everywhere(), sea_numbers(), 64, hybrid=True, stride=stride
     )

@@ -1,21 +1,25 @@
-"""The hybrid march for terrain and water: long steps over it, then bisection.
+"""The hybrid march for terrain and water: long steps over it, then a search between two of them.
 
 What flows in: a field that is a height over ground, roughly (positive above), a ray, the height
 that all of it stays below. What flows out: a ``Hit``. Sphere tracing nearly stops where a ray
 skims a surface; this one strides on and finds the crossing between its last two steps.
 
 Source: the founding blog's "Sunset on the sea": steps of the larger of the distance and a length
-that grows, then bisection that uses the field's value at each probe.
+that grows, then a search that takes off the interval what the field's value at each probe rules
+out. It halves what is left; here the line through both ends' values tells where to look (the rule
+of false position in its "Illinois" form: Dowell and Jarratt, 1971), which needs half the probes.
 """
 
 from __future__ import annotations
 
 from distal.fields.claims import Bounds
-from distal.lang import Field3, abs, func, max, min, select, struct
+from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
 from distal.render.march import Hit, March, crossing
 
 UPRIGHT = 1e-6
+# A step goes this much further than the field promises: a surface that it leaps into is found.
+EAGER = 2.0
 
 
 @struct
@@ -24,16 +28,61 @@ class Stride:
 
     Attributes:
         top: A height that the field lies below everywhere.
-        first: The shortest step at the start.
+        first: The shortest step at the start, for each unit that the start is away (at least 1).
         growth: By what factor it grows with each step.
     """
 
     top: float = 1.0
-    first: float = 0.05
+    first: float = 0.03
     growth: float = 1.05
 
 
 STRIDE = Stride()
+
+
+@struct
+class Bracket:
+    """Two places on a ray with the surface between them, and the field there.
+
+    Attributes:
+        above: The last place known to lie above.
+        value_above: The field there.
+        below: The first place known to lie below, once there is one.
+        value_below: The field there; below 0 once there is one.
+        nearest: No surface lies before it.
+        farthest: One lies before it.
+        fell: Whether the last probe lay below.
+    """
+
+    above: float
+    value_above: float
+    below: float
+    value_below: float
+    nearest: float
+    farthest: float
+    fell: bool
+
+
+@func
+def narrowed(bracket: Bracket, t: float, value: float, safe: float) -> Bracket:
+    """The bracket after a probe; nothing lies nearer to it than ``safe``.
+
+    An end that two probes leave where it is counts half, or it would never move.
+    """
+    crossed = bracket.value_below < 0.0
+    if value < 0.0:
+        kept = select(crossed and bracket.fell, 0.5 * bracket.value_above, bracket.value_above)
+        return Bracket(bracket.above, kept, t, value, bracket.nearest, t + safe, True)
+    kept = select(crossed and not bracket.fell, 0.5 * bracket.value_below, bracket.value_below)
+    return Bracket(t, value, bracket.below, kept, t + safe, bracket.farthest, False)
+
+
+@func
+def likely_crossing(bracket: Bracket) -> float:
+    """Where the line through both ends' values is 0, within what is not ruled out."""
+    share = bracket.value_above / max(bracket.value_above - bracket.value_below, 1e-30)
+    t = bracket.above + share * (bracket.below - bracket.above)
+    return clamp(t, bracket.nearest, max(bracket.nearest, bracket.farthest))
 
 
 @func
@@ -71,32 +120,26 @@ def march_heightfield(
     start = start_below(ray, stride.top, max(span.x, numbers.near))
     end = end_above(ray, stride.top, min(span.y, numbers.far))
     t = start
-    above = start  # the last place known to lie above
-    below = end  # once crossed, the first known to lie below
-    crossed = False
+    bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
-    step = stride.first
+    step = stride.first * max(start, 1.0)
     taken = 0
     for _ in range(steps):
         if t > end:
             break
         taken += 1
-        d = field(ray.origin + t * ray.direction) / numbers.divisor
-        if abs(d) < numbers.threshold * max(t, 1e-3):
-            found = True
-            break
-        if d < 0.0:
-            crossed = True
-            below = t
+        value = field(ray.origin + t * ray.direction)
+        tolerance = numbers.threshold * max(t, 1e-3)
+        safe = value / numbers.divisor
+        bracket = narrowed(bracket, t, value, safe)
+        if bracket.value_below < 0.0:
+            t = likely_crossing(bracket)
+            if abs(value) < tolerance or bracket.below - bracket.above < tolerance:
+                found = True
+                break
         else:
-            above = t
-        if crossed:
-            # Nothing lies nearer than |d|: that much of the interval is gone, on the probe's side.
-            above = select(d > 0.0, min(above + d, below), above)
-            below = select(d < 0.0, max(below + d, above), below)
-            t = 0.5 * (above + below)
-        else:
-            t += max(d, step)
+            # The ray's end is looked at too: a surface may lie between it and the last step.
+            t = select(t < end, min(t + max(EAGER * safe, step), end), 2.0 * end + 1.0)
             step *= stride.growth
-    # With steps run out between two probes, their middle is the best that is known.
-    return Hit(t, found or crossed, taken, 1.0)
+    # With steps run out between two probes, the likeliest place is the best that is known.
+    return Hit(t, found or bracket.value_below < 0.0, taken, 1.0)
