@@ -6,7 +6,8 @@ to ask the child at, the slope that the deformation makes of the child's, the bo
 The slope of a deformed shape is the child's times how far the map of points takes two points apart,
 its largest singular value. Where that grows with the distance from an axis, points farther out than
 the child's box are first moved in to its radius, which takes no two apart. What is lost by that the
-finish gives back: a deformed shape answers at least the distance to its box. A child without end in
+finish gives back: a deformed shape answers at least the distance to what holds it, the drum of that
+radius (the surface may touch it, and places moved in would else be on the surface too). A child without end in
 such a direction has no slope (``UNBOUNDED``) and is refused.
 """
 
@@ -14,7 +15,7 @@ from __future__ import annotations
 
 from distal.fields.claims import LOWER_BOUND, Bounds, Limit, operator
 from distal.fields.ease import ease_requirement, ease_slope, eased
-from distal.fields.extents import box_distance, reach, unless_endless
+from distal.fields.extents import box_distance, drum_distance, reach, unless_endless
 from distal.fields.place import rotated_y
 from distal.lang import (
     abs,
@@ -100,8 +101,9 @@ def twisted_bounds(bounds: Bounds) -> Bounds:
 
 @func
 def twisted_value(d: float, p: vec3, bounds: Bounds) -> float:
-    """At least the distance to the box."""
-    return max(d, box_distance(p, twisted_bounds(bounds)))
+    """At least the distance to the drum."""
+    drum = drum_distance(length(p.xz), p.y, around_y(bounds), bounds.low.y, bounds.high.y)
+    return max(d, drum)
 
 
 @func
@@ -140,8 +142,9 @@ def bent_bounds(bounds: Bounds) -> Bounds:
 
 @func
 def bent_value(d: float, p: vec3, bounds: Bounds) -> float:
-    """At least the distance to the box."""
-    return max(d, box_distance(p, bent_bounds(bounds)))
+    """At least the distance to the drum."""
+    drum = drum_distance(length(p.xy), p.z, around_z(bounds), bounds.low.z, bounds.high.z)
+    return max(d, drum)
 
 
 @func
@@ -241,9 +244,15 @@ def tapered_bounds(bounds: Bounds, factor: float) -> Bounds:
 
 
 @func
-def tapered_value(d: float, p: vec3, factor: float, bounds: Bounds) -> float:
-    """At least the distance to the box."""
-    return max(d, box_distance(p, tapered_bounds(bounds, factor)))
+def tapered_value(
+    d: float, p: vec3, bottom: float, top: float, factor: float, bounds: Bounds
+) -> float:
+    """At least the distance to the box, and to the drum, tapered too: its wall leans."""
+    r = around_y(bounds)
+    lean = r * (factor - 1.0) / (top - bottom)
+    wall = length(p.xz) - r * taper_factor(p.y, bottom, top, factor)
+    wall /= sqrt(1.0 + lean * lean)
+    return max(max(d, wall), box_distance(p, tapered_bounds(bounds, factor)))
 
 
 @func

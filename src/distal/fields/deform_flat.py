@@ -38,7 +38,7 @@ def bent_flat_bounds(bounds: Bounds2) -> Bounds2:
 
 @func
 def bent_flat_value(d: float, p: vec2, bounds: Bounds2) -> float:
-    """At least the distance to the rectangle."""
+    """At least the distance to the disc."""
     return bent_value(d, in_space(p), slab(bounds))
 
 

@@ -67,6 +67,16 @@ def box_distance(p: vec3, bounds: Bounds) -> float:
 
 
 @func
+def drum_distance(across: float, along: float, radius: float, low: float, high: float) -> float:
+    """The distance to a drum, negative inside. Exact.
+
+    ``across`` is how far the place is from the axis, ``along`` where on the axis.
+    """
+    beyond = vec2(across - radius, max(low - along, along - high))
+    return length(max(beyond, vec2(0.0))) + min(max(beyond.x, beyond.y), 0.0)
+
+
+@func
 def rectangle_distance(p: vec2, bounds: Bounds2) -> float:
     """The distance to a rectangle, negative inside. Exact."""
     beyond = max(bounds.low - p, p - bounds.high)
