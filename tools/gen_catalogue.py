@@ -31,7 +31,7 @@ from tests.fields.subject import subject_of  # noqa: E402
 from tests.fields.trees import accepted_tree, operator_functions, operator_slots  # noqa: E402
 
 PAGE: Final = ROOT / "docs/reference/catalogue.md"
-SAMPLES: Final = 3  # sets of random numbers for a shape, besides its defaults; trees of an operator
+SAMPLES: Final = 2  # sets of random numbers for a shape, besides its defaults; trees of an operator
 MEASURED: Final = 2  # how many columns at the end of each table are measured
 
 HEAD: Final = """\

@@ -20,7 +20,7 @@ from tests.fields.surface import surface_of
 from tests.fields.trees import Tree, accepted_tree
 
 SAMPLES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "1"))
-EFFORT: Final = 0.6 if SAMPLES < 10 else 2.0
+EFFORT: Final = 0.5 if SAMPLES < 10 else 2.0
 ROWS: Final = [pytest.param(row, id=name) for name, row in operators().items()]
 
 
@@ -53,7 +53,11 @@ def _site_findings(tree: Tree, subject: Subject, seed: int) -> list[str]:
     """
     surface = surface_of(subject, np.random.default_rng(seed), edges=400, walkers=400).points
     at_site = tree.at_site(surface) if len(surface) else None
-    if at_site is None or np.abs(at_site).max() <= 1e-5 * subject.scale:
+    if at_site is None:
         return []
-    worst = int(np.argmax(np.abs(at_site)))
+    # The ends of a sweep lie within its outline; a copy of a repetition is cut nowhere.
+    off = np.abs(at_site) if "repeat" in tree.node.rule.name else at_site
+    worst = int(np.argmax(off))
+    if off[worst] <= 1e-5 * subject.scale:
+        return []
     return [f"{subject.name}: at {surface[worst]} the site's own distance is {at_site[worst]:.4g}"]

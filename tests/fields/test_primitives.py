@@ -21,7 +21,7 @@ from tests.fields.rows import Sample, dimension_of, slots_of
 from tests.fields.subject import subject_of
 
 SAMPLES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "2"))
-EFFORT: Final = 1.0 if SAMPLES < 10 else 3.0
+EFFORT: Final = 0.8 if SAMPLES < 10 else 3.0
 ROWS: Final = [pytest.param(row, id=name) for name, row in primitives().items()]
 
 
@@ -51,8 +51,9 @@ def test_claims_slope_and_box(row):
 
 @pytest.mark.parametrize("row", ROWS)
 def test_special_places_bits_and_reference(row):
-    sample = default_sample(row)
-    findings = numbers_hold(sample, subject_of(sample))
+    findings = []
+    for sample in _samples(row)[:2]:
+        findings += numbers_hold(sample, subject_of(sample))
     assert not findings, "\n".join(findings)
 
 

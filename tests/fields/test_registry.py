@@ -29,7 +29,7 @@ WANTED_SOLIDS: Final = [
     "Tetrahedron", "Dodecahedron", "Icosahedron", "TruncatedOctahedron", "TruncatedIcosahedron",
     "SmoothOctahedron", "SmoothDodecahedron", "SmoothIcosahedron", "SmoothTruncatedOctahedron",
     "SmoothTruncatedIcosahedron", "ConvexPolyhedron", "Triangle", "Quad", "Plane", "HalfSpace",
-    "Slab", "Corner", "Wedge", "Disc", "CircleLine", "Blob", "Superellipsoid",
+    "Slab", "Prism", "Corner", "Wedge", "Disc", "CircleLine", "Blob", "Superellipsoid",
 ]  # fmt: skip
 WANTED_FLATS: Final = [
     "Circle", "RoundedRectangle", "ChamferedRectangle", "Rectangle", "OrientedRectangle",
@@ -41,6 +41,14 @@ WANTED_FLATS: Final = [
     "BlobbyCross", "Tunnel", "Stairs", "QuadraticCircle", "Hyperbola", "CoolS", "CircleWave",
     "CubicBezier", "SplinePath", "Polyline", "ImageField", "HalfPlane", "Annulus", "GearProfile",
     "TangentCam", "ArcCam", "ArchimedeanSpiral", "LogarithmicSpiral", "RoundedPolygon",
+]  # fmt: skip
+WANTED_LATER_TIERS: Final = [
+    "PolylineTube", "TaperedPolylineTube", "BezierTube", "CubicBezierTube", "TaperedBezierTube",
+    "Helix", "Spring", "VolumeField", "Heightfield", "Metaballs", "Gyroid", "SchwarzP", "Diamond",
+    "Neovius", "Lidinoid", "SplitP", "IWP", "CubicLattice", "BccLattice", "FccLattice",
+    "OctetLattice", "VoronoiWalls", "VoronoiCells", "VoronoiLines", "ScatteredBalls",
+    "ValueNoiseSolid", "GradientNoiseSolid", "SimplexNoiseSolid", "FbmSolid", "MengerSponge",
+    "Mandelbulb", "Mandelbox", "QuaternionJulia",
 ]  # fmt: skip
 BLENDS: Final = [
     "quadratic", "cubic", "quartic", "circular", "circular_geometric", "exponential", "root",
@@ -56,12 +64,17 @@ WANTED_OPERATORS: Final = [
     *("scale", "scale axes", "shear", "mirror", "symmetry", "mirror diagonal", "mirror octant"),
     *("kaleidoscope", "repeat", "repeat neighbours", "repeat mirrored", "repeat limited"),
     *("repeat limited neighbours", "repeat interval", "repeat half", "repeat polar"),
-    *("repeat polar neighbours", "repeat line", "repeat ring", "repeat at"),
+    *("repeat polar neighbours", "repeat line", "repeat ring", "repeat at", "repeat scaled"),
+    *("elongate", "twist", "bend", "bend linear", "bend radial", "taper", "wrap", "attract"),
+    *("repel", "warp", "sphere fold", "relief", "thicken by", "wrap cylinder", "slice", "project"),
+    *("extrude", "extrude rounded", "extrude chamfered", "extrude twisted", "extrude tapered"),
+    *("loft", "revolve", "revolve partly", "sweep", "sweep bezier"),
 ]
 
 
 def test_the_catalogue_is_there():
-    assert set(WANTED_SOLIDS + WANTED_FLATS) - set(primitives()) == set()
+    wanted = WANTED_SOLIDS + WANTED_FLATS + WANTED_LATER_TIERS
+    assert set(wanted) - set(primitives()) == set()
     assert set(WANTED_OPERATORS) - set(operators()) == set()
 
 
