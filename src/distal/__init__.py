@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from distal.scene.scene import Scene as Scene
     from distal.scene.shape import Shape as Shape
     from distal.scene.shape import Shape2D as Shape2D
-    from distal.scene.shapes import *
+    from distal.scene.shapes import *  # noqa: F403 (a stub lists them)
 
 _ROOMS = {
     "distal.backends.base": ("Artifact",),
@@ -88,7 +88,7 @@ _ROOMS = {
 }
 _HOMES = {name: room for room, names in _ROOMS.items() for name in names}
 
-__all__ = ["__version__", *_HOMES]  # noqa: PLE0604 (texts, though gathered)
+__all__ = ["__version__", *_HOMES]
 
 
 def _executor() -> Any:

@@ -73,7 +73,8 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
         TypeError: It is neither.
     """
     if not isinstance(obj, Func | Composed):
-        raise TypeError(f"only a scene, an @image or a @func can be compiled, not {type(obj).__name__}")
+        kind = type(obj).__name__
+        raise TypeError(f"only a scene, an @image or a @func can be compiled, not {kind}")
     if isinstance(obj, Composed):
         obj = obj.text()
     if after is not None and after not in ("lower", *PASS_NAMES):

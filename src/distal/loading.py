@@ -1,7 +1,7 @@
 """Finding scenes: a file's path, or the name of a gallery example, to the object to compile.
 
-What flows in: ``FILE[:NAME]``. What flows out: a ``Func``, an ``Image`` or a scene. A file is run once from a
-snapshot of its text, so that a later edit never mixes in.
+What flows in: ``FILE[:NAME]``. What flows out: a ``Func``, an ``Image``, a shape or a scene. A file
+is run once from a snapshot of its text, so that a later edit never mixes in.
 """
 
 from __future__ import annotations

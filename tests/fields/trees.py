@@ -19,8 +19,10 @@ from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, tuple_type
 from distal.lang import Func
 from distal.lang.composed import Composed
 from distal.scene import shapes  # the classes come from the rows that importing it declares
-from distal.scene.compose import Composer
-from distal.scene.field import ZERO_CELL, Field, PromiseOf, bound
+from distal.scene.binding import bound
+from distal.scene.compose import ZERO_CELL, Composer
+from distal.scene.derived import PromiseOf
+from distal.scene.field import Field
 from distal.scene.node import Node
 from distal.scene.numbers import RESERVED
 from distal.scene.numbers import slots_of as scene_slots_of

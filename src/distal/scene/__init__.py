@@ -1,1 +1,1 @@
-"""Scenes as objects: shapes, materials, lights, cameras; they make IR of the library's functions."""
+"""Scenes as objects: shapes, materials, lights, cameras; they make IR of library functions."""

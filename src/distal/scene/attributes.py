@@ -146,15 +146,18 @@ class Material(Attribute):
         self._painted: dict[int, bool] = {}
 
     def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The paint of a subtree; the default where nothing in it is painted."""
         material = node.material
         if material is None and (isinstance(node.rule, Primitive) or not self._paints(node)):
             material = self._default
         return None if material is None else self._shown(body, material, node, site)
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """Every number of both mixed."""
         return self.composer.call(mix_surfaces, {"a": a, "b": b, "t": share})
 
     def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The cutter's ``cut_material``."""
         material = node.cut_material
         return None if material is None else self._shown(body, material, node, site)
 
@@ -182,13 +185,16 @@ class Part(Attribute):
         self.nodes: list[Node] = []
 
     def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The next number for a library shape."""
         if not isinstance(node.rule, Primitive):
             return None
         self.nodes.append(node)
         return number(float(len(self.nodes) - 1))
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """The one of which more shows."""
         return select(compare(CompareOp.GT, share, number(0.5)), b, a)
 
     def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The cutter's own part: it made the face."""
         return attribute(body, self, node, site)

@@ -8,7 +8,7 @@ becomes a function of its own that takes them. Knows nothing of materials (``att
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 from distal.fields.claims import Operator, Primitive
 from distal.frontend import Assembly
@@ -21,6 +21,9 @@ from distal.lang.resources import Buffer, TextureValue
 from distal.scene.node import Node
 from distal.scene.promises import PROMISED, Promises
 from distal.scene.values import Body, Values, plain_name
+
+# The cell of what lies in no repetition.
+ZERO_CELL: Final = constant_number(0.0, VEC3)
 
 
 class Composer:
@@ -103,7 +106,7 @@ class Composer:
         params = [Param(n, v.type) for n, v in zip(names, passed, strict=True)]
         values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
         body = Body(taken={"p", "cell", *names})
-        cell = Read("cell", VEC3) if uses_cell else constant_number(0.0, VEC3)
+        cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
         result = self._emit(body, node, Read("p", point), cell, values)
         body.statements.append(Return(result))
         params = [Param("p", point), *params, *([Param("cell", VEC3)] if uses_cell else [])]

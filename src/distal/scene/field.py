@@ -12,33 +12,22 @@ from typing import Any, ClassVar, Self
 
 from distal.diagnostics import Span
 from distal.executor_hook import executor
-from distal.fields import boxes
-from distal.fields.claims import (
-    EXACT,
-    NOTHING,
-    UNBOUNDED,
-    Claim,
-    Limit,
-    Operator,
-    Primitive,
-)
+from distal.fields.claims import EXACT, UNBOUNDED, Claim, Operator
 from distal.frontend import Assembly
-from distal.ir.build import field as field_of
-from distal.ir.build import number as constant_number
-from distal.ir.nodes import Call, Construct, Gradient, Param, Read, Return
-from distal.ir.types import FLOAT, VEC2, VEC3, Type, Vector, tuple_type
+from distal.ir.nodes import Call, Param, Read, Return
+from distal.ir.types import FLOAT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
-from distal.scene.compose import Composer
+from distal.scene.binding import bound, own_node
+from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.conversion import Number
+from distal.scene.derived import GradientOf, PromiseOf
 from distal.scene.library import OPERATORS
 from distal.scene.materials import as_material
-from distal.scene.node import Node, Rule
-from distal.scene.numbers import RESERVED, RESERVED_OF_SHAPES, arguments
+from distal.scene.node import Node
 from distal.scene.places import author_place
-from distal.scene.promises import Promises
 from distal.scene.refusals import refuse
-from distal.scene.values import Body, Values, plain_name
+from distal.scene.values import plain_name
 
 
 class Field(Composed):
@@ -51,8 +40,8 @@ class Field(Composed):
     def __init__(self, node: Node) -> None:
         self.node = node
         self.signature = (("p", self.point_type),)
-        self._gradient = GradientOf(self)
-        self._promised = PromiseOf(self)
+        self._gradient = GradientOf(node)
+        self._promised = PromiseOf(node)
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -262,7 +251,8 @@ class Field(Composed):
             numbers: Values of its other parameters.
         """
         place = author_place()
-        return own_shape(function, slope, bounds, exact, numbers, place)
+        node = own_node(function, numbers, place, slope=slope, bounds=bounds, exact=exact)
+        return cls._of(node)
 
 
 def _bare(node: Node) -> bool:
@@ -278,79 +268,8 @@ def _unbounded(value: float) -> float:
     return float("inf") if value > 0 else float("-inf")
 
 
-ZERO_CELL = constant_number(0.0, VEC3)
-
-
-class GradientOf(Composed):
-    """The gradient of a shape, as a function."""
-
-    def __init__(self, shape: Field) -> None:
-        self._shape = shape
-        self.name = f"gradient of {shape.name}"
-        self.signature = shape.signature
-        self.result = shape.point_type
-
-    def compose(self, assembly: Assembly) -> str:
-        composer = Composer(assembly, [self._shape.node])
-        node = self._shape.node
-        field = composer.field(node, composer.values.all(node), ZERO_CELL)
-        p = Read("p", self.result)
-        value = Gradient(field, p, False, self.result)
-        params = (Param("p", self.result),)
-        name = f"{plain_name(node.name)}_gradient"
-        return assembly.define(name, params, self.result, (Return(value),), node.place)
-
-
-class PromiseOf(Composed):
-    """Slope, divisor and box of a shape, as a function of nothing."""
-
-    def __init__(self, shape: Field) -> None:
-        self._shape = shape
-        self.name = f"promise of {shape.name}"
-        self.signature = ()
-        corner = shape.point_type
-        self.result = tuple_type((FLOAT, FLOAT, corner, corner))
-
-    def compose(self, assembly: Assembly) -> str:
-        body = Body()
-        node = self._shape.node
-        values = Values(assembly)
-        found = Promises(values).of(body, node, values.all(node))
-        bounds = body.let("bounds", found.bounds)
-        low, high = field_of(bounds, "low"), field_of(bounds, "high")
-        whole = Construct((found.slope, found.divisor, low, high), self.result)
-        body.statements.append(Return(whole))
-        return assembly.define("promise", (), self.result, body.statements, node.place)
-
-
 # The classes of shapes that are no library shape's own; the room of methods fills it.
 PLAIN: dict[bool, type[Field]] = {}
-
-
-def bound(
-    rule: Rule, args: Sequence[Any], kwargs: Mapping[str, Any], place: Span | None
-) -> tuple[dict[str, Number], dict[str, Any]]:
-    """A rule's numbers and constants from what the author gave."""
-    given = arguments(
-        _functions(rule),
-        args,
-        kwargs,
-        what=rule.name,
-        limits=rule.limits,
-        requires=rule.requires,
-        place=place,
-        reserved=RESERVED_OF_SHAPES if isinstance(rule, Primitive) else RESERVED,
-    )
-    numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
-    constants = {name: value for name, value in given.items() if name not in numbers}
-    return numbers, constants
-
-
-def _functions(rule: Rule) -> tuple[Func, ...]:
-    if isinstance(rule, Primitive):
-        return (rule.distance,)
-    made = (rule.point, rule.combine, rule.around, rule.finish)
-    return tuple(func for func in made if func is not None)
 
 
 def joining(
@@ -366,62 +285,3 @@ def joining(
         refuse(f"there is no blend '{blend}' for a {kind}", ", ".join(known), place)
     numbers, constants = bound(rule, (smooth,), extra, place)
     return rule, numbers, constants
-
-
-def own_shape(
-    function: Func,
-    slope: float,
-    bounds: Any,
-    exact: bool,
-    numbers: Mapping[str, Any],
-    place: Span | None,
-) -> Any:
-    """A shape from an author's function."""
-    if not isinstance(function, Func):
-        refuse(
-            f"a shape is made from a @func, not from {function!r:.60}",
-            "write @func above it",
-            place,
-        )
-    flat = _is_flat(function, place)
-    given: dict[str, Any] = {**numbers}
-    box: Func | None = None
-    rule = Primitive(function.name, function, EXACT if exact else NOTHING)
-    found, constants = bound(rule, (), given, place)
-    extra: dict[str, Any]
-    limits = {"slope": Limit.POSITIVE}
-    extra = arguments(
-        (boxes.given_slope,),
-        (slope,),
-        {},
-        what=function.name,
-        limits=limits,
-        place=place,
-        reserved=(),
-    )
-    if bounds is not None:
-        box = boxes.given_bounds2 if flat else boxes.given_bounds
-        low, high = bounds
-        extra.update(
-            arguments(
-                (box,), (low, high), {}, what=function.name, limits={}, requires=None, place=place
-            )
-        )
-    rule = replace(rule, slope=boxes.given_slope, bounds=box)
-    found.update(extra)
-    return Field._of(Node(rule, flat, (), found, constants, place))
-
-
-def _is_flat(function: Func, place: Span | None) -> bool:
-    from distal.frontend.headers import read_header
-
-    slots = read_header(function.overloads[0]).slots
-    annotation = next((s.annotation for s in slots if s.name == "p"), None)
-    type = getattr(annotation, "__distal_type__", None)
-    if not isinstance(type, Vector) or type not in (VEC2, VEC3):
-        refuse(
-            f"'{function.name}' is no field: it needs a parameter p: vec3 (or vec2)",
-            f"def {function.name}(p: vec3) -> float",
-            place,
-        )
-    return type is VEC2

@@ -1,4 +1,4 @@
-"""The whole field library, loaded: every row of shapes and operators is declared by importing it."""
+"""The whole field library, loaded: importing a room of it declares its shapes and operators."""
 
 from __future__ import annotations
 

@@ -28,8 +28,7 @@ from distal.render import bounce, film, legend, settings, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.scene.attributes import Material, Part, Site, attribute
-from distal.scene.compose import Composer
-from distal.scene.field import ZERO_CELL
+from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.values import Body
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """What a tree promises: a bound on its slope, a safe divisor for marching, a box around it.
 
-What flows in: nodes and the rules of their rows. What flows out: expressions of numbers alone, which
-every target computes once a frame: parameters move them.
+What flows in: nodes and the rules of their rows. What flows out: expressions of numbers alone,
+which every target computes once a frame: parameters move them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A class for every shape of the field library: ``Sphere``, ``Torus``, ``Hexagon`` …
+"""A class for every shape of the field library, ``Sphere`` to ``Hexagon``.
 
 What flows in: the library's rows. What flows out: a class for each, called with the shape's
 numbers. ``shapes.pyi`` beside this file, made by ``tools/gen_shapes_stub.py``, tells editors.
@@ -10,7 +10,8 @@ import inspect
 from typing import Any
 
 from distal.fields.claims import Primitive
-from distal.scene.field import Field, bound
+from distal.scene.binding import bound
+from distal.scene.field import Field
 from distal.scene.library import PRIMITIVES
 from distal.scene.node import Node
 from distal.scene.places import author_place
@@ -27,7 +28,7 @@ def _make(row: Primitive) -> type[Field]:
     flat = _is_flat(row)
     base: type[Field] = Shape2D if flat else Shape
 
-    def __init__(self: Field, *args: Any, **kwargs: Any) -> None:
+    def initialise(self: Field, *args: Any, **kwargs: Any) -> None:
         place = author_place()
         numbers, constants = bound(row, args, kwargs, place)
         Field.__init__(self, Node(row, flat, (), numbers, constants, place))
@@ -35,7 +36,7 @@ def _make(row: Primitive) -> type[Field]:
     python = inspect.signature(row.distance.python_function)
     own = [p for name, p in python.parameters.items() if name not in ("p", "cell")]
     body = {
-        "__init__": __init__,
+        "__init__": initialise,
         "__doc__": row.distance.__doc__,
         "__module__": __name__,
         "__signature__": inspect.Signature(own),

@@ -105,4 +105,5 @@ class Values:
 
 
 def plain_name(name: str) -> str:
+    """A name as an identifier of small letters."""
     return "".join(c if c.isalnum() else "_" for c in name).strip("_").lower() or "shape"
