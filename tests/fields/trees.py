@@ -260,7 +260,7 @@ class Tree:
 
     def subject(self) -> Subject:
         """The shape with its promises."""
-        promise = Prepared(PromiseOf(self.shape), "reference")()
+        promise = Prepared(PromiseOf(self.shape.node), "reference")()
         slope, divisor, low, high = promise
         return Subject(
             described(self.node),

@@ -67,8 +67,8 @@ def own_node(
     flat = _is_flat(function, place)
     name, box = function.name, None
     rule = Primitive(name, function, EXACT if exact else NOTHING)
-    found: dict[str, Any]
-    found, constants = bound(rule, (), numbers, place)
+    own, constants = bound(rule, (), numbers, place)
+    found: dict[str, Any] = dict(own)
     limits = {"slope": Limit.POSITIVE}
     found |= arguments(
         boxes.given_slope, (slope,), {}, what=name, limits=limits, place=place, reserved=()
