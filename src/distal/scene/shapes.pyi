@@ -6,13 +6,29 @@ from typing import Any, TypeAlias
 
 from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
-from distal.lang.resources import Buffer, TextureValue
+from distal.lang.resources import Buffer, Texture3D, TextureValue
 from distal.scene.shape import Shape, Shape2D
 
 Number: TypeAlias = float | Parameter | Expression
 Vector: TypeAlias = Sequence[Number] | Parameter | Expression | Any
 Points: TypeAlias = Sequence[Sequence[float]] | Buffer | Any
 Image: TypeAlias = TextureValue | str | PathLike[str]
+
+class Helix(Shape):
+    """A tube that winds around the y axis without end, through the x axis, rising toward z."""
+
+    def __init__(self, major: Number = 0.5, minor: Number = 0.1, pitch: Number = 0.4) -> None: ...
+
+class Spring(Shape):
+    """A coil spring around the y axis, its ends ground flat."""
+
+    def __init__(
+        self,
+        major: Number = 0.4,
+        minor: Number = 0.07,
+        pitch: Number = 0.25,
+        height: Number = 1.0,
+    ) -> None: ...
 
 class HalfPlane(Shape2D):
     """All that lies behind a straight line."""
@@ -315,7 +331,7 @@ class IsoscelesTriangle(Shape2D):
 class Triangle2(Shape2D):
     """Triangle between three points of the plane."""
 
-    def __init__(self, a: Vector = ..., b: Vector = ..., c: Vector = ...) -> None: ...
+    def __init__(self, first: Vector = ..., second: Vector = ..., third: Vector = ...) -> None: ...
 
 class Pentagon(Shape2D):
     """Regular polygon with five corners, one of them up."""
@@ -383,6 +399,37 @@ class ImageField(Shape2D):
 
     def __init__(self, image: Image = ..., size: Vector = ..., scale: Number = 1.0) -> None: ...
 
+class MengerSponge(Shape):
+    """Menger's sponge: a cube without its middle cross, and so on for the 20 cubes that are left."""
+
+    def __init__(self, size: Number = 1.0, iterations: int = 4) -> None: ...
+
+class Mandelbulb(Shape):
+    """The Mandelbulb, around the y axis: points whose powers stay, in polar coordinates."""
+
+    def __init__(self, power: int = 8, iterations: int = 8) -> None: ...
+
+class QuaternionJulia(Shape):
+    """A slice of a Julia set of quaternions."""
+
+    def __init__(self, c: Vector = ..., cut: Number = 0.0, iterations: int = 10) -> None: ...
+
+class Mandelbox(Shape):
+    """The Mandelbox: points whose foldings at a cube and a ball stay."""
+
+    def __init__(self, size: Number = 1.5, scale: Number = 2.0, iterations: int = 8) -> None: ...
+
+class Heightfield(Shape):
+    """Terrain from an image of heights, in its first channel; its edges go on without end."""
+
+    def __init__(
+        self,
+        image: Image = ...,
+        size: Vector = ...,
+        height: Number = 1.0,
+        steepness: Number = 1.0,
+    ) -> None: ...
+
 class CubicLattice(Shape):
     """Struts along the edges of cubes, a node at the origin."""
 
@@ -402,6 +449,11 @@ class OctetLattice(Shape):
     """The octet truss: the edges of octahedra and tetrahedra that fill space."""
 
     def __init__(self, cell_size: Number = 0.75, radius: Number = 0.05) -> None: ...
+
+class Metaballs(Shape):
+    """Balls that melt into each other; their order does not matter."""
+
+    def __init__(self, balls: Points = ..., softness: Number = 0.1) -> None: ...
 
 class ValueNoiseSolid(Shape):
     """Lumps of value noise, in line with the axes."""
@@ -851,6 +903,64 @@ class IWP(Shape):
         solid: bool = False,
     ) -> None: ...
 
+class PolylineTube(Shape):
+    """A round tube through points, straight between them."""
+
+    def __init__(
+        self,
+        points: Points = ...,
+        radius: Number = 0.1,
+        closed: bool = False,
+    ) -> None: ...
+
+class TaperedPolylineTube(Shape):
+    """A round tube through points, with a radius for each: branches, tentacles."""
+
+    def __init__(self, points: Points = ...) -> None: ...
+
+class BezierTube(Shape):
+    """A round tube along a quadratic Bézier curve."""
+
+    def __init__(
+        self,
+        start: Vector = ...,
+        control: Vector = ...,
+        end: Vector = ...,
+        radius: Number = 0.1,
+    ) -> None: ...
+
+class CubicBezierTube(Shape):
+    """A round tube along a cubic Bézier curve, its radius changing evenly; made of straight pieces."""
+
+    def __init__(
+        self,
+        start: Vector = ...,
+        leaving: Vector = ...,
+        arriving: Vector = ...,
+        end: Vector = ...,
+        start_radius: Number = 0.12,
+        end_radius: Number = 0.06,
+        pieces: int = 16,
+    ) -> None: ...
+
+class TaperedBezierTube(Shape):
+    """A round tube along a quadratic Bézier curve, its radius changing evenly; straight pieces."""
+
+    def __init__(
+        self,
+        start: Vector = ...,
+        control: Vector = ...,
+        end: Vector = ...,
+        start_radius: Number = 0.12,
+        end_radius: Number = 0.06,
+        pieces: int = 16,
+    ) -> None: ...
+
+class VolumeField(Shape):
+    """A shape whose distances are the samples of a grid, in their first channel."""
+
+    def __init__(self, volume: Image = ..., size: Vector = ..., scale: Number = 1.0) -> None: ...
+
 class VoronoiWalls(Shape):
     """The walls between the cells of scattered points: a closed foam, without end."""
 
@@ -899,6 +1009,8 @@ class ScatteredBalls(Shape):
 CLASSES: dict[str, type[Shape] | type[Shape2D]]
 
 __all__ = [
+    "Helix",
+    "Spring",
     "HalfPlane",
     "Rectangle",
     "RoundedRectangle",
@@ -956,10 +1068,16 @@ __all__ = [
     "TangentCam",
     "ArcCam",
     "ImageField",
+    "MengerSponge",
+    "Mandelbulb",
+    "QuaternionJulia",
+    "Mandelbox",
+    "Heightfield",
     "CubicLattice",
     "BccLattice",
     "FccLattice",
     "OctetLattice",
+    "Metaballs",
     "ValueNoiseSolid",
     "GradientNoiseSolid",
     "SimplexNoiseSolid",
@@ -1032,6 +1150,12 @@ __all__ = [
     "Lidinoid",
     "SplitP",
     "IWP",
+    "PolylineTube",
+    "TaperedPolylineTube",
+    "BezierTube",
+    "CubicBezierTube",
+    "TaperedBezierTube",
+    "VolumeField",
     "VoronoiWalls",
     "VoronoiCells",
     "VoronoiLines",
