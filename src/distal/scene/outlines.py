@@ -168,13 +168,12 @@ def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
     anywhere = (lines or curves)[0][0]
     lines = lines or [(anywhere, anywhere)]
     curves = curves or [(anywhere, anywhere, anywhere)]
-    low, high = _corners([*lines, *curves], what, place)
-    return Outline(
-        Buffer(_numbers(lines).reshape(-1, 4)),
-        Buffer(_numbers(curves).reshape(-1, 2)),
-        (low.real, low.imag),
-        (high.real, high.imag),
-    )
+    segments = _numbers(lines).reshape(-1, 4)
+    bows = _numbers(curves).reshape(-1, 2)
+    points = np.concatenate([segments.reshape(-1, 2), bows])
+    left, below = points.min(axis=0).tolist()
+    right, above = points.max(axis=0).tolist()
+    return Outline(Buffer(segments), Buffer(bows), (left, below), (right, above))
 
 
 def _numbers(edges: Sequence[Edge]) -> Any:
@@ -186,7 +185,10 @@ def _corners(edges: Sequence[Edge], what: str, place: Span | None) -> tuple[comp
     points = np.array([p for edge in edges for p in edge], np.complex128)
     if len(points) and not np.isfinite(points).all():
         refuse(f"{what} holds a number that is not finite", None, place)
-    if not len(points) or np.ptp(points.real) == 0.0 or np.ptp(points.imag) == 0.0:
+    from_first = points - points[0] if len(points) else np.zeros(1, np.complex128)
+    farthest = from_first[np.argmax(np.abs(from_first))]
+    aside = np.abs((from_first * farthest.conjugate()).imag).max()
+    if aside <= STRAIGHT * abs(farthest) ** 2:
         refuse(f"{what} encloses nothing", None, place)
     x, y = points.real, points.imag
     return complex(x.min(), y.min()), complex(x.max(), y.max())
