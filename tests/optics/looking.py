@@ -1,6 +1,6 @@
 """One ray of a scene, and rays by the laws of optics, worked out in Python without the library.
 
-``seen`` renders a picture with an eye so narrow that all its pixels show one place; its height makes
+``seen`` renders a picture by an eye so narrow that its pixels show one place; its height makes
 the march as fine as in the largest pictures. ``bent``, ``thrown_back`` and ``through_ball`` are
 Snell's law and the law of reflection in doubles.
 """

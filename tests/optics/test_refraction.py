@@ -14,8 +14,8 @@ from tests.optics.looking import (
     compass,
     fresnel,
     seen,
-    thrown_back,
     through_ball,
+    thrown_back,
     unit,
     upper_half,
     way_seen,
@@ -34,7 +34,7 @@ def test_a_ball_bends_rays_as_snell_says(ior, height):
 
 
 def test_no_ray_leaves_a_ball_unbent():
-    """Rounding once let rays that reach the end of the ball's box in one step leave as they were."""
+    """Rounding let rays that reach the end of the box in one step leave as they were."""
     far_off = 0
     for height in np.linspace(0.02, 0.8, 27):
         origin = (0.3 * height, height, 5.0)

@@ -345,8 +345,8 @@ def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
 
 def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
     """The lights of a scene: those given, what is around if that shines, else a sun and a sky."""
-    if around is not None:
-        return (*given, around)
+    if around is not None:  # among the lights too, it is still one light
+        return (*given, around) if around not in given else tuple(given)
     if unsaid:
         return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
     return tuple(given)
