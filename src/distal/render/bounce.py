@@ -75,7 +75,7 @@ def seen_plain(
         return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
     p = place_on(ray, hit)
     n = hit.side * normal(field, p, normals, normal_step)
-    lifted = p + (2.0 * numbers.threshold * hit.t + 1e-4) * n
+    lift = 2.0 * numbers.threshold * hit.t + 1e-4
     material = surface(p)
     color = direct_light(
         field,
@@ -83,7 +83,8 @@ def seen_plain(
         ambient,
         material,
         shares(material, -dot(n, ray.direction), hit.side < 0.0),
-        lifted,
+        p,
+        lift,
         n,
         -ray.direction,
         bounds,
@@ -143,7 +144,8 @@ def seen_mirrored(
             ambient,
             material,
             parts,
-            p + lift * n,
+            p,
+            lift,
             n,
             -direction,
             bounds,
@@ -219,7 +221,8 @@ def seen_refracted(
             ambient,
             material,
             parts,
-            p + lift * n,
+            p,
+            lift,
             n,
             -direction,
             bounds,

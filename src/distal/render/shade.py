@@ -80,6 +80,7 @@ def direct_light(
     surface: Surface,
     parts: Shares,
     p: vec3,
+    lift: float,
     n: vec3,
     view: vec3,
     bounds: Bounds,
@@ -91,13 +92,14 @@ def direct_light(
     """What a place sends to the eye by itself and from the lights, without mirrored surroundings.
 
     What a rough surface mirrors of its surroundings is blurred: that share is taken from the
-    ambient light.
+    ambient light. Shadows are looked for from ``lift`` above the surface, lights at it.
     """
+    lifted = p + lift * n
     around = parts.diffuse * ambient(n)
     if surface.roughness > 0.0:
         around += parts.mirrored * surface.roughness * ambient(reflect(-view, n))
     if occlusion > 0.0:
-        around = around * ambient_occlusion(field, p, n, occlusion, numbers.divisor)
+        around = around * ambient_occlusion(field, lifted, n, occlusion, numbers.divisor)
     color = surface.emission + around
     for i in range(light_count):
         light = lights(i, p)
@@ -105,7 +107,7 @@ def direct_light(
         if facing > 0.0:
             shadow = 1.0
             if shadow_steps > 0:
-                shadow = soft_shadow(field, p, light, bounds, numbers, shadow_steps)
+                shadow = soft_shadow(field, lifted, light, bounds, numbers, shadow_steps)
             shine = highlight(surface, n, view, light.direction, light.radius)
             color += light.radiance * shadow * (parts.diffuse * facing + parts.mirrored * shine)
     return color
