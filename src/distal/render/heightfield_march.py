@@ -134,7 +134,7 @@ def march_heightfield(
         bracket = narrowed(bracket, t, value, safe)
         if bracket.value_below < 0.0:
             t = likely_crossing(bracket)
-            if abs(value) < tolerance or bracket.below - bracket.above < tolerance:
+            if abs(value) < tolerance or bracket.farthest - bracket.nearest < tolerance:
                 found = True
                 break
         else:
