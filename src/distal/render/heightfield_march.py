@@ -7,7 +7,8 @@ skims a surface; this one strides on and finds the crossing between its last two
 Source: the founding blog's "Sunset on the sea": steps of the larger of the distance and a length
 that grows, then a search that takes off the interval what the field's value at each probe rules
 out. It halves what is left; here the line through both ends' values tells where to look (the rule
-of false position in its "Illinois" form: Dowell and Jarratt, 1971), which needs half the probes.
+of false position in its "Illinois" form: Dowell and Jarratt, 1971), and the line through the last
+two values how long a step may be: fewer probes, and nearer to the surface.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ from distal.render.camera import Ray
 from distal.render.march import Hit, March, crossing
 
 UPRIGHT = 1e-6
-# A step goes this much further than the field promises: a surface that it leaps into is found.
-EAGER = 2.0
+# A step is taken to where the line through the last two values meets 0, and past it by this much:
+# the next probe should lie below. It goes so far beyond the field's promise at most.
+PAST = 1.02
+LONGEST = 6.0
 
 
 @struct
@@ -86,6 +89,14 @@ def likely_crossing(bracket: Bracket) -> float:
 
 
 @func
+def likely_step(bracket: Bracket, t: float, value: float, safe: float) -> float:
+    """How far the surface is if the field goes on as since the bracket's probe; 0 if it rises."""
+    fall = bracket.value_above - value
+    guess = PAST * value * (t - bracket.above) / max(fall, 1e-30)
+    return select(fall > 0.0, min(guess, LONGEST * safe), 0.0)
+
+
+@func
 def start_below(ray: Ray, top: float, t: float) -> float:
     """Where a ray from above comes down to ``top``; ``t`` where it starts below."""
     falls = ray.direction.y < -UPRIGHT
@@ -131,6 +142,7 @@ def march_heightfield(
         value = field(ray.origin + t * ray.direction)
         tolerance = numbers.threshold * max(t, 1e-3)
         safe = value / numbers.divisor
+        guess = likely_step(bracket, t, value, safe)
         bracket = narrowed(bracket, t, value, safe)
         if bracket.value_below < 0.0:
             t = likely_crossing(bracket)
@@ -139,7 +151,7 @@ def march_heightfield(
                 break
         else:
             # The ray's end is looked at too: a surface may lie between it and the last step.
-            t = select(t < end, min(t + max(EAGER * safe, step), end), 2.0 * end + 1.0)
+            t = select(t < end, min(t + max(safe, guess, step), end), 2.0 * end + 1.0)
             step *= stride.growth
     # With steps run out between two probes, the likeliest place is the best that is known.
     return Hit(t, found or bracket.value_below < 0.0, taken, 1.0)
