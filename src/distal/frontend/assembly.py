@@ -79,6 +79,10 @@ class Assembly:
         )
         return unique
 
+    def function(self, name: str) -> Function:
+        """A function that the program has already."""
+        return next(f for f in self._program.functions if f.name == name)
+
     def composed(self, obj: Composed) -> Instance:
         """The function of another object."""
         return self._program.composed(obj)
