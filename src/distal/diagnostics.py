@@ -41,27 +41,36 @@ class Diagnostic:
     hint: str | None = None
 
     def __str__(self) -> str:
-        if self.span is None:
-            lines = [f"error: {self.message}"]
-            if self.hint:
-                lines.append(f"  = hint: {self.hint}")
-            return "\n".join(lines)
-        span = self.span
-        number = f"{span.line:>2}"
-        gutter = " " * len(number)
-        # Tabs stay tabs under a tab, so that the caret stands where the editor shows the mistake.
-        lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
-        carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
-        lines = [
-            f"error: {self.message}",
-            f"{gutter}--> {span.file}:{span.line}:{span.col + 1}",
-            f"{gutter} |",
-            f"{number} | {span.text}",
-            f"{gutter} | {lead}{carets}",
-        ]
+        return self.told("error")
+
+    def told(self, kind: str) -> str:
+        """The text, with what is to be thought of it in front: "error", "warning", "note"."""
+        lines = [f"{kind}: {self.message}"]
+        if self.span is not None:
+            lines += excerpt(self.span)
         if self.hint:
+            gutter = " " if self.span is None else " " * len(_line_number(self.span))
             lines.append(f"{gutter} = hint: {self.hint}")
         return "\n".join(lines)
+
+
+def excerpt(span: Span) -> list[str]:
+    """The place in the author's file, and the line with carets below."""
+    number = _line_number(span)
+    gutter = " " * len(number)
+    # Tabs stay tabs under a tab, so that the caret stands where the editor shows the mistake.
+    lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
+    carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
+    return [
+        f"{gutter}--> {span.file}:{span.line}:{span.col + 1}",
+        f"{gutter} |",
+        f"{number} | {span.text}",
+        f"{gutter} | {lead}{carets}",
+    ]
+
+
+def _line_number(span: Span) -> str:
+    return f"{span.line:>2}"
 
 
 class CompileError(Exception):

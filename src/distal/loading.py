@@ -22,7 +22,7 @@ from distal.lang.functions import Func, Image
 # What a file may define for us.
 SceneCode: TypeAlias = Func | Composed
 
-_DEFAULT_NAMES = ("scene", "picture")
+_DEFAULT_NAMES = ("scene", "picture", "shape")
 
 
 def gallery() -> dict[str, Path]:
@@ -39,7 +39,8 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     Args:
         path: A Python file, or ``example:NAME`` for one of the gallery.
         name: Which of its functions, scenes or shapes. Without it: the only scene or ``@image``
-            defined in the file, else the one called ``scene`` or ``picture``.
+            defined in the file, else the one called ``scene`` or ``picture``; in a file without
+            these the only shape, else the one called ``shape``.
 
     Raises:
         LoadError: There is no such file or name, or the file fails when run.
@@ -163,14 +164,16 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
             raise LoadError(f"{file} has no scene, @image or @func '{name}'; {_listed(found)}")
         return found[name]
     pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
-    if len(set(map(id, pictures.values()))) == 1:
-        return next(iter(pictures.values()))
+    shapes = {key: value for key, value in found.items() if isinstance(value, Composed)}
+    asked, what = (pictures, "pictures") if pictures else (shapes, "shapes")
+    if len(set(map(id, asked.values()))) == 1:
+        return next(iter(asked.values()))
     for wanted in _DEFAULT_NAMES:
-        if wanted in pictures:
-            return pictures[wanted]
-    if not pictures:
+        if wanted in asked:
+            return asked[wanted]
+    if not asked:
         raise LoadError(f"{file} defines no scene and no @image; {_listed(found)}")
-    raise LoadError(f"{file} defines several pictures; say which: {file}:NAME; {_listed(pictures)}")
+    raise LoadError(f"{file} defines several {what}; say which: {file}:NAME; {_listed(asked)}")
 
 
 def _is_own_picture(value: SceneCode, module: types.ModuleType) -> bool:

@@ -7,6 +7,7 @@ that encodes light for display. The cheapest renderer is chosen that shows all m
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Final
 
@@ -15,13 +16,14 @@ from distal.executor_hook import executor
 from distal.fields.claims import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
-from distal.ir.types import FRAME, VEC4
+from distal.ir.types import FLOAT, FRAME, VEC4
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.render import tonemap, views
 from distal.scene.backgrounds import as_background
 from distal.scene.cameras import BaseCamera, Camera
+from distal.scene.conversion import Asked, number
 from distal.scene.field import Field
 from distal.scene.lights import DistantLight, HemisphereLight, Light
 from distal.scene.materials import as_material
@@ -230,6 +232,18 @@ class Scene(Composed):
         if key not in self._pictures:
             self._pictures[key] = View(self, *key)
         return self._pictures[key]
+
+    def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
+        """The same scene, its light shown in another way; None keeps what it says itself."""
+        made = copy.copy(self)
+        if exposure is not None:
+            asked = Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=self.place)
+            made.numbers = {**self.numbers, "exposure": number(exposure, asked)}
+        if tone_map is not None:
+            made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
+        made.display = Display(made)
+        made._pictures = {}
+        return made
 
     def text(self) -> Composed:
         """What a text of it shows: display values."""
