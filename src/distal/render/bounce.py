@@ -215,25 +215,24 @@ def seen_refracted(
         parts = shares(material, -dot(n, direction), hit.side < 0.0)
         if hit.side < 0.0:
             throughput = throughput * exp(-material.absorption * hit.t)
-        direct = direct_light(
-            field,
-            lights,
-            ambient,
-            material,
-            parts,
-            p,
-            lift,
-            n,
-            -direction,
-            bounds,
-            numbers,
-            light_count,
-            shadow_steps,
-            look.occlusion,
-        )
-        if hit.side > 0.0:
-            direct = fogged(direct, hit.t, look.fog_color, look.fog_density)
-            color += throughput * direct
+        else:
+            direct = direct_light(
+                field,
+                lights,
+                ambient,
+                material,
+                parts,
+                p,
+                lift,
+                n,
+                -direction,
+                bounds,
+                numbers,
+                light_count,
+                shadow_steps,
+                look.occlusion,
+            )
+            color += throughput * fogged(direct, hit.t, look.fog_color, look.fog_density)
             throughput = throughput * exp(-look.fog_density * hit.t)
         if depth >= bounces:
             continue
