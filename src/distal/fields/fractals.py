@@ -3,8 +3,8 @@
 What flows in: a point, how often the map is repeated, its numbers. What flows out: a lower bound
 for the sponge; for the others an estimate from how fast the map spreads neighbouring points. Beyond
 the ball or box that holds a set, the way there and the estimate at its edge are joined at a right
-angle, so that the estimate never has to serve far away. The slopes hold for 999 of 1000 places
-(measured).
+angle, so that the estimate never has to serve far away. Divided by the slope that is named, fewer
+than 1 in 10,000 steps of a marcher enter the set (tested).
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from distal.lang import (
     clamp,
     cos,
     dot,
+    exp2,
     floor,
     func,
     length,
@@ -34,8 +35,11 @@ from distal.lang import (
 )
 
 TINY: Final = 1e-12
+NEAR_AXIS: Final = 1e-10
 # Beyond this the orbit is gone; large, because the estimate is the better the farther it went.
 ESCAPED: Final = 256.0
+# Neighbours spread further than this differ by less than 32 bits tell; going on would overflow.
+FINEST: Final = 1e12
 JULIA: Final = vec4(-0.2, 0.8, 0.0, 0.0)
 
 
@@ -115,8 +119,8 @@ def escape_distance(size: float, spread: float) -> float:
 
 
 def _power_is_more(power: int, iterations: int) -> str | None:
-    if power < 2:
-        return "power must be 2 or more"
+    if not 2 <= power <= 32:
+        return "power must lie between 2 and 32"
     return _repeats_are_few(iterations)
 
 
@@ -134,20 +138,36 @@ def mandelbulb_bounds(power: int) -> Bounds:
 
 
 @func
+def mandelbulb_escaped(power: int) -> float:
+    """Beyond this an orbit is gone; its next power times any derivative is still a number."""
+    return min(ESCAPED, exp2(24.0 / float(power)))
+
+
+@func
 def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
     """From the orbit of z -> z^power + c: lengths to the power, both angles times the power."""
     z = c
     r = length(z)
     spread = 1.0
+    times = float(power)
+    odd_sign = select(power % 2 == 0, 1.0, -1.0)
+    escaped = mandelbulb_escaped(power)
     for _ in range(iterations):
-        if r > ESCAPED:
+        if r > escaped or spread > FINEST:
             break
-        stretch = pow(r, float(power - 1))
-        spread = float(power) * stretch * spread + 1.0
-        polar = float(power) * atan2(length(z.xz), z.y)
-        azimuth = float(power) * atan2(z.z, z.x)
-        across = sin(polar)
-        direction = vec3(across * cos(azimuth), cos(polar), across * sin(azimuth))
+        stretch = pow(r, times - 1.0)
+        # Angles from the nearer pole: there 32 bits tell the sine of many turns no more.
+        off_axis = length(z.xz)
+        polar = times * atan2(off_axis, abs(z.y))
+        turned = select(z.y < 0.0, odd_sign, 1.0)
+        across = sin(polar) * select(z.y < 0.0, -turned, 1.0)
+        # On the axis there is no azimuth, and close to it 32 bits lose the square of the way.
+        aside = off_axis > NEAR_AXIS
+        azimuth = times * atan2(select(aside, z.z, 0.0), select(aside, z.x, 1.0))
+        # Around the axis the map may spread points more than anywhere else.
+        around = select(aside, abs(across) * r / max(off_axis, NEAR_AXIS), times)
+        spread = times * stretch * max(around, 1.0) * spread + 1.0
+        direction = vec3(across * cos(azimuth), turned * cos(polar), across * sin(azimuth))
         z = stretch * r * direction + c
         r = length(z)
     return escape_distance(r, spread)
@@ -168,7 +188,7 @@ def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
 
     Args:
         p: Point.
-        power: Of the map, 2 or more.
+        power: Of the map, from 2 to 32.
         iterations: How long orbits are followed; more show finer detail.
 
     Source: Daniel White and Paul Nylander (2009); Inigo Quilez, "Mandelbulb"
@@ -177,7 +197,7 @@ def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
     Measured:
         mandelbulb((0.0, 0.0, 0.0), 8, 4) = 0.0
         mandelbulb((1.0, 0.0, 0.0), 2, 1) = 0.0816882
-        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 1.0750557
+        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 0.5972532
     """
     radius = mandelbulb_radius(power)
     estimate = mandelbulb_estimate(held_in_ball(p, radius), power, iterations)
@@ -204,7 +224,7 @@ def julia_estimate(start: vec4, c: vec4, iterations: int) -> float:
     r = length(z)
     spread = 1.0
     for _ in range(iterations):
-        if r > ESCAPED:
+        if r > ESCAPED or spread > FINEST:
             break
         spread = 2.0 * r * spread
         z = vec4(z.x * z.x - dot(z.yzw, z.yzw), 2.0 * z.x * z.yzw) + c
@@ -264,7 +284,7 @@ def mandelbox_estimate(c: vec3, scale: float, iterations: int) -> float:
         grow = scale * clamp(1.0 / max(square, TINY), 1.0, 4.0)
         z = grow * z + c
         spread = abs(grow) * spread + 1.0
-        if dot(z, z) > ESCAPED * ESCAPED:
+        if dot(z, z) > ESCAPED * ESCAPED or spread > FINEST:
             break
     q = abs(z) - reach
     return (length(max(q, 0.0)) + min(max(max(q.x, q.y), q.z), 0.0)) / spread
