@@ -25,7 +25,7 @@ from distal.lang import (
     vec3,
 )
 
-swell = slider("Swell", 0.6, low=0.1, high=1.0, help="How high the waves are.")
+swell = slider("Swell", 0.5, low=0.1, high=1.0, help="How high the waves are.")
 sun_height = slider("Sun height", 0.09, low=0.03, high=0.4, help="How high the sun stands.")
 
 WAVES = 9
@@ -42,7 +42,7 @@ SHRINKING = SHORTER * FLATTER
 STEEPEST = 0.537 * HIGHEST * LONGEST * (1.0 - SHRINKING**WAVES) / (1.0 - SHRINKING)
 
 SUN = (-0.12, sun_height, -1.0)
-EYE, TARGET, FOV, FAR = (0.0, 1.6, 8.0), (0.0, 1.3, 0.0), 0.7, 400.0
+EYE, TARGET, FOV, FAR = (0.0, 2.4, 8.0), (0.0, 1.85, 0.0), 0.7, 400.0
 ENDLESS = 1e18
 
 
@@ -88,7 +88,7 @@ def sea(**march: Any) -> Scene:
         swell=swell,
         time=time,
     )
-    brine = Material("#0d3a40", diffuse=0.3, specular=0.7, ior=1.33, fresnel=1.0)
+    brine = Material("#12525c", diffuse=0.4, specular=0.6, ior=1.33, fresnel=1.0)
     return Scene(
         waves.paint(brine).named("sea"),
         lights=[
@@ -101,7 +101,7 @@ def sea(**march: Any) -> Scene:
         fog_density=0.006,
         shadows=False,
         ambient_occlusion=0.0,
-        bounces=2,
+        bounces=4,
         tone_map="aces",
         far=FAR,
         **march,

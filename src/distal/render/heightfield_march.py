@@ -23,6 +23,8 @@ UPRIGHT = 1e-6
 # the next probe should lie below. It goes so far beyond the field's promise at most.
 PAST = 1.02
 LONGEST = 6.0
+# The search ends so many thresholds from the surface: the line's last crossing is far nearer.
+ENOUGH = 4.0
 
 
 @struct
@@ -146,7 +148,7 @@ def march_heightfield(
         bracket = narrowed(bracket, t, value, safe)
         if bracket.value_below < 0.0:
             t = likely_crossing(bracket)
-            if abs(value) < tolerance or bracket.farthest - bracket.nearest < tolerance:
+            if abs(value) < ENOUGH * tolerance or bracket.farthest - bracket.nearest < tolerance:
                 found = True
                 break
         else:
