@@ -185,7 +185,8 @@ class Operator:
     def takes_flat(self, lies: bool) -> bool:
         """Whether it works on flat shapes, where its result lies in the plane or not."""
         if self.around is not None:
-            return str(self.around.python_function.__annotations__["field"]) == "Field2"
+            field = str(self.around.python_function.__annotations__["field"])
+            return field == "Field2" or "[vec2]" in field
         if self.point is not None:
             return str(self.point.python_function.__annotations__["return"]) in ("vec2", "Site2")
         return lies

@@ -6,9 +6,9 @@ to ask the child at, the slope that the deformation makes of the child's, the bo
 The slope of a deformed shape is the child's times how far the map of points takes two points apart,
 its largest singular value. Where that grows with the distance from an axis, points farther out than
 the child's box are first moved in to its radius, which takes no two apart. What is lost by that the
-finish gives back: a deformed shape answers at least the distance to what holds it, the drum of that
-radius (the surface may touch it, and places moved in would else be on the surface too). A child without end in
-such a direction has no slope (``UNBOUNDED``) and is refused.
+finish gives back: a deformed shape answers at least the distance to the drum of that radius, which
+holds it (where the surface touches the drum, places moved in would else be on the surface too). A
+child without end in such a direction has no slope (``UNBOUNDED``) and is refused.
 """
 
 from __future__ import annotations
