@@ -127,12 +127,12 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "bend linear": lambda: _SHEET.apply("bend linear", (-0.8, 0, 0), (0.8, 0, 0), (0, 0.6, 0)),
     "bend radial": lambda: Cylinder(1.0, 0.12).apply("bend radial", 0.1, 1.0, -0.5),
     "taper": lambda: Box((0.9, 1.4, 0.9)).apply("taper", -0.7, 0.7, 0.35),
-    "attract": lambda: Sphere(0.6).apply("attract", (0.7, 0.5, 0), 0.8, 0.3),
-    "repel": lambda: Box(1.2).apply("repel", (0.0, 0.6, 0.6), 0.7, 0.3),
+    "attract": lambda: Box(1.2).apply("attract", (0.6, 0.6, 0.6), 0.9, 1.5),
+    "repel": lambda: Box(1.2).apply("repel", (0.4, 0.4, 0.4), 0.8, 0.9),
     "mirror": lambda: _LEAF.mirror((1, 0, 0)),
     "symmetry": lambda: _PEBBLE.translate(0.5, 0.4, 0.5).symmetry("xyz"),
     "mirror diagonal": lambda: _LEAF.apply("mirror diagonal"),
-    "mirror octant": lambda: Capsule(0.08, 0.5).translate(0.3, 0.2, 0.6).apply("mirror octant"),
+    "mirror octant": lambda: Capsule(0.08, 0.5).translate(0.8, 0.0, 0.3).apply("mirror octant"),
     "kaleidoscope": lambda: _LEAF.kaleidoscope(6),
     "flat translate": lambda: Rectangle((0.5, 0.3)).translate(0.3, 0.2),
     "flat rotate": lambda: Rectangle((1.0, 0.4)).rotate(0.6),
@@ -152,7 +152,9 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     ),
     "repeat": lambda: _PEBBLE.repeat(0.6, 0.6, 0.6) & Box(1.9),
     "repeat neighbours": lambda: Sphere(0.36).repeat(0.6, 0.6, 0.6, neighbours=1) & Box(1.9),
-    "repeat mirrored": lambda: _LEAF.scale(0.4).repeat(0.8, 0.8, 0.8, mirrored=True) & Box(1.9),
+    "repeat mirrored": lambda: (
+        _LEAF.translate(-0.5, 0, 0).repeat(0.8, 0.8, 0.8, mirrored=True) & Box(1.9)
+    ),
     "repeat limited": lambda: _PEBBLE.repeat(0.6, 0.6, 0.6, count=(3, 2, 3)),
     "repeat limited neighbours": lambda: Sphere(0.36).repeat(
         0.6, 0.6, 0.6, count=(3, 2, 3), neighbours=1
@@ -178,13 +180,13 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "flat repeat mirrored": lambda: (
         Heart(0.3).rotate(0.6).apply("flat repeat mirrored", (0.5, 0.5))
     ),
-    "flat repeat polar": lambda: Heart(0.4).rotate(-np.pi / 2).translate(0.3, 0).apply(
-        "flat repeat polar", 6
+    "flat repeat polar": lambda: (
+        Heart(0.3).rotate(-np.pi / 2).translate(0.3, 0).apply("flat repeat polar", 6)
     ),
     "flat repeat polar neighbours": lambda: (
-        Heart(0.6)
+        Heart(0.45)
         .rotate(-np.pi / 2)
-        .translate(0.3, 0)
+        .translate(0.35, 0)
         .apply("flat repeat polar neighbours", 6, neighbours=1)
     ),
     "flat repeat at": lambda: _STAR.scale(0.35).apply("flat repeat at", OUTLINE),
@@ -197,7 +199,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "wrap": lambda: Box((4.6, 0.3, 0.5)).apply("wrap", 0.75),
     "sphere fold": lambda: Box(1.6).apply("sphere fold", 0.4, 0.9),
     "repeat scaled": lambda: (
-        Sphere(0.2).translate(0.75, 0, 0).apply("repeat scaled", 1.7) & Sphere(1.6)
+        Sphere(0.17).translate(0.75, 0, 0).apply("repeat scaled", 1.7) & Sphere(1.6)
     ),
     "warp": lambda: Box(1.2).apply("warp", 0.12, 3.0),
     "extrude": lambda: _HEART.extrude(0.4),
@@ -227,10 +229,12 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "split above": lambda: _BODY.split((0.6, 0.8, 0))[1],
     "flat split below": lambda: Hexagon(0.6).apply("flat split below", (0.6, 0.8), 0.0),
     "flat split above": lambda: Hexagon(0.6).apply("flat split above", (0.6, 0.8), 0.0),
-    "repeat line": lambda: _PEBBLE.array(start=(-0.8, -0.3, 0), end=(0.8, 0.3, 0), count=5),
+    "repeat line": lambda: _PEBBLE.array(start=(-0.8, -0.3, 0), end=(0.8, 0.3, 0), count=4),
     "repeat ring": lambda: Sphere(0.14).repeat_ring(0.4, 0.4, count=(5, 4)),
     "repeat at": lambda: _PEBBLE.array(_LINE),
-    "thicken by": lambda: Plane().apply("thicken by", 0.05, 0.5, 1.5) & Box(2.0),
+    "thicken by": lambda: (
+        CLASSES["Gyroid"](1.0).apply("thicken by", 0.5, 0.04, 1.2, others=[Plane(-0.9)]) & Box(1.9)
+    ),
     "transition linear": lambda: Box(1.2).apply(
         "transition linear", (-0.6, 0, 0), (0.6, 0, 0), others=[Sphere(0.6)]
     ),
@@ -310,8 +314,15 @@ def blend_cells() -> Iterator[Cell]:
 def _joined(name: str) -> Any:
     kind, _, form = name.partition(" ")
     slab, post = Box((1.4, 0.5, 1.0)), Cylinder(0.4, 1.4)
+    if kind == "xor":  # what is gone is inside: a corner is cut away
+        corner = Box(2.0).translate(1.0, 1.0, 1.0)
+        return _mixed(name, form, slab, post) - corner
+    return _mixed(name, form, slab, post)
+
+
+def _mixed(name: str, form: str, slab: Any, post: Any) -> Any:
     if not form:
-        return slab.apply(kind, others=[post])
+        return slab.apply(name, others=[post])
     extra = {"count": 3} if form in ("columns", "stairs") else {}
     size = 0.08 if form in ("exponential", "root", "sigmoid") else 0.18
     return slab.apply(name, size, others=[post], **extra)

@@ -27,6 +27,7 @@ from distal import Box, Camera, DistantLight, HemisphereLight, Scene
 from distal.fields.claims import EXACT
 from distal.lang import Frame, image, slider, vec2, vec4
 from distal.render.views import isolines
+from distal.scene.steepness import check_slopes
 
 FOLDER: Final = Path(__file__).parents[1] / "docs/pictures"
 ACROSS: Final = 10
@@ -55,6 +56,7 @@ def draw(cell: Cell, size_px: int, samples: int) -> Drawn:
     """The picture of one cell; a problem is told in it, not raised."""
     try:
         shape = cell.make()
+        check_slopes(shape.node)
         if shape.flat:
             pixels, took = _flat(shape, size_px)
         else:
