@@ -40,6 +40,7 @@ NEAR_AXIS: Final = 1e-10
 ESCAPED: Final = 256.0
 # Neighbours spread further than this differ by less than 32 bits tell; going on would overflow.
 FINEST: Final = 1e12
+FINEST_BULB: Final = 16
 JULIA: Final = vec4(-0.2, 0.8, 0.0, 0.0)
 
 
@@ -121,7 +122,9 @@ def escape_distance(size: float, spread: float) -> float:
 def _power_is_more(power: int, iterations: int) -> str | None:
     if not 2 <= power <= 32:
         return "power must lie between 2 and 32"
-    return _repeats_are_few(iterations)
+    if not 1 <= iterations <= FINEST_BULB:
+        return f"iterations must lie between 1 and {FINEST_BULB}"
+    return None
 
 
 @func
@@ -164,9 +167,9 @@ def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
         # On the axis there is no azimuth, and close to it 32 bits lose the square of the way.
         aside = off_axis > NEAR_AXIS
         azimuth = times * atan2(select(aside, z.z, 0.0), select(aside, z.x, 1.0))
-        # Around the axis the map may spread points more than anywhere else.
-        around = select(aside, abs(across) * r / max(off_axis, NEAR_AXIS), times)
-        spread = times * stretch * max(around, 1.0) * spread + 1.0
+        # Near the axis the map spreads points more around it; a spread that followed would blur
+        # the normals, which are those of the estimate.
+        spread = times * stretch * spread + 1.0
         direction = vec3(across * cos(azimuth), turned * cos(polar), across * sin(azimuth))
         z = stretch * r * direction + c
         r = length(z)
@@ -189,7 +192,7 @@ def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
     Args:
         p: Point.
         power: Of the map, from 2 to 32.
-        iterations: How long orbits are followed; more show finer detail.
+        iterations: How long orbits are followed, at most 16; more show finer detail.
 
     Source: Daniel White and Paul Nylander (2009); Inigo Quilez, "Mandelbulb"
     (https://iquilezles.org/articles/mandelbulb/).
@@ -197,7 +200,7 @@ def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
     Measured:
         mandelbulb((0.0, 0.0, 0.0), 8, 4) = 0.0
         mandelbulb((1.0, 0.0, 0.0), 2, 1) = 0.0816882
-        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 0.5972532
+        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 1.0750557
     """
     radius = mandelbulb_radius(power)
     estimate = mandelbulb_estimate(held_in_ball(p, radius), power, iterations)
