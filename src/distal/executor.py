@@ -182,6 +182,7 @@ class PythonExecutor:
         kwargs: Mapping[str, Any],
         params: Mapping[str, Any] | None = None,
         time: float = 0.0,
+        device: str = "cpu",
     ) -> Any:
         """The function's value for numbers, vectors, or arrays with one row for each point."""
         seconds = checked_time(time)
@@ -197,7 +198,7 @@ class PythonExecutor:
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
         if rows:
-            kernel = self._kernel(lowered, "cpu", 64 if double else 32)
+            kernel = self._kernel(lowered, device, 64 if double else 32)
         else:  # one value of parameters alone is not worth machine code
             kernel = self._kernel(lowered, "reference", 64)
         result = kernel.evaluate(rows, uniforms, lowered.resources)

@@ -28,6 +28,7 @@ class Executor(Protocol):
         kwargs: Mapping[str, Any],
         params: Mapping[str, Any] | None = None,
         time: float = 0.0,
+        device: str = "cpu",
     ) -> Any:
         """The function's value for numbers, vectors or arrays of points."""
         ...
