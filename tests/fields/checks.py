@@ -112,7 +112,8 @@ def _has_inside(subject: Subject, surface: Surface) -> bool:
 def _box_holds(
     subject: Subject, surface: Surface, rng: np.random.Generator, report: Report
 ) -> None:
-    slack = 1e-7 * subject.scale
+    # A bound may be far smaller than the distance: what counts as its surface lies near it only.
+    slack = 1e-6 * subject.scale
     points = surface.points
     low, high = subject.region
     around = rng.uniform(

@@ -31,7 +31,7 @@ class Subject:
         high: Upper corner.
         signed: Whether it may have an inside.
         hollow: Whether its inside may be empty all the same, with a wall of thickness 0 for one.
-        empty: Whether even its surface may be: an intersection's may.
+        empty: Whether even its surface may be: an intersection's may, and a fractal's.
         estimate: Whether its slope is an estimate.
     """
 
@@ -82,5 +82,6 @@ def subject_of(sample: Sample) -> Subject:
         high,
         row.signed,
         hollow=zeros,
+        empty=row.estimate,
         estimate=row.estimate,
     )
