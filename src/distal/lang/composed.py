@@ -15,12 +15,13 @@ from distal.executor_hook import executor
 from distal.ir.nodes import EntryKind
 from distal.ir.types import Type
 from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:
     from distal.lang.parameters import Parameter
 
 
-class Composed(ABC):
+class Composed(Unchanging, ABC):
     """A function that an object makes itself. It never changes once it is made.
 
     Attributes:

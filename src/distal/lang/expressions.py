@@ -17,6 +17,7 @@ from distal.ir.build import swizzle
 from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
+from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:
     from distal.lang.parameters import Parameter
@@ -44,7 +45,7 @@ _COMPARING: Final = frozenset(
 )
 
 
-class Symbolic:
+class Symbolic(Unchanging):
     """What expressions and parameters share: the operators of scene code."""
 
     __slots__ = ()

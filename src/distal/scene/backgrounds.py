@@ -21,6 +21,7 @@ from distal.lang.expressions import Symbolic
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer as BufferData
 from distal.lang.resources import Texture2D
+from distal.lang.unchanging import Unchanging
 from distal.render import ambient as ambient_library
 from distal.render import environment as environment_library
 from distal.render import sky as library
@@ -40,7 +41,7 @@ _LIMITS: Final = {
 }
 
 
-class Background:
+class Background(Unchanging):
     """What rays show that meet nothing. It never changes once it is made.
 
     Args:

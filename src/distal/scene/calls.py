@@ -20,6 +20,7 @@ from distal.ir.types import BOOL, INT, Type
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
+from distal.lang.unchanging import Unchanging
 from distal.scene.conversion import Number
 from distal.scene.numbers import slots_of
 
@@ -38,7 +39,7 @@ class Composer(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class FunctionCall:
+class FunctionCall(Unchanging):
     """A scene function and its values.
 
     Attributes:
@@ -125,3 +126,6 @@ class Pattern(FunctionCall):
     """
 
     __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"<pattern {self.what}>"

@@ -18,6 +18,7 @@ from distal.ir.types import FLOAT
 from distal.lang import tan
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
 from distal.render import camera as library
 from distal.scene.calls import Composer, FunctionCall
 from distal.scene.conversion import Asked, Number, number
@@ -35,7 +36,7 @@ _DEGREE: Final = math.pi / 180.0
 _PARALLEL: Final = 1e-5
 
 
-class BaseCamera:
+class BaseCamera(Unchanging):
     """What all cameras share.
 
     Attributes:
@@ -69,6 +70,9 @@ class BaseCamera:
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
+
+    def __repr__(self) -> str:
+        return f"<camera {type(self).__name__}>"
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """The ray of the point ``site["uv"]`` of the picture."""

@@ -15,6 +15,7 @@ from typing import Any, Final
 from distal.diagnostics import Span
 from distal.fields.claims import Limit, Requirement
 from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
 from distal.render import ambient
 from distal.render import lights as library
 from distal.scene.calls import FunctionCall
@@ -31,7 +32,7 @@ _LIMITS: Final = {
 }
 
 
-class Light:
+class Light(Unchanging):
     """What all lights share. A light never changes once it is made.
 
     Attributes:

@@ -18,6 +18,7 @@ from distal.ir.types import FLOAT, VEC3, Struct
 from distal.lang import func, log, max, vec3
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
 from distal.lang.values import VectorValue
 from distal.render import material as library
 from distal.scene.calls import PLACE_NAMES, Composer, FunctionCall, Pattern
@@ -46,7 +47,7 @@ _SLACK: Final = 1e-6
 _DARKEST: Final = 1e-4
 
 
-class Material:
+class Material(Unchanging):
     """What a shape looks like. It never changes once it is made.
 
     ``diffuse``, ``specular`` and ``transmission`` share out the light that arrives, and add up to
