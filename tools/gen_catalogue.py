@@ -1,8 +1,9 @@
 """Write ``docs/reference/catalogue.md``: every shape and operator with its claims, held against it.
 
 What flows in: the field library's rows; what the checks of ``tests/fields`` measure. What flows
-out: the page. ``--check`` measures nothing and fails when the page's names, numbers, claims, slopes
-or sources are not the library's; what was measured may differ from machine to machine.
+out: the page. ``--changed`` measures only rows that say something new. ``--check`` measures nothing
+and fails when the page's names, numbers, claims, slopes or sources are not the library's; what was
+measured may differ from machine to machine.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import re
 import sys
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -66,15 +67,26 @@ class Section:
     columns: tuple[str, ...]
     rows: list[tuple[tuple[str, ...], Callable[[], tuple[str, ...]]]]
 
-    def lines(self, *, measured: bool) -> Iterator[str]:
-        """The section's text; without what is measured, its columns are left out."""
+    def lines(self, *, measured: bool, known: Mapping[str, str]) -> Iterator[str]:
+        """The section's text; without what is measured, its columns are left out.
+
+        ``known``: whole lines by what in them is not measured; they are not measured again.
+        """
         yield f"\n## {self.title}\n"
         columns = self.columns + (("error", "steepest") if measured else ())
         yield f"| {' | '.join(columns)} |"
         yield "|---" * len(columns) + "|"
         for cells, measure in self.rows:
-            print(cells[0], file=sys.stderr) if measured else None
-            yield f"| {' | '.join(cells + (measure() if measured else ()))} |"
+            line = _line(cells)
+            if measured and line not in known:
+                print(cells[0], file=sys.stderr)
+                yield _line(cells + measure())
+            else:
+                yield known.get(line, line)
+
+
+def _line(cells: tuple[str, ...]) -> str:
+    return f"| {' | '.join(cells)} |"
 
 
 def sections() -> Iterator[Section]:
@@ -242,31 +254,32 @@ def _operator_measure(row: Operator) -> Callable[[], tuple[str, ...]]:
     return measure
 
 
-def make_page(*, measured: bool = True) -> str:
+def make_page(known: Mapping[str, str], *, measured: bool = True) -> str:
     """The text of the page; without what is measured, as ``stripped`` leaves it."""
-    lines = [line for section in sections() for line in section.lines(measured=measured)]
+    lines = [
+        line for section in sections() for line in section.lines(measured=measured, known=known)
+    ]
     return HEAD + "\n".join(lines) + "\n"
 
 
-def stripped(page: str) -> str:
-    """A page without its measured columns."""
-    lines = []
-    for line in page.splitlines():
-        if line.startswith("|"):
-            cells = re.split(r"(?<!\\)\|", line)[1:-1][:-MEASURED]
-            line = f"|{'|'.join(cells)}|"
-        lines.append(line)
-    return "\n".join(lines) + "\n"
+def stripped(line: str) -> str:
+    """A line without its measured columns."""
+    if not line.startswith("|"):
+        return line
+    cells = re.split(r"(?<!\\)\|", line)[1:-1]
+    return f"|{'|'.join(cells[:-MEASURED])}|"
 
 
 def main() -> int:
     """Write the page, or compare what of it is not measured."""
+    old = PAGE.read_text().splitlines() if PAGE.exists() else []
     if "--check" in sys.argv[1:]:
-        fresh = PAGE.exists() and stripped(PAGE.read_text()) == make_page(measured=False)
+        fresh = [stripped(line) for line in old] == make_page({}, measured=False).splitlines()
         if not fresh:
-            print(f"{PAGE.name} is stale: run python tools/gen_catalogue.py", file=sys.stderr)
+            print(f"{PAGE.name} is stale: run tools/gen_catalogue.py --changed", file=sys.stderr)
         return 0 if fresh else 1
-    PAGE.write_text(make_page())
+    known = {stripped(line): line for line in old} if "--changed" in sys.argv[1:] else {}
+    PAGE.write_text(make_page(known))
     return 0
 
 
