@@ -16,7 +16,7 @@ from distal.fields.claims import EXACT, NOTHING, Limit, Primitive
 from distal.frontend.headers import read_header
 from distal.ir.types import VEC2, VEC3, Vector
 from distal.lang.functions import Func
-from distal.scene.conversion import Number
+from distal.scene.conversion import Number, shown
 from distal.scene.node import Node, Rule
 from distal.scene.numbers import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.refusals import refuse
@@ -75,7 +75,8 @@ def own_node(
     )
     if bounds is not None:
         box = boxes.given_bounds2 if flat else boxes.given_bounds
-        found |= arguments(box, _corners(bounds, place), {}, what=name, place=place)
+        corners = _corners(bounds, place)
+        found |= arguments(box, corners, {}, what=name, requires=_ordered, place=place)
     rule = replace(rule, slope=boxes.given_slope, bounds=box)
     return Node(rule, flat, (), found, constants, place)
 
@@ -87,6 +88,12 @@ def _corners(bounds: Any, place: Span | None) -> tuple[Any, Any]:
         hint = "bounds=((-1, -1, -1), (1, 1, 1))"
         refuse(f"bounds are two corners, (low, high), not {bounds!r:.60}", hint, place)
     return low, high
+
+
+def _ordered(low: tuple[float, ...], high: tuple[float, ...]) -> str | None:
+    if all(a < b for a, b in zip(low, high, strict=True)):
+        return None
+    return f"nothing lies between bounds {shown(low)} and {shown(high)}: the low corner comes first"
 
 
 def _is_flat(function: Func, place: Span | None) -> bool:

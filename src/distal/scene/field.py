@@ -8,26 +8,31 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Final, Self
 
 from distal.diagnostics import Span
 from distal.executor_hook import executor
-from distal.fields.claims import EXACT, UNBOUNDED, Claim, Operator
+from distal.fields.claims import EXACT, UNBOUNDED, Claim, Limit, Operator
 from distal.frontend import Assembly
+from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import FLOAT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.scene.binding import bound, own_node
 from distal.scene.compose import ZERO_CELL, Composer
-from distal.scene.conversion import Number
+from distal.scene.conversion import Asked, Number, number
 from distal.scene.derived import GradientOf, PromiseOf
 from distal.scene.library import OPERATORS
 from distal.scene.materials import as_material
 from distal.scene.node import Node
+from distal.scene.numbers import RESERVED, slots_of
 from distal.scene.places import author_place
-from distal.scene.refusals import refuse
+from distal.scene.refusals import refuse, refuse_kind
 from distal.scene.values import plain_name
+
+# A union of so many shapes compiles for minutes.
+MOST_PARTS: Final = 2048
 
 
 class Field(Composed):
@@ -36,12 +41,28 @@ class Field(Composed):
     flat: ClassVar[bool] = False
     point_type: ClassVar[Type] = VEC3
     result = FLOAT
+    node: Node
+    _gradient: GradientOf
+    _promised: PromiseOf
 
     def __init__(self, node: Node) -> None:
-        self.node = node
-        self.signature = (("p", self.point_type),)
-        self._gradient = GradientOf(node)
-        self._promised = PromiseOf(node)
+        if node.parts > MOST_PARTS:
+            refuse(
+                f"this {node.name} is made of {node.parts:,} shapes; more than {MOST_PARTS:,} "
+                "take too long to compile and to draw",
+                "repeat, array and mirror show many copies for the price of one",
+                node.place,
+            )
+        made = {
+            "node": node,
+            "signature": (("p", self.point_type),),
+            "_gradient": GradientOf(node),
+            "_promised": PromiseOf(node),
+        }
+        self.__dict__.update(made)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a {type(self).__name__} does not change; make another")
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -283,5 +304,11 @@ def joining(
     if rule is None:
         known = [n.removeprefix(f"{kind} ") for n in OPERATORS if n.startswith(f"{kind} ")]
         refuse(f"there is no blend '{blend}' for a {kind}", ", ".join(known), place)
+    assert rule.combine is not None
+    numbered = {slot.name for slot in slots_of(rule.combine)} - {*RESERVED, "k"}
+    if unknown := set(extra) - numbered:
+        hint = did_you_mean(min(unknown), {"smooth", "blend", *numbered})
+        refuse_kind(f"a {blend} {kind} has no '{min(unknown)}'", hint, place)
+    number(smooth, Asked("smooth", kind, FLOAT, rule.limits.get("k", Limit.ANY), place=place))
     numbers, constants = bound(rule, (smooth,), extra, place)
     return rule, numbers, constants

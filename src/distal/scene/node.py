@@ -32,6 +32,8 @@ class Node:
         material: What paints it and everything in it, or None.
         cut_material: What the faces show that it cuts into other shapes, or None.
         label: What the author calls it, or "".
+        parts: How many shapes of the library are asked for one distance; one that is asked twice
+            counts twice.
     """
 
     rule: Rule
@@ -43,6 +45,11 @@ class Node:
     material: Any = None
     cut_material: Any = None
     label: str = ""
+    parts: int = field(init=False, default=1)
+
+    def __post_init__(self) -> None:
+        if self.children:
+            object.__setattr__(self, "parts", sum(child.parts for child in self.children))
 
     @property
     def name(self) -> str:

@@ -7,7 +7,6 @@ that encodes light for display. The cheapest renderer is chosen that shows all m
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Final
 
@@ -16,14 +15,14 @@ from distal.executor_hook import executor
 from distal.fields.claims import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
-from distal.ir.types import FLOAT, FRAME, VEC4
+from distal.ir.types import FLOAT, FRAME, INT, VEC4
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.render import tonemap, views
 from distal.scene.backgrounds import as_background
 from distal.scene.cameras import BaseCamera, Camera
-from distal.scene.conversion import Asked, number
+from distal.scene.conversion import Asked, choice, number
 from distal.scene.field import Field
 from distal.scene.lights import DistantLight, HemisphereLight, Light
 from distal.scene.materials import as_material
@@ -118,7 +117,8 @@ class Scene(Composed):
         self.normals = one_of("way to find normals", normals, NORMALS, place)
         self.march = one_of("march", march, ("sphere", "heightfield"), place)
         self.shadows = bool(shadows)
-        self.bounces, self.steps = int(bounces), int(steps)
+        self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
+        self.steps = whole("steps", steps, Limit.POSITIVE, place)
         given = {
             "exposure": exposure,
             "fog": fog,
@@ -130,7 +130,14 @@ class Scene(Composed):
             "stride_growth": stride_growth,
         }
         self.numbers: Mapping[str, Any] = arguments(
-            scene_numbers, (), given, what="Scene", limits=_LIMITS, colors=("fog",), place=place
+            scene_numbers,
+            (),
+            given,
+            what="Scene",
+            limits=_LIMITS,
+            requires=_ends,
+            colors=("fog",),
+            place=place,
         )
         self.display = Display(self)
         self._pictures: dict[tuple[Any, ...], Composed] = {}
@@ -235,7 +242,8 @@ class Scene(Composed):
 
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
         """The same scene, its light shown in another way; None keeps what it says itself."""
-        made = copy.copy(self)
+        made = Scene.__new__(Scene)
+        made.__dict__.update(self.__dict__)
         if exposure is not None:
             asked = Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=self.place)
             made.numbers = {**self.numbers, "exposure": number(exposure, asked)}
@@ -322,6 +330,15 @@ def scene_numbers(
 ) -> float:
     """The numbers of a scene by name; never called."""
     return exposure
+
+
+def _ends(near: float, far: float) -> str | None:
+    return None if near < far else f"rays begin at near {near:g} and end before it, at far {far:g}"
+
+
+def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
+    """A count of the scene."""
+    return choice(value, Asked(name, "Scene", INT, limit, place=place))
 
 
 def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
