@@ -9,6 +9,7 @@ than 1 in 10,000 steps of a marcher enter the set (tested).
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from distal.fields.claims import LOWER_BOUND, NOTHING, Bounds, Limit, primitive
@@ -41,6 +42,8 @@ ESCAPED: Final = 256.0
 # Neighbours spread further than this differ by less than 32 bits tell; going on would overflow.
 FINEST: Final = 1e12
 FINEST_BULB: Final = 16
+# How long an orbit is followed to tell whether it stays.
+ORBIT: Final = 200
 JULIA: Final = vec4(-0.2, 0.8, 0.0, 0.0)
 
 
@@ -108,15 +111,15 @@ def held_in_ball(p: vec3, radius: float) -> vec3:
 
 
 @func
-def escape_distance(size: float, spread: float) -> float:
-    """The distance to the set of points whose orbit stays, from an orbit that has left it.
+def escape_distance(size: float, spread: float, radius: float) -> float:
+    """The distance to the points whose orbit is still in the ball that none returns to.
 
     Source: the Hubbard-Douady potential; John Hart, Daniel Sandin and Louis Kauffman, "Ray Tracing
     Deterministic 3-D Fractals" (1989).
     """
     r = max(size, TINY)
     # Inside, orbits come together and would make it endless.
-    return 0.5 * r * log(r) / max(spread, select(r < 1.0, 1.0, TINY))
+    return 0.5 * r * log(r / radius) / max(spread, select(r < radius, 1.0, TINY))
 
 
 def _power_is_more(power: int, iterations: int) -> str | None:
@@ -173,7 +176,7 @@ def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
         direction = vec3(across * cos(azimuth), turned * cos(polar), across * sin(azimuth))
         z = stretch * r * direction + c
         r = length(z)
-    return escape_distance(r, spread)
+    return escape_distance(r, spread, mandelbulb_radius(power))
 
 
 @primitive(
@@ -199,13 +202,24 @@ def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
 
     Measured:
         mandelbulb((0.0, 0.0, 0.0), 8, 4) = 0.0
-        mandelbulb((1.0, 0.0, 0.0), 2, 1) = 0.0816882
-        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 1.0750557
+        mandelbulb((1.0, 0.0, 0.0), 2, 1) = -0.0816882
+        mandelbulb((0.0, 2.0, 0.0), 2, 1) = 0.6591674
     """
     radius = mandelbulb_radius(power)
     estimate = mandelbulb_estimate(held_in_ball(p, radius), power, iterations)
     beyond = beyond_ball(p, radius)
     return select(beyond > 0.0, length(vec2(beyond, max(estimate, 0.0))), estimate)
+
+
+def _set_is_connected(c: tuple[float, ...], iterations: int) -> str | None:
+    """A square's orbit stays in the plane of c, where Mandelbrot's set tells."""
+    within = complex(c[0], math.hypot(*c[1:]))
+    z = 0j
+    for _ in range(ORBIT):
+        z = z * z + within
+        if math.hypot(z.real, z.imag) > 2.0:
+            return "c is not in the Mandelbrot set (by its real part and the length of the rest)"
+    return _repeats_are_few(iterations)
 
 
 @func
@@ -232,38 +246,38 @@ def julia_estimate(start: vec4, c: vec4, iterations: int) -> float:
         spread = 2.0 * r * spread
         z = vec4(z.x * z.x - dot(z.yzw, z.yzw), 2.0 * z.x * z.yzw) + c
         r = length(z)
-    return escape_distance(r, spread)
+    return escape_distance(r, spread, julia_radius(c))
 
 
 @primitive(
     "QuaternionJulia",
     NOTHING,
-    slope=1.25,
+    slope=1.0,
     bounds=julia_bounds,
-    requires=_repeats_are_few,
+    requires=_set_is_connected,
     estimate=True,
     tier=3,
 )
 @func
-def quaternion_julia(p: vec3, c: vec4 = JULIA, cut: float = 0.0, iterations: int = 10) -> float:
-    """A slice of a Julia set of quaternions.
+def quaternion_julia(p: vec3, c: vec4 = JULIA, iterations: int = 10) -> float:
+    """A Julia set of quaternions, where their last part is 0.
 
     Args:
         p: Point.
-        c: What is added to the square: real part, then i, j, k.
-        cut: The fourth coordinate of the slice.
+        c: What is added to the square: real part, then i, j, k. The real part and the length of the
+            rest must be a point of the Mandelbrot set, else the Julia set is dust.
         iterations: How long orbits are followed; more show finer detail.
 
     Source: John Hart, Daniel Sandin and Louis Kauffman, "Ray Tracing Deterministic 3-D Fractals"
     (1989).
 
     Measured:
-        quaternion_julia((0.5, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.0, 3) = -0.0108304
-        quaternion_julia((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.0, 3) = 0.0
-        quaternion_julia((0.0, 0.0, 4.0), (0.0, 0.0, 0.0, 0.0), 0.0, 3) = 3.0
+        quaternion_julia((0.5, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 3) = -0.0108304
+        quaternion_julia((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 3) = 0.0
+        quaternion_julia((0.0, 0.0, 4.0), (0.0, 0.0, 0.0, 0.0), 3) = 3.0
     """
     radius = julia_radius(c)
-    estimate = julia_estimate(vec4(held_in_ball(p, radius), cut), c, iterations)
+    estimate = julia_estimate(vec4(held_in_ball(p, radius), 0.0), c, iterations)
     beyond = beyond_ball(p, radius)
     return select(beyond > 0.0, length(vec2(beyond, max(estimate, 0.0))), estimate)
 
