@@ -129,8 +129,9 @@ def measure(
 
 def _looked_at(promised: Promised, n: int) -> tuple[Points, Points]:
     low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
-    cut = np.where(np.isfinite(low), low, np.minimum(np.where(np.isfinite(high), high, 0), 0) - REACH)
-    top = np.where(np.isfinite(high), high, np.maximum(np.where(np.isfinite(low), low, 0), 0) + REACH)
+    ends_below, ends_above = np.isfinite(low), np.isfinite(high)
+    cut = np.where(ends_below, low, np.minimum(np.where(ends_above, high, 0.0), 0.0) - REACH)
+    top = np.where(ends_above, high, np.maximum(np.where(ends_below, low, 0.0), 0.0) + REACH)
     return cut, np.maximum(top, cut + 1e-6)
 
 

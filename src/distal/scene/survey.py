@@ -91,7 +91,9 @@ class _Survey(Composed):
         which = Read("i", INT)
         picked: list[Expr] = []
         # One list for each column: a chain of a thousand ifs would be too deep for the passes.
-        for name, column in zip(("slope", "divisor", "low", "high"), zip(*rows), strict=True):
+        for name, column in zip(
+            ("slope", "divisor", "low", "high"), zip(*rows, strict=True), strict=True
+        ):
             whole = Construct(column, Array(column[0].type, len(column)))
             picked.append(index(body.let(name, whole), which))
         body.statements.append(Return(Construct(tuple(picked), self.result)))
