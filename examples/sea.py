@@ -108,4 +108,4 @@ def sea(**march: Any) -> Scene:
     )
 
 
-scene = sea(march="heightfield", normals="forward")
+scene = sea(march="heightfield", normals="forward", steps=128)

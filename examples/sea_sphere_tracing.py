@@ -5,4 +5,4 @@ Rays that skim the waves nearly stop: look at ``--view steps`` of both.
 
 from sea import sea
 
-scene = sea(march="sphere", steps=600)
+scene = sea(march="sphere", steps=128)

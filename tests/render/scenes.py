@@ -136,7 +136,7 @@ def sea_numbers(threshold: float = 2e-4) -> march.March:
 @image
 def hybrid(frame: Frame) -> vec4:
     """Red: the way, as brightness; alpha: evaluations of the field."""
-    stride = heightfield_march.Stride(0.13, 0.015, 1.05)
+    stride = heightfield_march.Stride(0.13, 0.01, 1.05)
     hit = heightfield_march.march_heightfield(
         sea, sea_ray(frame), everywhere(), sea_numbers(), stride, 400
     )
@@ -160,7 +160,7 @@ def true_sea(frame: Frame) -> vec4:
 @image
 def cost(frame: Frame) -> vec4:
     """The steps of the hybrid march, under a legend."""
-    stride = heightfield_march.Stride(0.13, 0.015, 1.05)
+    stride = heightfield_march.Stride(0.13, 0.01, 1.05)
     seen = views.view_steps(
         sea_ray(frame), sea, everywhere(), sea_numbers(), 64, hybrid=True, stride=stride
     )

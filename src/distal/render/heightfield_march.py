@@ -84,8 +84,12 @@ def narrowed(bracket: Bracket, t: float, value: float, safe: float) -> Bracket:
 
 @func
 def likely_crossing(bracket: Bracket) -> float:
-    """Where the line through both ends' values is 0, within what is not ruled out."""
-    share = bracket.value_above / max(bracket.value_above - bracket.value_below, 1e-30)
+    """Where the line through both ends' values is 0, within what is not ruled out.
+
+    The ray's start has no value as long as no probe lay above: halfway, then.
+    """
+    high = select(bracket.value_above > 0.0, bracket.value_above, -bracket.value_below)
+    share = high / max(high - bracket.value_below, 1e-30)
     t = bracket.above + share * (bracket.below - bracket.above)
     return clamp(t, bracket.nearest, max(bracket.nearest, bracket.farthest))
 
@@ -136,6 +140,8 @@ def march_heightfield(
     bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
     step = stride.first * max(start, 1.0)
+    # Where a ray enters the box it is above: the first probe is a stride further.
+    t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
     for _ in range(steps):
         if t > end:
