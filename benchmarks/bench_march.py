@@ -27,8 +27,7 @@ import sea_sphere_tracing
 
 from distal.fields.claims import Bounds
 from distal.lang import Frame, func, image, vec2, vec3, vec4
-from distal.render.bounce import place_on
-from distal.render.camera import Ray, look_at, orbit
+from distal.render.camera import Ray, look_at
 from distal.render.heightfield_march import STRIDE, march_heightfield
 from distal.render.march import Hit, March, march
 from distal.render.normals import EXACT, FORWARD, SIX_TAPS, TETRAHEDRON, normal
@@ -135,72 +134,58 @@ def marches() -> None:
 
 
 @func
-def bunny_normal(frame: Frame, kind: int) -> vec4:
-    """The bunny's normal; its place where the kind is below 0."""
-    uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
-    ray = orbit(uv, 5.2, frame.time, 0.2, (0.0, 1.0, 0.0), fov=0.56)
-    everywhere = Bounds(vec3(-ENDLESS), vec3(ENDLESS))
-    numbers = march_numbers(1.3, 0.001, 100.0, frame.resolution)
-    hit = march(lambda p: bunny.bunny(p), ray, everywhere, numbers, 160)
-    if not hit.found:
-        return vec4(0.0)
-    p = place_on(ray, hit)
-    if kind < 0:
-        return vec4(p, 1.0)
-    return vec4(normal(lambda q: bunny.bunny(q), p, kind, 1e-3), 1.0)
+def bunny_distance(p: vec3) -> float:
+    """The field alone."""
+    return bunny.bunny(p)
 
 
-@image
-def no_normals(frame: Frame) -> vec4:
-    """The march alone."""
-    return bunny_normal(frame, -1)
-
-
-@image
-def exact(frame: Frame) -> vec4:
+@func
+def exact(p: vec3) -> vec3:
     """By the derivative."""
-    return bunny_normal(frame, EXACT)
+    return normal(lambda q: bunny.bunny(q), p, EXACT, 1e-3)
 
 
-@image
-def six_taps(frame: Frame) -> vec4:
+@func
+def six_taps(p: vec3) -> vec3:
     """By six differences."""
-    return bunny_normal(frame, SIX_TAPS)
+    return normal(lambda q: bunny.bunny(q), p, SIX_TAPS, 1e-3)
 
 
-@image
-def tetrahedron(frame: Frame) -> vec4:
+@func
+def tetrahedron(p: vec3) -> vec3:
     """By four."""
-    return bunny_normal(frame, TETRAHEDRON)
+    return normal(lambda q: bunny.bunny(q), p, TETRAHEDRON, 1e-3)
 
 
-@image
-def forward(frame: Frame) -> vec4:
-    """By three and one."""
-    return bunny_normal(frame, FORWARD)
+@func
+def forward(p: vec3) -> vec3:
+    """By three, and one at the place itself."""
+    return normal(lambda q: bunny.bunny(q), p, FORWARD, 1e-3)
 
 
 def normals(rounds: int) -> None:
-    """What each way to find normals adds to a picture's time."""
-    ways = {i.name: i for i in (no_normals, exact, six_taps, tetrahedron, forward)}
-    times: dict[str, list[float]] = {name: [] for name in ways}
-    for round_number in range(-1, rounds):  # the first compiles
-        for name, one in ways.items():
-            begin = clock.perf_counter()
-            one.render(size=SIZE, time=0.1 * round_number, threads=THREADS)
-            if round_number >= 0:
-                times[name].append((clock.perf_counter() - begin) * 1e3)
-    base = statistics.median(times["no_normals"])
-    print("bunny 640x400, ms       a frame   of it normals   degrees from exact, mean")
-    true = exact.render(size=SIZE, time=0.5, threads=THREADS).array
-    for name, one in ways.items():
-        median = statistics.median(times[name])
+    """What each way to find normals costs the cores, at places near the bunny's surface."""
+    ways: list[Any] = [bunny_distance, exact, six_taps, tetrahedron, forward]
+    scattered = np.random.default_rng(0).uniform((-1.0, 0.0, -0.6), (1.0, 2.1, 0.6), (1 << 20, 3))
+    near = np.abs(bunny_distance(scattered)) < 0.02
+    points = np.resize(scattered[near], (1 << 18, 3)).astype(np.float32)
+    times: dict[str, list[float]] = {way.name: [] for way in ways}
+    for round_number in range(rounds + 1):  # the first compiles
+        for way in ways:
+            begin = clock.process_time()
+            way(points)
+            if round_number > 0:
+                times[way.name].append((clock.process_time() - begin) * 1e9 / len(points))
+    true = exact(points)
+    base = min(times["bunny_distance"])
+    print("bunny, ns a point      median  fastest  in evaluations   degrees from exact, mean")
+    for way in ways:
+        median, fastest = statistics.median(times[way.name]), min(times[way.name])
         off = 0.0
-        if name != "no_normals":
-            found = one.render(size=SIZE, time=0.5, threads=THREADS).array
-            cosine = (found[..., :3] * true[..., :3]).sum(axis=2)[true[..., 3] > 0]
+        if way is not bunny_distance:
+            cosine = (np.asarray(way(points)) * true).sum(axis=1)
             off = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).mean())
-        print(f"{name:20} {median:10.2f} {median - base:15.2f} {off:18.3f}")
+        print(f"{way.name:20} {median:8.1f} {fastest:8.1f} {fastest / base:12.2f} {off:18.3f}")
 
 
 def pictures() -> None:
