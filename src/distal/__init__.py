@@ -28,12 +28,15 @@ if TYPE_CHECKING:
     from distal.loading import load as load
     from distal.scene.backgrounds import Background as Background
     from distal.scene.backgrounds import Environment as Environment
+    from distal.scene.backgrounds import GradientBackground as GradientBackground
     from distal.scene.backgrounds import Sky as Sky
     from distal.scene.cameras import Camera as Camera
     from distal.scene.cameras import FisheyeCamera as FisheyeCamera
     from distal.scene.cameras import OrbitCamera as OrbitCamera
     from distal.scene.cameras import OrthographicCamera as OrthographicCamera
     from distal.scene.cameras import PanoramaCamera as PanoramaCamera
+    from distal.scene.letters import SvgPath as SvgPath
+    from distal.scene.letters import Text as Text
     from distal.scene.lights import AmbientLight as AmbientLight
     from distal.scene.lights import DistantLight as DistantLight
     from distal.scene.lights import HemisphereLight as HemisphereLight
@@ -55,7 +58,9 @@ if TYPE_CHECKING:
     from distal.scene.patterns import noise as noise
     from distal.scene.patterns import palette as palette
     from distal.scene.patterns import pattern as pattern
+    from distal.scene.patterns import radial_gradient as radial_gradient
     from distal.scene.patterns import stripes as stripes
+    from distal.scene.patterns import waves as waves
     from distal.scene.scene import Scene as Scene
     from distal.scene.shape import Shape as Shape
     from distal.scene.shape import Shape2D as Shape2D
@@ -68,10 +73,11 @@ _ROOMS = {
     "distal.film.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.loading": ("gallery", "load"),
-    "distal.scene.backgrounds": ("Background", "Environment", "Sky"),
+    "distal.scene.backgrounds": ("Background", "Environment", "GradientBackground", "Sky"),
     "distal.scene.cameras": (
         *("Camera", "FisheyeCamera", "OrbitCamera", "OrthographicCamera", "PanoramaCamera"),
     ),
+    "distal.scene.letters": ("SvgPath", "Text"),
     "distal.scene.lights": (
         *("AmbientLight", "DistantLight", "HemisphereLight", "PointLight", "SpotLight"),
     ),
@@ -80,7 +86,7 @@ _ROOMS = {
     ),
     "distal.scene.patterns": (
         *("by_cell", "checker", "cube_map", "gradient", "image_pattern", "noise", "palette"),
-        *("pattern", "stripes"),
+        *("pattern", "radial_gradient", "stripes", "waves"),
     ),
     "distal.scene.scene": ("Scene",),
     "distal.scene.shape": ("Shape", "Shape2D"),
@@ -88,7 +94,8 @@ _ROOMS = {
 }
 _HOMES = {name: room for room, names in _ROOMS.items() for name in names}
 
-__all__ = ["__version__", *_HOMES]
+# ``from distal import *`` leaves Python's own ``compile`` alone.
+__all__ = ["__version__", *(name for name in _HOMES if name != "compile")]
 
 
 def _executor() -> Any:
@@ -108,9 +115,15 @@ set_calculator_loader(_calculator)
 set_combiner_loader(_combiner)
 
 
+def _unknown(name: str) -> str:
+    message = f"module 'distal' has no attribute '{name}'"
+    near = importlib.import_module("difflib").get_close_matches(name, _HOMES, 1)
+    return f"{message}; did you mean '{near[0]}'?" if near and name[0] != "_" else message
+
+
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
-        raise AttributeError(f"module 'distal' has no attribute '{name}'")
+        raise AttributeError(_unknown(name))
     value = getattr(importlib.import_module(_HOMES[name]), name)
     globals()[name] = value
     return value

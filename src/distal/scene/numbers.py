@@ -264,8 +264,13 @@ class _Binding:
         if left:
             if not self.slots:
                 self._wrong(f"{self.what} takes no numbers")
-            message = f"{self.what} takes nothing after '{self.slots[-1].name}'"
-            self._wrong(message, f"it takes {self._listed()}")
+            last = self.slots[-1]
+            message = f"{self.what} takes nothing after '{last.name}'"
+            hint = f"it takes {self._listed()}"
+            if last.is_vector and last.name in _SPLATTED and is_scalar(left[0]):
+                letters = ", ".join(_LETTERS[: _size(last)])
+                hint = f"'{last.name}' is one number for all, or {letters}"
+            self._wrong(message, hint)
 
     def _gathered(self, slot: Slot, left: Sequence[Any]) -> int:
         """How many scalars in a row stand for a vector: its size, or 0 where it is given whole."""
