@@ -60,6 +60,31 @@ def read_time(text: str) -> float:
     return time
 
 
+def read_plane(text: str) -> tuple[tuple[float, float, float], float]:
+    """A plane's normal and its distance from the origin, from AXIS=OFFSET."""
+    axis, equals, offset = (part.strip() for part in text.partition("="))
+    normals = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    try:
+        distance = float(offset)
+    except ValueError:
+        distance = math.nan
+    if not equals or axis not in normals or not abs(distance) <= LARGEST_FLOAT:
+        raise UsageError(f"a slice is AXIS=OFFSET, like y=0.5, not '{text:.40}'")
+    return normals[axis], distance
+
+
+def read_pixel(text: str, size: tuple[int, int]) -> tuple[int, int]:
+    """Column and row of a pixel from X,Y; both count from 0, rows from the top."""
+    match = re.fullmatch(r"\s*([0-9]{1,9})\s*,\s*([0-9]{1,9})\s*", text)
+    if match is None:
+        raise UsageError(f"a pixel is X,Y from the upper left, like 320,240, not '{text:.40}'")
+    x, y = int(match[1]), int(match[2])
+    if x >= size[0] or y >= size[1]:
+        width, height = size
+        raise UsageError(f"a picture of {width}x{height} ends at {width - 1},{height - 1}")
+    return x, y
+
+
 def read_assignments(texts: Iterable[str], parameters: Sequence[Parameter]) -> dict[str, Value]:
     """The values of ``name=value`` texts, each checked against its parameter.
 

@@ -27,7 +27,7 @@ from distal.lang.functions import Func
 from distal.render import bounce, film, legend, settings, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
-from distal.scene.attributes import Material, Part, Site, attribute
+from distal.scene.attributes import Attribute, Material, Site, attribute
 from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.values import Body
 
@@ -55,7 +55,6 @@ class Picturing:
         self._numbers = {
             name: self.composer.number(value, name) for name, value in scene.numbers.items()
         }
-        self.parts: list[Any] = []
 
     def main(self, view: str, *, transparent: bool, sampled: bool, encoded: bool) -> str:
         """The function of the frame that gives a pixel."""
@@ -153,25 +152,16 @@ class Picturing:
 
     def surface(self) -> FunctionRef:
         """What a place looks like: ``(p) -> Surface``."""
+        return self.known_of_place("surface", Material(self.composer, self._scene.material))
+
+    def known_of_place(self, name: str, kind: Attribute) -> FunctionRef:
+        """An attribute of the place of the scene that is nearest to a point, as a function."""
 
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
             site = Site(given["p"], ZERO_CELL, self.composer.values.all(self._node))
-            kind = Material(self.composer, self._scene.material)
             return attribute(body, kind, self._node, site)
 
-        return self._function("surface", (("p", VEC3),), make)
-
-    def part(self) -> FunctionRef:
-        """The number of the part that a place belongs to; ``parts`` then has the nodes."""
-
-        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
-            site = Site(given["p"], ZERO_CELL, self.composer.values.all(self._node))
-            kind = Part(self.composer)
-            found = attribute(body, kind, self._node, site)
-            self.parts = kind.nodes
-            return found
-
-        return self._function("part", (("p", VEC3),), make)
+        return self._function(name, (("p", VEC3),), make)
 
     def _samples(self) -> list[Any]:
         return [light.sample for light in self._scene.lights if light.sample is not None]

@@ -16,6 +16,7 @@ from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError, Span
 from distal.doctor import Finding, State
 from distal.film.picture import Picture
+from distal.lang import func
 from distal.lang.parameters import slider
 
 STATS = {"compile_s": 0.1, "render_s": 0.2, "cache_hit": True, "lanes": 32, "threads": 2}
@@ -87,12 +88,30 @@ def test_render_hands_on_time_device_and_threads(scene, run):
     assert scene.options["threads"] == 3
 
 
-def test_a_function_is_no_image(scene, run, monkeypatch):
-    function = SimpleNamespace(name="map", parameters=list)
-    monkeypatch.setitem(vars(distal), "load", lambda path, name=None: function)
-    result = run("render", "s.py:map", "-o", "a.png")
+def test_a_function_is_no_picture(scene, run, monkeypatch):
+    monkeypatch.setitem(vars(distal), "load", lambda path, name=None: hidden)
+    result = run("render", "s.py:hidden", "-o", "a.png")
     assert result.exit_code == 1
-    assert result.stderr == "error: 'map' is a @func; only an @image can be rendered\n"
+    assert result.stderr == (
+        "error: 'hidden' is a @func; only a scene, a shape or an @image is a picture\n"
+    )
+
+
+@func
+def hidden(x: float) -> float:
+    return x
+
+
+def test_how_a_scene_is_seen_is_handed_on(scene, run):
+    words = ("--view", "normal", "--samples", "4", "--transparent")
+    assert run("render", "s.py", "-o", "a.png", *words).exit_code == 0
+    seen = {name: scene.options.get(name) for name in ("view", "samples", "transparent")}
+    assert seen == {"view": "normal", "samples": 4, "transparent": True}
+    assert run("render", "s.py", "-o", "a.png", "--slice", "y=-0.5").exit_code == 0
+    assert scene.options["view"] == "slice"
+    assert scene.options["plane"] == ((0.0, 1.0, 0.0), -0.5)
+    assert run("render", "s.py", "-o", "a.png").exit_code == 0
+    assert not {"view", "samples", "transparent", "plane"} & set(scene.options)
 
 
 def test_stats_are_exactly_one_json_line_on_stdout(scene, run):
@@ -114,6 +133,15 @@ def test_stats_are_exactly_one_json_line_on_stdout(scene, run):
         ("--set", "nothing=1"),
         ("--set", "blend=9"),
         ("--nonsense",),
+        ("--view", "x-ray"),
+        ("--view", "local:x"),
+        ("--slice", "w=1"),
+        ("--slice", "y=1", "--view", "depth"),
+        ("--samples", "0"),
+        ("--tone-map", "sepia"),
+        ("--exposure", "-1"),
+        ("--exposure", "nan"),
+        ("--exposure", "inf"),
     ],
 )
 def test_wrong_usage_is_exit_2_and_renders_nothing(scene, run, words):

@@ -5,6 +5,8 @@ import pytest
 from distal.cli.arguments import (
     UsageError,
     read_assignments,
+    read_pixel,
+    read_plane,
     read_scene,
     read_size,
     read_time,
@@ -99,3 +101,21 @@ def test_setting_twice_and_setting_nothing():
         read_assignments(["mode=lit", "mode=flat"], PARAMETERS)
     with pytest.raises(UsageError, match="this scene has no parameters"):
         read_assignments(["mode=lit"], [])
+
+
+def test_a_slice_is_an_axis_and_an_offset():
+    assert read_plane("y=0.5") == ((0.0, 1.0, 0.0), 0.5)
+    assert read_plane(" z = -2") == ((0.0, 0.0, 1.0), -2.0)
+    for text in ("", "y", "w=1", "y=", "y=nan", "y=inf", "y=1e300", "=1"):
+        with pytest.raises(UsageError, match="a slice is AXIS=OFFSET"):
+            read_plane(text)
+
+
+def test_a_pixel_is_within_the_picture():
+    assert read_pixel("0,3", (4, 4)) == (0, 3)
+    assert read_pixel(" 3 , 0 ", (4, 4)) == (3, 0)
+    for text in ("", "1", "1,", "-1,0", "1.5,0", "1,2,3"):
+        with pytest.raises(UsageError, match="a pixel is X,Y"):
+            read_pixel(text, (4, 4))
+    with pytest.raises(UsageError, match="a picture of 4x5 ends at 3,4"):
+        read_pixel("0,5", (4, 5))
