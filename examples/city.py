@@ -14,6 +14,7 @@ from distal import (
     Shape,
     pattern,
 )
+from distal.fields.noise_lattice import fraction, lattice_hash
 from distal.lang import (
     abs,
     clamp,
@@ -22,41 +23,51 @@ from distal.lang import (
     floor,
     fract,
     func,
+    ivec3,
     length,
     max,
     min,
     mix,
     normalize,
+    round,
     slider,
+    smoothstep,
     step,
     vec2,
     vec3,
 )
 from distal.render.material import Surface
-from distal.render.patterns import mixing_hash
 
 lit = slider("Lit windows", 0.3, low=0.0, high=1.0)
 
 LOTS = 61  # along each side of the city
-TALLEST = 5.2
+MIDDLE = 30.0  # the middle lot's index
+TALLEST = 7.2  # with its mast
 WARM = vec3(1.0, 0.62, 0.28)
 COLD = vec3(0.75, 0.85, 1.0)
 SUN = vec3(-0.55, 0.1, -0.8)
 
 
 @func
-def chance(cell: vec3, which: float) -> float:
+def chance(cell: vec3, which: int) -> float:
     """A number from 0 to 1 for a tower; another for each ``which``."""
-    return mixing_hash(cell + vec3(0.0, which, 0.0))
+    return fraction(lattice_hash(ivec3(round(cell)), which))
+
+
+@func
+def middle_of(cell: vec3) -> vec2:
+    """Where a lot lies on the ground; cells are counted from a corner of the city."""
+    return cell.xz - MIDDLE
 
 
 @func
 def height_of(cell: vec3) -> float:
     """Low at the rim, high in the middle, a few high anywhere."""
-    luck = chance(cell, 1.0)
-    middle = exp(-dot(cell.xz, cell.xz) / 60.0)
-    hill = exp(-dot(cell.xz - vec2(-14.0, 9.0), cell.xz - vec2(-14.0, 9.0)) / 30.0)
-    return 0.3 + 0.8 * luck * luck + (3.2 * middle + 1.8 * hill) * luck * luck + 1.2 * luck**8.0
+    luck = chance(cell, 1)
+    lot = middle_of(cell)
+    middle = exp(-dot(lot, lot) / 50.0)
+    hill = exp(-dot(lot + vec2(13.0, -2.0), lot + vec2(13.0, -2.0)) / 16.0)
+    return 0.3 + (0.8 + 4.2 * middle + 2.2 * hill) * luck * luck + luck**8.0
 
 
 @func
@@ -70,8 +81,8 @@ def block(p: vec3, half: vec2, height: float) -> float:
 def tower(p: vec3, cell: vec3) -> float:
     """Three boxes, each narrower and taller than the one around it, and a mast on the highest."""
     height = height_of(cell)
-    half = 0.2 + 0.16 * vec2(chance(cell, 2.0), chance(cell, 3.0))
-    steps = 0.6 + 0.4 * chance(cell, 4.0)
+    half = 0.2 + 0.16 * vec2(chance(cell, 2), chance(cell, 3))
+    steps = 0.6 + 0.4 * chance(cell, 4)
     d = block(p, half, height * steps)
     d = min(d, block(p, 0.75 * half, height * mix(steps, 1.0, 0.6)))
     d = min(d, block(p, 0.5 * half, height))
@@ -86,11 +97,16 @@ def facade(p: vec3, n: vec3, cell: vec3, lit: float) -> Surface:
     place = vec2(along * 12.0 + 0.5, p.y * 9.0)
     room = vec3(floor(place), 7.0 * cell.x + 31.0 * cell.z + 3.0 * floor(n.x + 2.0 * n.z + 0.5))
     inside = abs(fract(place) - 0.5)
-    pane = step(inside.x, 0.3) * step(inside.y, 0.28) * step(abs(n.y), 0.5)
-    on = step(mixing_hash(room), lit)
-    glow = mix(WARM, COLD, step(0.75, mixing_hash(room + 5.0)))
-    tint = mix(vec3(0.36, 0.31, 0.29), vec3(0.2, 0.26, 0.36), chance(cell, 6.0))
-    bright = 0.5 + 1.3 * mixing_hash(room + 9.0)
+    wall = step(abs(n.y), 0.5)
+    pane = wall * step(inside.x, 0.3) * step(inside.y, 0.28)
+    on = step(chance(room, 7), lit)
+    # Windows smaller than a pixel show what they give on average.
+    near = 1.0 - smoothstep(13.0, 30.0, length(middle_of(cell) - vec2(6.6, 13.5)))
+    pane = mix(0.33 * wall, pane, near)
+    on = mix(lit, on, near)
+    glow = mix(WARM, COLD, step(0.75, chance(room, 8)) * near)
+    tint = mix(vec3(0.36, 0.31, 0.29), vec3(0.2, 0.26, 0.36), chance(cell, 6))
+    bright = mix(1.1, 0.5 + 1.3 * chance(room, 9), near)
     return Surface(color=tint * (1.0 - 0.6 * pane), emission=glow * (pane * on * bright))
 
 

@@ -1,4 +1,4 @@
-"""A lightweight bracket: a solid skin, cut open to show the gyroid that fills it, denser at the bolts.
+"""A lightweight bracket, cut open: a solid skin, and a gyroid that fills it, denser at the bolts.
 
 A minimal surface carries load in all directions with little material; another shape's distance
 steers its thickness. Try: cell size, thickness, and how far the part is cut open.
