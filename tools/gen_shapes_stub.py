@@ -25,7 +25,7 @@ from typing import Any, TypeAlias
 
 from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
-from distal.lang.resources import Buffer, Texture3D, TextureValue
+from distal.lang.resources import Buffer, TextureValue
 from distal.scene.shape import Shape, Shape2D
 
 Number: TypeAlias = float | Parameter | Expression
@@ -56,7 +56,8 @@ def stub() -> str:
             inner = "".join(f"        {p},\n" for p in params.split(", "))
             line = f"    def __init__(\n{inner}    ) -> None: ..."
         parts.append(f'class {name}({base}):\n    """{first}"""\n\n{line}\n')
-    listed = "".join(f'    "{name}",\n' for name in shapes.CLASSES)
+    ordered = sorted(shapes.CLASSES, key=lambda name: (not name.isupper(), name))
+    listed = "".join(f'    "{name}",\n' for name in ordered)
     parts.append(f"CLASSES: dict[str, type[Shape] | type[Shape2D]]\n\n__all__ = [\n{listed}]\n")
     return "\n".join(parts)
 
