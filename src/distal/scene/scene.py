@@ -7,6 +7,7 @@ that encodes light for display. The cheapest renderer is chosen that shows all m
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Final
 
@@ -199,6 +200,8 @@ class Scene(Composed):
         settings: dict[str, Any] = {"Samples": samples} if samples > 1 else {}
         if view == "slice":
             settings |= {"Slice_normal": tuple(plane[0]), "Slice_offset": float(plane[1])}
+        doubts = importlib.import_module("distal.scene.doubts")  # needs NumPy, as pictures do
+        doubts.doubt_functions(self.shape, params or {}, time)
         picture = executor().render(
             self.view(view, transparent=transparent, sampled=samples > 1),
             size=size,
@@ -217,6 +220,8 @@ class Scene(Composed):
         if view == "color" and not transparent and not picture.array[..., 3].any():
             message = f"the camera is inside '{self.shape.name}', and no ray finds a way out"
             refuse(message, "move the camera, or look at the shape with view='slice'", self.place)
+        if view == "color":
+            doubts.doubt_black(self, picture, params or {}, time)
         return picture
 
     def view(
