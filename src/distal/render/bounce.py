@@ -14,6 +14,7 @@ from distal.lang import (
     dot,
     exp,
     func,
+    max,
     reflect,
     refract,
     struct,
@@ -51,6 +52,21 @@ def place_on(ray: Ray, hit: Hit) -> vec3:
 
 
 @func
+def just_before(ray: Ray, hit: Hit, numbers: March) -> vec3:
+    """Where normals are asked: on the surface itself many fields have no direction in 32 bits.
+
+    (The length of a vector to the nearest edge, with a sign, say.)
+    """
+    return ray.origin + hit.t * (1.0 - 0.5 * numbers.threshold) * ray.direction
+
+
+@func
+def differences_step(hit: Hit, normal_step: float) -> float:
+    """How far away normals' differences are taken: like pixels, and what 32 bits tell, with t."""
+    return normal_step * max(hit.t, 1.0)
+
+
+@func
 def seen_plain(
     ray: Ray,
     field: Field3,
@@ -74,7 +90,9 @@ def seen_plain(
     if not hit.found:
         return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
     p = place_on(ray, hit)
-    n = hit.side * normal(field, p, normals, normal_step)
+    n = hit.side * normal(
+        field, just_before(ray, hit, numbers), normals, differences_step(hit, normal_step)
+    )
     lift = 2.0 * numbers.threshold * hit.t + 1e-4
     material = surface(p)
     color = direct_light(
@@ -134,7 +152,9 @@ def seen_mirrored(
             break
         alpha = 1.0
         p = place_on(here, hit)
-        n = hit.side * normal(field, p, normals, normal_step)
+        n = hit.side * normal(
+            field, just_before(here, hit, numbers), normals, differences_step(hit, normal_step)
+        )
         lift = 2.0 * numbers.threshold * hit.t + 1e-4
         material = surface(p)
         parts = shares(material, -dot(n, direction), hit.side < 0.0)
@@ -209,7 +229,9 @@ def seen_refracted(
             continue
         alpha = 1.0
         p = place_on(here, hit)
-        n = hit.side * normal(field, p, normals, normal_step)
+        n = hit.side * normal(
+            field, just_before(here, hit, numbers), normals, differences_step(hit, normal_step)
+        )
         lift = 2.0 * numbers.threshold * hit.t + 1e-4
         material = surface(p)
         parts = shares(material, -dot(n, direction), hit.side < 0.0)
