@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar, Final, Self
+from typing import Any, ClassVar, Final, NoReturn, Self
 
 from distal.diagnostics import Span
 from distal.executor_hook import executor
@@ -27,6 +27,7 @@ from distal.scene.library import OPERATORS
 from distal.scene.materials import as_material
 from distal.scene.node import Node
 from distal.scene.numbers import RESERVED, slots_of
+from distal.scene.other_names import instead
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
 from distal.scene.values import plain_name
@@ -64,6 +65,11 @@ class Field(Composed):
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
 
+    def __getattr__(self, name: str) -> NoReturn:
+        of_others = not name.startswith("_") and hasattr(PLAIN[not self.flat], name)
+        message = instead(type(self).__name__, name, flat=self.flat, of_others=of_others)
+        raise AttributeError(message, name=name, obj=self)
+
     @property
     def name(self) -> str:  # type: ignore[override]
         """What people call it."""
@@ -87,19 +93,37 @@ class Field(Composed):
         return self.node.functions()
 
     def __call__(
-        self, points: Any, *, params: Mapping[str, Any] | None = None, time: float = 0.0
+        self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
     ) -> Any:
         """The distance at points: an array (n, 3) ((n, 2) for flat shapes) gives (n,).
 
-        float32 or float64, as the points are; negative inside.
+        An array of more dimensions, a grid, gives one of the same without the last. float32 or
+        float64, as the points are; negative inside.
         """
-        return executor().call(self, (points,), {}, params=params, time=time)
+        return self._asked(self, points, params, time)
 
     def gradient(
-        self, points: Any, *, params: Mapping[str, Any] | None = None, time: float = 0.0
+        self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
     ) -> Any:
         """How the distance changes at points: an array of the shape of ``points``."""
-        return executor().call(self._gradient, (points,), {}, params=params, time=time)
+        return self._asked(self._gradient, points, params, time)
+
+    def _asked(
+        self, what: Composed, points: Any, params: Mapping[str, Any] | None, time: float
+    ) -> Any:
+        """What a function of a point gives at points, also at a grid of them."""
+        if len(points) != 1:
+            size = 2 if self.flat else 3
+            raise TypeError(
+                f"{self.name}() takes one point, or one array of points with {size} numbers each; "
+                f"{len(points)} arguments were given"
+            )
+        sizes: tuple[int, ...] = getattr(points[0], "shape", ())
+        if len(sizes) < 3:
+            return executor().call(what, points, {}, params=params, time=time)
+        rows = points[0].reshape(-1, sizes[-1])
+        found = executor().call(what, (rows,), {}, params=params, time=time)
+        return found.reshape(*sizes[:-1], *found.shape[1:])
 
     def _promise(self, params: Mapping[str, Any] | None, time: float) -> tuple[Any, ...]:
         found = executor().call(self._promised, (), {}, params=params, time=time)
@@ -166,9 +190,13 @@ class Field(Composed):
 
     def _combined(self, kind: str, others: Sequence[Any], smooth: Any, blend: str, **k: Any) -> Any:
         place = author_place()
+        # One list of shapes is as good as the shapes.
+        if len(others) == 1 and isinstance(others[0], list | tuple):
+            others = others[0]
         for other in others:
             if not isinstance(other, Field):
-                refuse(f"a {kind} joins shapes, not {other!r:.60}", None, place)
+                hint = "smooth=0.1 is given by name" if isinstance(other, float) else None
+                refuse_kind(f"a {kind} joins shapes, not {other!r:.60}", hint, place)
             if other.flat != self.flat:
                 refuse(
                     f"a {kind} joins a flat shape and a solid one",
@@ -187,7 +215,7 @@ class Field(Composed):
         """What is in any of them; ``|``.
 
         Args:
-            others: Shapes.
+            others: Shapes, or one list of them.
             smooth: How far the surface moves out where two surfaces meet, in scene units.
             blend: Its form: quadratic, cubic, quartic, circular, circular_geometric, exponential,
                 root, sigmoid, or an edge: chamfer, round, columns, stairs, soft.
@@ -226,6 +254,12 @@ class Field(Composed):
 
     def __xor__(self, other: Any) -> Self:
         return self.xor(other) if isinstance(other, Field) else NotImplemented
+
+    def __add__(self, other: Any) -> NoReturn:
+        hint = "a | b joins two; a.union(b, c), or a.union(list), many"
+        refuse_kind("shapes are joined by |, not by +", hint)
+
+    __radd__ = __add__  # sum() begins with 0 + shape
 
     def __invert__(self) -> Self:
         return self.complement()

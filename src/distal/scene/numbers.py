@@ -309,7 +309,7 @@ def _parts_of_default(slot: Slot) -> tuple[Any, ...]:
     """What the parts are that nobody gave: the default's, else those that change nothing."""
     size = _size(slot)
     if slot.default is MISSING:
-        return (1.0 if slot.name in ("factor", "scale") else 0.0,) * size
+        return (1.0 if slot.name in ("factor", "factors", "scale") else 0.0,) * size
     default = unwrapped(slot.default)
     return tuple(default) if isinstance(default, Sequence) else (default,) * size
 

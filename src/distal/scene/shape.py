@@ -12,6 +12,7 @@ from typing import Any, Self, cast
 from distal.fields.ease import EASES
 from distal.frontend.problems import did_you_mean
 from distal.ir.types import VEC2, VEC3
+from distal.scene.conversion import is_scalar
 from distal.scene.field import PLAIN, Field
 from distal.scene.library import OPERATORS
 from distal.scene.places import author_place
@@ -54,14 +55,14 @@ class _Placed(Field):
         return self._under(rule, args, kwargs, place, flat=flat, others=tuple(others))
 
     def translate(self, *offset: Any, **parts: Any) -> Self:
-        """The shape moved: ``translate(1, 0, 0)``, ``translate((1, 0, 0))`` or ``translate(x=1)``."""
+        """The shape moved: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
         return self._with("translate", *offset, **parts)
 
-    def scale(self, *factors: Any) -> Self:
+    def scale(self, *factors: Any, **parts: Any) -> Self:
         """The shape larger by a factor, or by one for each axis (no longer exact then)."""
-        if len(factors) == 1 and not isinstance(factors[0], tuple | list):
+        if len(factors) == 1 and not parts and is_scalar(factors[0]):
             return self._with("scale", *factors)
-        return self._with("scale axes", *factors)
+        return self._with("scale axes", *factors, **parts)
 
     def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
         """The half that ``normal`` points to, and its image on the other side of the plane.
