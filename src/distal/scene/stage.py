@@ -23,6 +23,7 @@ REACH: Final = 2.0
 # From where: a little to the right and from above, as products are photographed.
 _FROM: Final = (0.5, 0.42, 1.0)
 _VIEW_DEG: Final = 35.0
+_MARGIN: Final = 1.06
 # A flat shape becomes a plate this thick, of its size.
 _PLATE: Final = 0.08
 
@@ -41,7 +42,7 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
     low, high = _finite(shape, params, time)
     middle = [(a + b) / 2.0 for a, b in zip(low, high, strict=True)]
     radius = max(math.dist(low, high) / 2.0, 1e-3)
-    away = radius / math.sin(math.radians(_VIEW_DEG / 2.0)) / math.hypot(*_FROM)
+    away = _MARGIN * radius / math.sin(math.radians(_VIEW_DEG / 2.0)) / math.hypot(*_FROM)
     eye = tuple(m + away * d for m, d in zip(middle, _FROM, strict=True))
     shown: list[Any] = [shape]
     below = shape.bounds(params=params, time=time)[0][1]
