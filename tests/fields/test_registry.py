@@ -10,7 +10,7 @@ import pytest
 from distal.fields.claims import EXACT, Claim, Limit, Operator, Primitive
 from distal.ir.types import Buffer, Texture
 from distal.lang import Func
-from distal.scene.numbers import RESERVED
+from distal.scene.numbers import RESERVED, RESERVED_OF_SHAPES
 from tests.fields.library import MODULES, docstring, measured, operators, primitives
 from tests.fields.rows import PLACE, default_of, header_of, slots_of
 from tests.fields.trees import operator_functions, operator_slots
@@ -103,7 +103,7 @@ def test_a_shape_is_documented(row: Primitive):
 @pytest.mark.parametrize("row", SHAPES)
 def test_a_shape_is_declared_soundly(row: Primitive):
     slots = {s.name: s for s in slots_of(row.distance)}
-    assert not set(slots) & (RESERVED - set(PLACE)), "a number has a reserved name"
+    assert not set(slots) & (RESERVED_OF_SHAPES - set(PLACE)), "a number has a reserved name"
     assert set(row.limits) <= set(slots)
     for rule in (row.bounds, row.slope):
         if isinstance(rule, Func):

@@ -27,6 +27,9 @@ from distal.backends.messages import map_message
 from distal.compiler import compile, lower, run_passes
 from distal.diagnostics import CompileError
 from distal.lang import Image
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.loading import load
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent.parent / "examples"
@@ -60,10 +63,12 @@ def scene_file(path: Path) -> ModuleType:
 
 
 TORTURE = scene_file(HERE / "torture.py")
-IMAGES: dict[str, Image] = {n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)}
-for example in (*sorted(EXAMPLES.glob("*.py")), HERE.parent / "golden" / "scene.py"):
-    images = [v for v in vars(scene_file(example)).values() if isinstance(v, Image)]
-    IMAGES[example.stem] = images[-1]
+GOLDEN = scene_file(HERE.parent / "golden" / "scene.py")
+IMAGES: dict[str, Func | Composed] = {
+    n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)
+}
+IMAGES["scene"] = [v for v in vars(GOLDEN).values() if isinstance(v, Image)][-1]
+IMAGES |= {path.stem: load(path) for path in sorted(EXAMPLES.glob("*.py"))}
 
 ALL = [
     pytest.param(name, target, id=f"{name}-{target}")

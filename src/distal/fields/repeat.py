@@ -139,7 +139,8 @@ def to_others(
         side = select(at_end(away, copies, index) > 0.5, distance, side)
     steps = 2.0 if neighbours == 2 else 1.0
     gap = steps * copies.spacing + side - half
-    return select(copies.spacing == 0.0, vec3(UNBOUNDED), gap)
+    alone = select(copies.first == copies.last, vec3(UNBOUNDED), gap)
+    return select(copies.spacing == 0.0, vec3(UNBOUNDED), alone)
 
 
 @func

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from distal.fields.claims import Bounds
 from distal.lang import Field3, func, gradient, length, struct, vec2, vec3
-from distal.render.bounce import place_on
+from distal.render.bounce import just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import Stride
 from distal.render.march import March, crossing
@@ -71,7 +71,7 @@ def look_along(
         hit.side,
         p,
         field(p),
-        exact_normal(field, p),
+        exact_normal(field, just_before(ray, hit, numbers)),
         length(gradient(field, p)),
         part(p),
         paint(p),

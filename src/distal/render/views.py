@@ -21,7 +21,7 @@ from distal.lang import (
     vec3,
     vec4,
 )
-from distal.render.bounce import place_on
+from distal.render.bounce import just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.march import March, march
@@ -58,7 +58,7 @@ def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    return vec4(0.5 + 0.5 * hit.side * exact_normal(field, place_on(ray, hit)), 1.0)
+    return vec4(0.5 + 0.5 * hit.side * exact_normal(field, just_before(ray, hit, numbers)), 1.0)
 
 
 @func
@@ -106,7 +106,7 @@ def view_slope(
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    steep = length(gradient(field, place_on(ray, hit)))
+    steep = length(gradient(field, just_before(ray, hit, numbers)))
     if steep > 1.001 * slope:
         return vec4(1.0, 0.0, 1.0, 1.0)
     return vec4(heat(steep / slope), 1.0)
