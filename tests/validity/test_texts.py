@@ -27,8 +27,6 @@ from distal.backends.messages import map_message
 from distal.compiler import compile, lower, run_passes
 from distal.diagnostics import CompileError
 from distal.lang import Image
-from distal.lang.composed import Composed
-from distal.lang.functions import Func
 from distal.loading import load
 
 HERE = Path(__file__).parent
@@ -68,7 +66,12 @@ IMAGES: dict[str, Func | Composed] = {
     n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)
 }
 IMAGES["scene"] = [v for v in vars(GOLDEN).values() if isinstance(v, Image)][-1]
-IMAGES |= {path.stem: load(path) for path in sorted(EXAMPLES.glob("*.py"))}
+# Scenes of objects are drawn by every driver in tests/pictures.
+IMAGES |= {
+    path.stem: found
+    for path in sorted(EXAMPLES.glob("*.py"))
+    if isinstance(found := load(path), Image)
+}
 
 ALL = [
     pytest.param(name, target, id=f"{name}-{target}")
