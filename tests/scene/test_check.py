@@ -7,7 +7,7 @@ import pytest
 
 from distal import Box, Hexagon, Plane, Shape, Sphere
 from distal.lang import func, length, max, sin, slider, sqrt, vec3
-from distal.scene.checkup import Severity, check
+from distal.scene.checkup import Severity, check, described
 from distal.scene.measuring import measure
 from distal.scene.survey import survey
 
@@ -126,6 +126,18 @@ def test_a_twist_tells_how_much_it_raises_the_slope_and_what_it_loses():
         "twist(rate=3) is no longer exact outside, exact inside, a lower bound",
     ]
     assert all("Box(1.0, 2.0, 1.0).twist(3.0)" in f.told.span.text for f in found.findings)
+
+
+def test_shapes_are_called_what_their_author_calls_them():
+    own = Shape.from_function(wobbly, slope=1.5, bounds=BOX, depth=0.05)
+    assert described(own.node) == "wobbly(depth=0.05)"
+    die = (Box(2.0) - Sphere(1.2)).named("die")
+    assert described(die.node) == "'die' (difference)"
+    assert described(Sphere(0.5).named("eye").node) == "'eye' (Sphere(radius=0.5))"
+    grid = Sphere(0.2).repeat(1.0, count=(2, 1, 2))
+    assert described(grid.node) == (
+        "repeat limited(spacing=(1, 1, 1), count_x=2, count_y=1, count_z=2)"
+    )
 
 
 def test_what_makes_boxes_endless_is_named():

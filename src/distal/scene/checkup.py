@@ -274,13 +274,14 @@ def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator
 def described(node: Node) -> str:
     """A shape as its author made it: "twist(rate=3)"."""
     told = []
+    promises = ("slope", "low", "high") if is_own(node) else ()
     for name, value in node.numbers.items():
         plain = value.plain
-        if name != "slope" and plain is not None:
+        if name not in promises and plain is not None:
             told.append(f"{name}={_shown(plain)}")
     told += [f"{n}={v}" for n, v in node.constants.items() if isinstance(v, bool | int)]
     own = f"{node.rule.name}({', '.join(told)})" if told else node.rule.name
-    return f"'{node.label}', {own}," if node.label else own
+    return f"'{node.label}' ({own})" if node.label else own
 
 
 def _shown(plain: float | tuple[float, ...]) -> str:
