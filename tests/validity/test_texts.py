@@ -62,9 +62,7 @@ def scene_file(path: Path) -> ModuleType:
 
 TORTURE = scene_file(HERE / "torture.py")
 GOLDEN = scene_file(HERE.parent / "golden" / "scene.py")
-IMAGES: dict[str, Func | Composed] = {
-    n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)
-}
+IMAGES: dict[str, Image] = {n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)}
 IMAGES["scene"] = [v for v in vars(GOLDEN).values() if isinstance(v, Image)][-1]
 # Scenes of objects are drawn by every driver in tests/pictures.
 IMAGES |= {
