@@ -112,9 +112,10 @@ def test_patterns_know_the_cell():
     assert color(row, 2.0, 0.3, 0.0) == (2.0, 0.0, 0.0)
 
 
-def test_a_paint_outside_a_repetition_sees_no_cell():
+def test_a_paint_outside_a_repetition_would_see_no_cell_and_is_refused():
     row = Sphere(0.3).repeat(1.0, 0.0, 0.0).paint(pattern(by_index))
-    assert color(row, 2.0, 0.3, 0.0) == (0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="paint first, then repeat"):
+        Scene(row)
 
 
 def test_the_cheapest_renderer_is_taken():

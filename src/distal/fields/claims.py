@@ -182,6 +182,12 @@ class Operator:
                 return str(annotation) == "vec2"
         return child
 
+    @property
+    def repeats(self) -> bool:
+        """Whether what it works on is told its cell."""
+        places = [f.python_function for f in (self.point, self.site) if f is not None]
+        return any(str(f.__annotations__["return"]) in ("Site", "Site2") for f in places)
+
     def takes_flat(self, lies: bool) -> bool:
         """Whether it works on flat shapes, where its result lies in the plane or not."""
         if self.around is not None:

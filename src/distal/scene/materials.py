@@ -9,6 +9,7 @@ scene must know of a material to choose its renderer: whether rays bounce off it
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from types import FunctionType
 from typing import Any, Final
 
 from distal.diagnostics import Span
@@ -261,9 +262,12 @@ def as_material(value: Any, place: Span | None = None) -> Material:
     plain = unwrapped(value)
     is_color = isinstance(plain, str | tuple | list | Symbolic | VectorValue | Pattern)
     if not is_color:
+        hint = 'write matte("#rrggbb"), glass(), metal() or Material(color=…)'
+        if isinstance(value, FunctionType) and value.__module__.startswith("distal."):
+            hint = f"call it: {value.__name__}()"
         refuse_kind(
             f"a material or a color is wanted, not {type(value).__name__} {value!r:.40}",
-            'write matte("#rrggbb"), glass(), metal() or Material(color=…)',
+            hint,
             place,
         )
     return _made("matte", library.matte, {"color": value}, place)

@@ -191,7 +191,7 @@ def palette(
 
 
 def by_cell(seed: Any = 0.0) -> Pattern:
-    """A colour of its own for each repetition of a shape.
+    """A colour of its own for each repetition of a shape that is painted, then repeated.
 
     Args:
         seed: Any number; another gives other colours.

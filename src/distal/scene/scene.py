@@ -16,13 +16,14 @@ from distal.executor_hook import executor
 from distal.fields.claims import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
-from distal.ir.types import FLOAT, FRAME, INT, VEC4
+from distal.ir.types import FLOAT, FRAME, INT, VEC3, VEC4
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.render import tonemap, views
 from distal.scene.backgrounds import as_background
 from distal.scene.cameras import BaseCamera, Camera
+from distal.scene.cells import check_cells
 from distal.scene.conversion import Asked, choice, number
 from distal.scene.field import Field
 from distal.scene.lights import DistantLight, HemisphereLight, Light
@@ -107,6 +108,7 @@ class Scene(Composed):
         self.name = name
         self.shape = one_shape(shape, place)
         check_slopes(self.shape.node)
+        check_cells(self.shape.node)
         given_lights = checked_lights(lights, place)
         self.background = as_background(background, given_lights, place)
         self.lights = all_lights(lights is None, given_lights, self.background.light)
@@ -199,7 +201,7 @@ class Scene(Composed):
             raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
         settings: dict[str, Any] = {"Samples": samples} if samples > 1 else {}
         if view == "slice":
-            settings |= {"Slice_normal": tuple(plane[0]), "Slice_offset": float(plane[1])}
+            settings |= slice_settings(plane)
         doubts = importlib.import_module("distal.scene.doubts")  # needs NumPy, as pictures do
         doubts.doubt_functions(self.shape, params or {}, time)
         picture = executor().render(
@@ -346,6 +348,19 @@ def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
     return choice(value, Asked(name, "Scene", INT, limit, place=place))
 
 
+def slice_settings(plane: Any) -> dict[str, Any]:
+    """Which plane a slice shows, as settings of a picture."""
+    place = author_place()
+    try:
+        normal, offset = plane
+    except (TypeError, ValueError):
+        hint = "plane=((0, 0, 1), 0.5)"
+        refuse_kind(f"a plane is a normal and an offset, not {plane!r:.60}", hint, place)
+    direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
+    distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
+    return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
+
+
 def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
     """A choice by its name."""
     if name not in known:
@@ -355,7 +370,7 @@ def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> st
 
 def one_shape(shape: Any, place: Span | None) -> Field:
     """One solid of what the author gave: a shape, or several."""
-    shapes = list(shape) if isinstance(shape, Sequence) else [shape]
+    shapes = listed(shape)
     if not shapes:
         refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
     for one in shapes:
@@ -368,11 +383,16 @@ def one_shape(shape: Any, place: Span | None) -> Field:
     return first.union(*shapes[1:]) if len(shapes) > 1 else first
 
 
+def listed(given: Any) -> list[Any]:
+    """What was given as a list, a generator, an array of objects, or alone."""
+    return list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
+
+
 def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
     """The lights that the author gave; one light may stand for a list of one."""
     if lights is None:
         return ()
-    given = tuple(lights) if isinstance(lights, Sequence) else (lights,)
+    given = tuple(listed(lights))
     for light in given:
         if not isinstance(light, Light):
             refuse_kind(f"a light is wanted, not {light!r:.60}", "PointLight((2, 3, 4))", place)

@@ -14,6 +14,7 @@ from distal.ir.nodes import Construct, Return
 from distal.ir.types import FLOAT, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.scene.derived import PromiseOf
 from distal.scene.node import Node
 from distal.scene.promises import Promises
 from distal.scene.refusals import refuse
@@ -61,4 +62,19 @@ def check_slopes(root: Node) -> None:
         if not slope < STEEPEST:
             assert isinstance(node.rule, Operator)
             message = f"{node.rule.name} gives this shape no bound on its slope"
-            refuse(message, f"{node.rule.name} needs {node.rule.needs}", node.place)
+            hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(node.children)}"
+            refuse(message, hint, node.place)
+
+
+def _boxed(children: tuple[Node, ...]) -> str:
+    """The box that the rule judged, in words; none where it has no end, as the rule says that."""
+    if len(children) != 1:
+        return ""
+    low, high = (tuple(corner) for corner in executor().call(PromiseOf(children[0]), (), {})[2:])
+    if any(abs(c) >= STEEPEST for c in low + high):
+        return ""
+    return f"; its box goes from {_corner(low)} to {_corner(high)}"
+
+
+def _corner(place: tuple[float, ...]) -> str:
+    return f"({', '.join(f'{c:.3g}' for c in place)})"

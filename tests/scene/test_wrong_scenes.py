@@ -1,0 +1,65 @@
+"""Scenes that would show something else than meant are told so, and what is meant is taken."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from distal import Ellipsoid, PointLight, Scene, Sphere, by_cell, checker, glass, matte
+
+BALLS = [Sphere(0.3).translate(i, 0, 0) for i in range(3)]
+
+
+def test_paint_of_cells_stands_inside_the_repetition():
+    painted = Sphere(0.3).paint(matte(by_cell()))
+    Scene(painted.repeat(1.0))
+    Scene(painted.repeat_polar(1))
+    Scene(painted.translate(1, 0, 0).array([(0, 0, 0), (3, 0, 0)]))
+    Scene(Sphere().paint(by_cell()))  # a material may be used where nothing repeats
+    for repeated in (
+        Sphere(0.3).repeat(1.0),
+        Sphere(0.3).repeat(1.0, neighbours=1),
+        Sphere(0.3).translate(1, 0, 0).repeat_polar(4).rotate(x=1.0),
+    ):
+        with pytest.raises(ValueError, match="paints what is repeated already") as raised:
+            Scene(repeated.paint(matte(by_cell())))
+        assert "paint first, then repeat" in str(raised.value)
+
+
+def test_what_does_not_fit_its_cell_is_told_how_large_it_is():
+    petal = Ellipsoid((0.5, 0.1, 0.2)).translate(0.7, 0, 0)
+    with pytest.raises(ValueError, match="no bound on its slope") as raised:
+        Scene(petal.repeat(1.0))
+    assert "its box goes from (0.2, -0.1, -0.2) to (1.2, 0.1, 0.2)" in str(raised.value)
+
+
+def test_shapes_and_lights_come_in_any_row():
+    lights = (PointLight((i, 2.0, 3.0)) for i in range(2))
+    scene = Scene((ball for ball in BALLS), lights=lights)
+    assert len(scene.lights) == 2
+    assert len(Scene(np.array(BALLS)).shape.node.children) == 3
+
+
+def test_a_material_that_was_not_called_is_told():
+    for made, name in ((glass, "glass"), (checker, "checker")):
+        with pytest.raises(TypeError, match="a material or a color") as raised:
+            Sphere().paint(made)
+        assert f"call it: {name}()" in str(raised.value)
+    with pytest.raises(TypeError, match="a material or a color") as raised:
+        Sphere().paint(Sphere())
+    assert "write matte" in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("plane", "message"),
+    [
+        ((0, 0, 1), "a plane is a normal and an offset, not (0, 0, 1)"),
+        (0.5, "a plane is a normal and an offset, not 0.5"),
+        (((0, 0, 2), 0.5), "'normal of slice' must be a vector of length 1"),
+        (((0, 0, 1), "high"), "'offset of slice' takes a number"),
+    ],
+)
+def test_a_slice_needs_a_plane(plane, message):
+    with pytest.raises((TypeError, ValueError)) as raised:
+        Scene(Sphere()).render((8, 8), view="slice", plane=plane)
+    assert message in str(raised.value)
