@@ -73,6 +73,7 @@ PACKAGES: Final = (
     Package("av", "video", "video files"),
     Package("OpenEXR", "exr", "EXR files"),
     Package("anywidget", "notebook", "sliders in notebooks"),
+    Package("fonttools", "text", "letters of fonts"),
 )
 
 _PROBE: Final = "doctor-probe"
