@@ -55,6 +55,7 @@ class Cell:
 OUTLINE: Final = np.array(
     [(-0.6, -0.4), (0.0, -0.15), (0.6, -0.5), (0.4, 0.5), (-0.1, 0.2), (-0.5, 0.55)]
 )
+WAY: Final = np.array([(-0.8, -0.5, 0.0), (0.0, 0.5, 0.3), (0.8, -0.2, -0.2), (0.1, -0.6, 0.6)])
 BALLS: Final = np.array([(-0.45, -0.1, 0, 0.4), (0.3, 0.3, 0.1, 0.45), (0.35, -0.4, 0, 0.3)])
 
 
@@ -86,6 +87,8 @@ GIVEN: Final[dict[str, Callable[[], dict[str, Any]]]] = {
     "ImageField": lambda: {"image": _disc_image()},
     "Heightfield": lambda: {"image": _hills(), "size": (2, 2), "height": 0.5},
     "VolumeField": lambda: {"volume": _ball_volume(), "size": (1.5, 1.5, 1.5), "scale": 1.5},
+    "PolylineTube": lambda: {"points": WAY},
+    "TaperedPolylineTube": lambda: {"points": np.c_[WAY, (0.22, 0.12, 0.16, 0.05)]},
     "Metaballs": lambda: {"balls": BALLS},
     "BoxCheap": lambda: {"size": (1.2, 0.8, 1.0)},
     "Ellipsoid": lambda: {"radii": (0.8, 0.4, 0.5)},
@@ -98,7 +101,6 @@ _LEAF: Final = Capsule(0.1, 0.35).rotate(z=0.7).translate(0.55, 0, 0)
 _HEART: Final = Heart(1.0).translate(0, -0.5)
 _SHEET: Final = Box((1.6, 0.35, 0.9))
 _RING: Final = Torus(0.5, 0.15).rotate(x=np.pi / 2)
-_LINE: Final = np.array([(-0.8, -0.5, 0.0), (0.0, 0.5, 0.3), (0.8, -0.2, -0.2), (0.1, -0.6, 0.6)])
 _STAR: Final = Pentagram(0.6)
 
 # One showing of each operator: which shape, and its arguments.
@@ -127,7 +129,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "bend linear": lambda: _SHEET.apply("bend linear", (-0.8, 0, 0), (0.8, 0, 0), (0, 0.6, 0)),
     "bend radial": lambda: Cylinder(1.0, 0.12).apply("bend radial", 0.1, 1.0, -0.5),
     "taper": lambda: Box((0.9, 1.4, 0.9)).apply("taper", -0.7, 0.7, 0.35),
-    "attract": lambda: Box(1.2).apply("attract", (0.6, 0.6, 0.6), 0.9, 1.5),
+    "attract": lambda: Box(1.2).apply("attract", (0.0, 0.9, 0.0), 0.9, 1.0),
     "repel": lambda: Box(1.2).apply("repel", (0.4, 0.4, 0.4), 0.8, 0.9),
     "mirror": lambda: _LEAF.mirror((1, 0, 0)),
     "symmetry": lambda: _PEBBLE.translate(0.5, 0.4, 0.5).symmetry("xyz"),
@@ -181,12 +183,12 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
         Heart(0.3).rotate(0.6).apply("flat repeat mirrored", (0.5, 0.5))
     ),
     "flat repeat polar": lambda: (
-        Heart(0.3).rotate(-np.pi / 2).translate(0.3, 0).apply("flat repeat polar", 6)
+        Heart(0.25).rotate(-np.pi / 2).translate(0.45, 0).apply("flat repeat polar", 6)
     ),
     "flat repeat polar neighbours": lambda: (
-        Heart(0.45)
+        Heart(0.35)
         .rotate(-np.pi / 2)
-        .translate(0.35, 0)
+        .translate(0.45, 0)
         .apply("flat repeat polar neighbours", 6, neighbours=1)
     ),
     "flat repeat at": lambda: _STAR.scale(0.35).apply("flat repeat at", OUTLINE),
@@ -199,7 +201,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "wrap": lambda: Box((4.6, 0.3, 0.5)).apply("wrap", 0.75),
     "sphere fold": lambda: Box(1.6).apply("sphere fold", 0.4, 0.9),
     "repeat scaled": lambda: (
-        Sphere(0.17).translate(0.75, 0, 0).apply("repeat scaled", 1.7) & Sphere(1.6)
+        Sphere(0.14).translate(0.75, 0, 0).apply("repeat scaled", 2.2) & Sphere(1.1)
     ),
     "warp": lambda: Box(1.2).apply("warp", 0.12, 3.0),
     "extrude": lambda: _HEART.extrude(0.4),
@@ -210,7 +212,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     ),
     "extrude tapered": lambda: _STAR.apply("extrude tapered", 1.2, 0.4).rotate(x=-np.pi / 2),
     "loft": lambda: Rectangle((1.0, 1.0)).apply("loft", 1.4, others=[_STAR]).rotate(x=-np.pi / 2),
-    "sweep": lambda: Hexagon(0.18).apply("sweep", _LINE),
+    "sweep": lambda: Hexagon(0.18).apply("sweep", WAY),
     "sweep bezier": lambda: _STAR.scale(0.35).apply("sweep bezier"),
     "revolve": lambda: Pentagram(0.35).revolve(0.6),
     "revolve partly": lambda: Pentagram(0.35).revolve(0.6, 4.0),
@@ -229,11 +231,12 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "split above": lambda: _BODY.split((0.6, 0.8, 0))[1],
     "flat split below": lambda: Hexagon(0.6).apply("flat split below", (0.6, 0.8), 0.0),
     "flat split above": lambda: Hexagon(0.6).apply("flat split above", (0.6, 0.8), 0.0),
-    "repeat line": lambda: _PEBBLE.array(start=(-0.8, -0.3, 0), end=(0.8, 0.3, 0), count=4),
+    "repeat line": lambda: _PEBBLE.array(start=(-1.0, -0.4, 0), end=(1.0, 0.4, 0), count=4),
     "repeat ring": lambda: Sphere(0.14).repeat_ring(0.4, 0.4, count=(5, 4)),
-    "repeat at": lambda: _PEBBLE.array(_LINE),
+    "repeat at": lambda: _PEBBLE.array(WAY),
     "thicken by": lambda: (
-        CLASSES["Gyroid"](1.0).apply("thicken by", 0.5, 0.04, 1.2, others=[Plane(-0.9)]) & Box(1.9)
+        CLASSES["Gyroid"](1.0, solid=True).apply("thicken by", 0.5, 0.04, 1.2, others=[Plane(-0.9)])
+        & Box(1.9)
     ),
     "transition linear": lambda: Box(1.2).apply(
         "transition linear", (-0.6, 0, 0), (0.6, 0, 0), others=[Sphere(0.6)]
@@ -313,7 +316,7 @@ def blend_cells() -> Iterator[Cell]:
 
 def _joined(name: str) -> Any:
     kind, _, form = name.partition(" ")
-    slab, post = Box((1.4, 0.5, 1.0)), Cylinder(0.4, 1.4)
+    slab, post = Box((1.7, 0.5, 1.4)), Cylinder(0.4, 1.4)
     if kind == "xor":  # what is gone is inside: a corner is cut away
         corner = Box(2.0).translate(1.0, 1.0, 1.0)
         return _mixed(name, form, slab, post) - corner
@@ -323,8 +326,10 @@ def _joined(name: str) -> Any:
 def _mixed(name: str, form: str, slab: Any, post: Any) -> Any:
     if not form:
         return slab.apply(name, others=[post])
+    if form == "power":
+        return slab.apply(name, 6.0, others=[post])
     extra = {"count": 3} if form in ("columns", "stairs") else {}
-    size = 0.08 if form in ("exponential", "root", "sigmoid") else 0.18
+    size = 0.06 if form in ("exponential", "root", "sigmoid") else 0.12
     return slab.apply(name, size, others=[post], **extra)
 
 
