@@ -1,6 +1,7 @@
 # make picture   sets up what it needs and renders the raymarcher to picture.png
 # make test      sets up what it needs and runs everything that CI runs
-# make bench     measures; make sweep runs thousands of random programs; make clean undoes set-up
+# make bench     measures; make sweep runs thousands of random programs and draws every example
+#                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
 # make versions  runs the tests on every other supported Python that is installed
 #
@@ -43,6 +44,7 @@ bench: $(VENV)/.setup-test
 
 sweep: $(VENV)/.setup-test
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
+	DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs tests/pictures/test_targets.py
 
 sweep-fields: $(VENV)/.setup-test
 	DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
