@@ -43,6 +43,8 @@ class Captured:
 
     def __init__(self, overloads: Iterable[Overload]) -> None:
         self.overloads = tuple(overloads)
+        # The library's own functions stay as they are; a scene is made of hundreds of them.
+        self._authors = tuple(o for o in self.overloads if not _is_library(o))
         self._objects = tuple(self._now())
         self._lasting = all(map(_lasts, self._objects))
 
@@ -54,7 +56,7 @@ class Captured:
         return len(now) == len(self._objects) and all(map(_same, now, self._objects))
 
     def _now(self) -> Iterator[Any]:
-        for overload in self.overloads:
+        for overload in self._authors:
             python = overload.python
             names = tuple(_names(python.__code__))
             for cell in python.__closure__ or ():
@@ -67,6 +69,10 @@ class Captured:
             defaults = (*(python.__defaults__ or ()), *(python.__kwdefaults__ or {}).values())
             for default in defaults:
                 yield from _with_members(default, names)
+
+
+def _is_library(overload: Overload) -> bool:
+    return overload.python.__module__.startswith("distal.")
 
 
 def _names(code: CodeType) -> Iterator[str]:

@@ -219,7 +219,7 @@ class Scene(Composed):
             settings=settings,
             freeze=freeze,
         )
-        if view == "color" and not transparent and not picture.array[..., 3].any():
+        if view == "color" and not transparent and not doubts.shows(picture.array[..., 3]):
             message = f"the camera is inside '{self.shape.name}', and no ray finds a way out"
             refuse(message, "move the camera, or look at the shape with view='slice'", self.place)
         if view == "color":
