@@ -310,7 +310,7 @@ WIDE = slider("Wide", 0.5, -1.0, 1.0)
             lambda: arguments(outline, ([(0, 1)], 3), {}, what="Polygon"),
             KIND,
             "'picture of Polygon' takes a Texture2D, not int 3",
-            "or the name of a picture's file",
+            "or an array, or the name of a picture's file",
         ),
     ],
 )

@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
-from distal import Ellipsoid, PointLight, Scene, Sphere, by_cell, checker, glass, matte
+from distal import (
+    Ellipsoid,
+    Heightfield,
+    PointLight,
+    Rectangle,
+    Scene,
+    Sphere,
+    VolumeField,
+    by_cell,
+    checker,
+    glass,
+    matte,
+    time,
+)
 
 BALLS = [Sphere(0.3).translate(i, 0, 0) for i in range(3)]
 
@@ -63,3 +78,29 @@ def test_a_slice_needs_a_plane(plane, message):
     with pytest.raises((TypeError, ValueError)) as raised:
         Scene(Sphere()).render((8, 8), view="slice", plane=plane)
     assert message in str(raised.value)
+
+
+def test_an_array_is_a_picture_or_a_volume():
+    hill = np.full((8, 8), 0.5, np.float32)
+    assert Heightfield(hill, height=1.0)((0.0, 0.5, 0.0)) == pytest.approx(0.0, abs=1e-6)
+    grid = np.mgrid[-1:1:16j, -1:1:16j, -1:1:16j]
+    ball = np.sqrt((grid**2).sum(axis=0)) - 0.5
+    assert VolumeField(ball, size=2.0)((0.5, 0.0, 0.0)) == pytest.approx(0.0, abs=0.05)
+    with pytest.raises(TypeError, match="takes a") as raised:
+        Heightfield([[0.5, 0.5]])
+    assert "or an array, or the name of a picture's file" in str(raised.value)
+
+
+def test_degrees_are_doubted_where_radians_are_meant():
+    for turn in (
+        lambda: Sphere().rotate(y=90),
+        lambda: Sphere().rotate(45.0, axis=(0, 1, 0)),
+        lambda: Rectangle(1.0).rotate(-180),
+    ):
+        with pytest.warns(UserWarning, match=r"angles are radians.*np\.radians") as told:
+            turn()
+        assert told[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for angle in (0, 15, 31.4, 12.0 * np.pi, 2 * time, np.radians(90)):
+            Sphere().rotate(y=angle)

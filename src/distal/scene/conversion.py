@@ -20,6 +20,7 @@ from distal.ir.types import (
     FLOAT,
     INT,
     TEXTURE_2D,
+    TEXTURE_3D,
     Kind,
     Scalar,
     Texture,
@@ -30,13 +31,14 @@ from distal.ir.types import Buffer as BufferType
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.parameter_values import as_bool, as_color, as_float, as_int
 from distal.lang.parameters import Parameter
-from distal.lang.resources import Buffer, Texture2D, TextureValue
+from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
 from distal.lang.values import VectorValue
 from distal.scene.refusals import refuse, refuse_kind
 
 Component: TypeAlias = "float | Expression"
 Plain: TypeAlias = "float | tuple[float, ...]"
 
+_OF_ARRAYS: Final = {TEXTURE_2D: Texture2D, TEXTURE_3D: Texture3D}
 _WORDS: Final = {2: "two", 3: "three", 4: "four"}
 # A direction typed with six digits is meant to have length 1.
 _UNIT_TOLERANCE: Final = 1e-5
@@ -354,7 +356,11 @@ def _texture(value: Any, asked: Asked, type: Texture) -> TextureValue:
         return Texture2D(beside(value, asked.place))
     if isinstance(value, TextureValue) and value.__distal_type__ is type:
         return value
-    hint = "or the name of a picture's file" if type is TEXTURE_2D else None
+    if hasattr(value, "dtype") and hasattr(value, "shape") and type in _OF_ARRAYS:
+        return _OF_ARRAYS[type](value)
+    hint = "or an array"
+    if type is TEXTURE_2D:
+        hint += ", or the name of a picture's file"
     refuse_kind(
         f"'{asked.label}' takes a {type}, not {type_name(value)} {value!r:.40}", hint, asked.place
     )

@@ -17,6 +17,7 @@ from distal.scene.field import PLAIN, Field
 from distal.scene.library import OPERATORS
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse
+from distal.scene.turns import doubt_degrees
 
 
 class _Placed(Field):
@@ -128,6 +129,7 @@ class Shape(_Placed):
             matrix: Three rows, orthonormal.
         """
         euler = {name: value for name, value in (("x", x), ("y", y), ("z", z)) if value is not None}
+        doubt_degrees(author_place(), angle, *euler.values())
         ways = [angle is not None or axis is not None, bool(euler)]
         ways += [quaternion is not None, matrix is not None]
         if sum(ways) != 1:
@@ -355,6 +357,7 @@ class Shape2D(_Placed):
 
     def rotate(self, angle: Any) -> Self:
         """The shape turned about the origin, counter-clockwise; radians."""
+        doubt_degrees(author_place(), angle)
         return self._with("rotate", angle)
 
     def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
