@@ -18,7 +18,7 @@ from distal import (
     plastic,
 )
 from distal.fields.noise_lattice import fraction, lattice_hash
-from distal.lang import cos, func, ivec3, round, slider, vec3
+from distal.lang import Buffer, cos, func, ivec3, round, slider, vec3
 from distal.scene.library import PRIMITIVES
 from distal.scene.shapes import CLASSES
 
@@ -31,7 +31,8 @@ SPACING = 2.1
 def stands_by_itself(name: str) -> bool:
     """Whether a shape has an end and an inside, and needs no data."""
     row, made = PRIMITIVES[name], CLASSES[name]
-    complete = all(p.default is not p.empty for p in inspect.signature(made).parameters.values())
+    given = [p.default for p in inspect.signature(made).parameters.values()]
+    complete = not any(d is inspect.Parameter.empty or isinstance(d, Buffer) for d in given)
     closed = row.bounds is not None and row.signed and not row.estimate
     return issubclass(made, Shape) and complete and closed
 
