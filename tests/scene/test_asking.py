@@ -34,6 +34,7 @@ def test_a_list_of_shapes_is_joined_like_the_shapes():
     np.testing.assert_array_equal(joined(GRID), balls[0].union(*balls[1:], smooth=0.05)(GRID))
     reduced = functools.reduce(operator.or_, balls)
     np.testing.assert_array_equal(balls[0].union(balls[1:])(GRID), reduced(GRID))
+    np.testing.assert_array_equal(balls[0].union(b for b in balls)(GRID), reduced(GRID))
     np.testing.assert_array_equal(
         Box(1.0).difference(balls)(GRID), (Box(1.0) - balls[0].union(balls[1:]))(GRID)
     )

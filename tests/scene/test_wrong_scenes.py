@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from distal import (
+    Camera,
+    CompileError,
     Ellipsoid,
     Heightfield,
     PointLight,
     Rectangle,
     Scene,
+    Shape,
     Sphere,
     VolumeField,
     by_cell,
@@ -21,6 +24,7 @@ from distal import (
     matte,
     time,
 )
+from distal.lang import func, vec3
 
 BALLS = [Sphere(0.3).translate(i, 0, 0) for i in range(3)]
 
@@ -104,3 +108,52 @@ def test_degrees_are_doubted_where_radians_are_meant():
         warnings.simplefilter("error")
         for angle in (0, 15, 31.4, 12.0 * np.pi, 2 * time, np.radians(90)):
             Sphere().rotate(y=angle)
+
+
+@func
+def says_vector(p: vec3) -> vec3:
+    return p
+
+
+@func
+def is_vector(p: vec3):
+    return p
+
+
+@func
+def counts(p: vec3) -> int:
+    return 1
+
+
+@func
+def makes_a_ball(p: vec3) -> float:
+    return Sphere(1.0)(p)
+
+
+def test_a_field_that_gives_no_distance_never_runs():
+    for field, kind in ((says_vector, "vec3"), (is_vector, "vec3"), (counts, "int")):
+        for asked in (lambda shape: shape((0, 0, 0)), lambda shape: shape.gradient((0, 0, 0))):
+            with pytest.raises(CompileError, match=f"a distance is a float, not {kind}"):
+                asked(Shape.from_function(field))
+
+
+def test_a_shape_is_made_outside_of_functions():
+    with pytest.raises(CompileError) as raised:
+        Shape.from_function(makes_a_ball)((0, 0, 0))
+    assert "make it outside of the function, shape = Sphere(…)" in str(raised.value)
+
+
+def test_a_scene_does_not_change():
+    scene = Scene(Sphere())
+    with pytest.raises(AttributeError, match="a scene does not change"):
+        scene.camera = Camera((0, 0, 2))
+    developed = scene.developed(exposure=2.0, tone_map="aces")
+    assert developed.tone_map == "aces"
+    with pytest.raises(AttributeError, match="a scene does not change"):
+        developed.tone_map = "none"
+
+
+def test_a_picture_is_an_array():
+    picture = Scene(Sphere()).render((8, 6))
+    np.testing.assert_array_equal(np.asarray(picture), picture.array)
+    assert np.array(picture, np.float64).shape == (6, 8, 4)

@@ -81,6 +81,11 @@ class Picture:
         assert self.light is not None
         return self.light
 
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """``array``, for NumPy and for what shows arrays."""
+        made: NDArray[Any] = np.array(self.array, dtype) if copy else np.asarray(self.array, dtype)
+        return made
+
     @property
     def width(self) -> int:
         """Pixels from left to right."""

@@ -21,6 +21,7 @@ from distal.ir.nodes import (
     Expr,
     Function,
     Param,
+    Return,
     Stmt,
 )
 from distal.ir.types import Buffer, Type
@@ -72,7 +73,16 @@ class Assembly:
         body: Sequence[Stmt],
         span: Span | None = None,
     ) -> str:
-        """Add a function; its name in the program."""
+        """Add a function; its name in the program.
+
+        Raises:
+            CompileError: The body gives something else than the result: an author's function does.
+        """
+        # A kernel that writes a vector where room is for a float would write beyond it.
+        if body and isinstance(body[-1], Return):
+            given = body[-1].value.type
+            if given != result:
+                raise CompileError.at(f"'{name}' gives a {given}; a {result} is wanted", span)
         unique = self._program.unique_name(name)
         self._program.functions.append(
             Function(unique, tuple(params), result, tuple(body), name, span=span)

@@ -156,6 +156,8 @@ def _not_scene_code(body: Body, obj: Any, text: str, node: ast.Call) -> SceneErr
             hint = "write @func above its def"
         elif isinstance(name, str) and name in INTRINSICS and not INTRINSICS[name].hidden:
             hint = f"from distal.lang import {name}"
+        elif isinstance(obj, type) and issubclass(obj, Composed):
+            hint = f"make it outside of the function, shape = {text}(…), and call shape(p) here"
         elif isinstance(obj, type) and hasattr(obj, "__annotations__"):
             hint = "write @struct above the class"
     if not callable(obj):

@@ -14,8 +14,9 @@ from distal.diagnostics import Span
 from distal.fields import boxes
 from distal.fields.claims import EXACT, NOTHING, Limit, Primitive
 from distal.frontend.headers import read_header
-from distal.ir.types import VEC2, VEC3, Vector
+from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
+from distal.scene.calls import result_of
 from distal.scene.conversion import Number, shown
 from distal.scene.node import Node, Rule
 from distal.scene.numbers import RESERVED, RESERVED_OF_SHAPES, arguments
@@ -66,6 +67,10 @@ def own_node(
         )
     flat = _is_flat(function, place)
     name, box = function.name, None
+    gives = result_of(function)
+    if gives is not None and gives is not FLOAT:
+        hint = f"def {name}(p: {VEC2 if flat else VEC3}) -> float"
+        refuse(f"'{name}' is no field: a distance is a float, not {gives}", hint, place)
     rule = Primitive(name, function, EXACT if exact else NOTHING)
     own, constants = bound(rule, (), numbers, place)
     found: dict[str, Any] = dict(own)

@@ -20,6 +20,7 @@ from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.node import Node
 from distal.scene.promises import PROMISED, Promises
+from distal.scene.refusals import refuse
 from distal.scene.values import Body, Values, plain_name
 
 # The cell of what lies in no repetition.
@@ -125,7 +126,11 @@ class Composer:
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):
-            return body.let("d", self.call(rule.distance, given))
+            value = self.call(rule.distance, given)
+            if value.type is not FLOAT:
+                message = f"'{rule.name}' is no field: a distance is a float, not {value.type}"
+                refuse(message, None, node.place)
+            return body.let("d", value)
         if rule.around is not None:
             given["field"] = self.field(node.children[0], shares[0], cell)
             return body.let("d", self.call(rule.around, given))

@@ -191,8 +191,8 @@ class Field(Composed):
     def _combined(self, kind: str, others: Sequence[Any], smooth: Any, blend: str, **k: Any) -> Any:
         place = author_place()
         # One list of shapes is as good as the shapes.
-        if len(others) == 1 and isinstance(others[0], list | tuple):
-            others = others[0]
+        if len(others) == 1 and isinstance(others[0], Iterable) and not isinstance(others[0], str):
+            others = tuple(others[0])
         for other in others:
             if not isinstance(other, Field):
                 hint = "smooth=0.1 is given by name" if isinstance(other, float) else None

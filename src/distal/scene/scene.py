@@ -144,6 +144,14 @@ class Scene(Composed):
         )
         self.display = Display(self)
         self._pictures: dict[tuple[Any, ...], Composed] = {}
+        self._whole = True
+
+    # Its kernel is made once: what was changed later would not show.
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if "_whole" in self.__dict__:
+            raise AttributeError("a scene does not change; make another: Scene(shape, …)")
+        object.__setattr__(self, name, value)
 
     @property
     def renderer(self) -> str:
@@ -250,7 +258,7 @@ class Scene(Composed):
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
         """The same scene, its light shown in another way; None keeps what it says itself."""
         made = Scene.__new__(Scene)
-        made.__dict__.update(self.__dict__)
+        made.__dict__.update({n: v for n, v in self.__dict__.items() if n != "_whole"})
         if exposure is not None:
             asked = Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=self.place)
             made.numbers = {**self.numbers, "exposure": number(exposure, asked)}
@@ -258,6 +266,7 @@ class Scene(Composed):
             made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
         made.display = Display(made)
         made._pictures = {}
+        made._whole = True
         return made
 
     def text(self) -> Composed:
