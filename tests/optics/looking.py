@@ -7,6 +7,7 @@ Snell's law and the law of reflection in doubles.
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,9 @@ def seen(shape: Any, position: Any, target: Any, **scene: Any) -> Vector:
     up = (0, 0, -1) if abs(way[1]) > 0.99 * np.linalg.norm(way) else (0, 1, 0)
     camera = Camera(position, target, up=up, fov=1e-4)
     scene = {"lights": [], "background": (0.0, 0.0, 0.0), **scene}
-    picture = Scene(shape, camera=camera, **scene).render(size=(1, ROWS))
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the picture is black")
+        picture = Scene(shape, camera=camera, **scene).render(size=(1, ROWS))
     light: Vector = picture.linear[ROWS // 2, 0, :3].astype(float)
     return light
 

@@ -18,6 +18,7 @@ from distal import (
     Plane,
     PointLight,
     Scene,
+    Shape,
     Sky,
     Sphere,
     SpotLight,
@@ -28,6 +29,7 @@ from distal import (
     mirror,
     plastic,
 )
+from distal.lang import func, sin, vec3
 from tests.optics.looking import bent, compass, seen, thrown_back, unit, way_seen
 
 FLOOR = Plane(y=0.0).paint("#fff")
@@ -134,6 +136,7 @@ def test_white_in_is_white_out_to_the_last_bit():
     assert np.all(picture.array >= 1.0 - 2.0**-23)
 
 
+@pytest.mark.filterwarnings("ignore:the picture is black")
 @pytest.mark.parametrize("code", ["#000000", "#123456", "#808080", "#fedcba"])
 def test_a_color_comes_out_as_it_was_written(code):
     wanted = [int(code[i : i + 2], 16) for i in (1, 3, 5)]
@@ -305,6 +308,23 @@ def test_without_shadows_nothing_is_hidden():
     under = {"lights": light, "position": (2.0, 0.5, 0.0), "target": ORIGIN}
     assert seen(FLOOR | screen, **under) == grey(0.0)
     assert seen(FLOOR | screen, **under, shadows=False) == grey(1.0)
+
+
+@func
+def swell(p: vec3) -> float:
+    return p.y - 0.2 * sin(3.0 * p.x) * sin(2.0 * p.z)
+
+
+def test_waves_that_are_strode_over_do_not_shade_themselves():
+    """Places found too far below the surface once stood in their own shadow: dark rings."""
+    sea = Shape.from_function(swell, slope=1.3, bounds=((-50, -9, -50), (50, 0.3, 50)))
+    eye = Camera((0, 1.5, 4), (0, 0, -4))
+    near = slice(140, 240)  # towards the horizon waves are smaller than pixels
+    strode, walked = (
+        Scene(sea, camera=eye, far=40.0, march=march).render(size=(360, 240)).array[near]
+        for march in ("heightfield", "sphere")
+    )
+    assert (np.abs(strode - walked).max(axis=2) > 0.08).mean() < 1e-3
 
 
 # No light counts twice

@@ -22,7 +22,7 @@ from distal.lang import (
     vec4,
 )
 from distal.render.camera import Ray
-from distal.render.heightfield_march import STRIDE, Stride
+from distal.render.heightfield_march import ENOUGH, STRIDE, Stride
 from distal.render.lights import LightSample
 from distal.render.march import Hit, March, march
 from distal.render.material import Surface, brightest, shares
@@ -67,6 +67,13 @@ def differences_step(hit: Hit, normal_step: float) -> float:
 
 
 @func
+def lift_above(numbers: March, hit: Hit, hybrid: bool) -> float:
+    """How far above a surface its rays begin: beyond what a march may be off, above or below."""
+    off = 1.0 + ENOUGH if hybrid else 1.0
+    return (1.0 + off) * numbers.threshold * hit.t + 1e-4
+
+
+@func
 def seen_plain(
     ray: Ray,
     field: Field3,
@@ -93,7 +100,7 @@ def seen_plain(
     n = hit.side * normal(
         field, just_before(ray, hit, numbers), normals, differences_step(hit, normal_step)
     )
-    lift = 2.0 * numbers.threshold * hit.t + 1e-4
+    lift = lift_above(numbers, hit, hybrid)
     material = surface(p)
     color = direct_light(
         field,
@@ -155,7 +162,7 @@ def seen_mirrored(
         n = hit.side * normal(
             field, just_before(here, hit, numbers), normals, differences_step(hit, normal_step)
         )
-        lift = 2.0 * numbers.threshold * hit.t + 1e-4
+        lift = lift_above(numbers, hit, hybrid)
         material = surface(p)
         parts = shares(material, -dot(n, direction), hit.side < 0.0)
         direct = direct_light(
@@ -232,7 +239,7 @@ def seen_refracted(
         n = hit.side * normal(
             field, just_before(here, hit, numbers), normals, differences_step(hit, normal_step)
         )
-        lift = 2.0 * numbers.threshold * hit.t + 1e-4
+        lift = lift_above(numbers, hit, False)
         material = surface(p)
         parts = shares(material, -dot(n, direction), hit.side < 0.0)
         if hit.side < 0.0:

@@ -115,7 +115,8 @@ def doubt_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float
     eye = _Eye(scene)
     asked = {p.name for p in executor().parameters(eye)}
     known = {name: value for name, value in params.items() if name in asked}
-    if executor().call(eye, (), {}, params=known, time=time) < 0.0:
+    shut = scene.renderer != "refracted"  # through glass a camera may look out
+    if shut and executor().call(eye, (), {}, params=known, time=time) < 0.0:
         refuse(
             f"the camera is inside '{scene.shape.name}', and all around it is dark",
             "move the camera, or look at the shape with view='slice'",
