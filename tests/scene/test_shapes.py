@@ -107,9 +107,7 @@ def test_an_own_function_is_a_shape():
 
 
 def test_an_own_function_may_differ_from_cell_to_cell():
-    row = Shape.from_function(celled, bounds=((-0.3,) * 3, (0.3,) * 3)).repeat(
-        1.0, count=(3, 1, 1)
-    )
+    row = Shape.from_function(celled, bounds=((-0.3,) * 3, (0.3,) * 3)).repeat(1.0, count=(3, 1, 1))
     centres = np.array([[-1.0, 0, 0], [0, 0, 0], [1.0, 0, 0]])
     np.testing.assert_allclose(row(centres), [-0.1, -0.15, -0.2], atol=1e-6)
 
