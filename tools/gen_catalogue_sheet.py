@@ -32,6 +32,7 @@ from distal.scene.steepness import check_slopes
 FOLDER: Final = Path(__file__).parents[1] / "docs/pictures"
 ACROSS: Final = 10
 LABEL_PX: Final = 16
+MOST_BYTES: Final = 200_000
 PAPER: Final = (250, 249, 246)
 INK: Final = (40, 42, 48)
 BACKGROUND: Final = (0.93, 0.92, 0.89)
@@ -186,6 +187,14 @@ def _fitting(text: str, width_px: int) -> Any:
     return font
 
 
+def _save(picture: Image.Image, path: Path) -> None:
+    """Write a PNG with as many colors as it has room for."""
+    for colors in (224, 128, 96, 64):
+        picture.quantize(colors, dither=Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size <= MOST_BYTES:
+            return
+
+
 def main() -> int:
     """Draw the sheets; 1 when a cell could not be drawn."""
     told = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -206,9 +215,9 @@ def main() -> int:
         with ProcessPoolExecutor(given.processes) as pool:
             drawn = list(pool.map(partial(draw, size_px=given.size, samples=given.samples), chosen))
         took, compiled = time.perf_counter() - begin, sum(one.compile_s for one in drawn)
-        picture = sheet(drawn, given.size, given.across).quantize(224, dither=Image.Dither.NONE)
         given.folder.mkdir(parents=True, exist_ok=True)
-        picture.save(given.folder / f"catalogue_{group}.png", optimize=True)
+        path = given.folder / f"catalogue_{group}.png"
+        _save(sheet(drawn, given.size, given.across), path)
         print(f"{group}: {len(drawn)} cells in {took:.1f} s, {compiled:.1f} s of it compiling")
         slow = sorted(drawn, key=lambda one: -one.compile_s)[:3]
         print("  slowest:", ", ".join(f"{one.cell.title} {one.compile_s:.1f} s" for one in slow))
