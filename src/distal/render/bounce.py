@@ -186,7 +186,8 @@ def seen_mirrored(
         throughput = throughput * parts.mirrored * ((1.0 - material.roughness) * clear)
         if brightest(throughput) < DIMMEST:
             break
-        origin = p + lift * n
+        # Mirrored rays begin lower: grazing ones would see another wave.
+        origin = p + lift_above(numbers, hit, False) * n
         direction = reflect(direction, n)
     return vec4(color, alpha)
 
