@@ -51,7 +51,7 @@ HEAD: Final = """\
 # Gallery
 
 Each picture is made by the command beside it, on the CPU. The scenes are in
-[`examples/`](../examples); `distal gallery` lists them. Where an example has parameters, they can
+[`examples/`](../examples); `distal examples` lists them. Where an example has parameters, they can
 be set: `--set softness=0.2`.
 """
 

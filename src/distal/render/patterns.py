@@ -8,6 +8,7 @@ the index of the repetition it lies in, and the numbers of a pattern. What flows
 from __future__ import annotations
 
 from distal.fields.noise import fbm
+from distal.fields.noise_lattice import fraction, lattice_hash
 from distal.lang import (
     Texture2D,
     TextureCube,
@@ -18,9 +19,11 @@ from distal.lang import (
     dot,
     floor,
     func,
+    ivec3,
     length,
     max,
     normalize,
+    round,
     sample,
     sin,
     vec2,
@@ -102,16 +105,10 @@ def radial_gradient(p: vec3, center: vec3 = CENTER, radius: float = 1.0) -> floa
 
 
 @func
-def mixing_hash(p: vec3) -> float:
-    """A number from 0 to 1 for each point of the whole-number grid, the same on every target.
-
-    Floats alone, for targets without whole-number bits; even for coordinates below a few thousand.
-    """
-    q = (p % 289.0) * vec3(0.1031, 0.1030, 0.0973)
-    q = q - floor(q)
-    q += dot(q, q.yzx + 33.33)
-    mixed = (q.x + q.y) * q.z
-    return mixed - floor(mixed)
+def cell_number(cell: vec3, seed: float, salt: int) -> float:
+    """A number from 0 to 1 for each cell, the same on every target: an integer hash."""
+    place = ivec3(int(round(cell.x)), int(round(cell.y)), int(round(cell.z)))
+    return fraction(lattice_hash(place, int(floor(16.0 * seed)) + salt))
 
 
 @func
@@ -156,8 +153,8 @@ def by_cell(cell: vec3, seed: float = 0.0) -> vec3:
         cell: Index of the repetition.
         seed: Any number; another gives other colours.
     """
-    hue = mixing_hash(cell + 0.37 * seed)
-    depth = mixing_hash(cell + vec3(41.0, 17.0, 7.0) + 0.37 * seed)
+    hue = cell_number(cell, seed, 0)
+    depth = cell_number(cell, seed, 1)
     pure = palette(hue, vec3(0.5), vec3(0.45), vec3(1.0), vec3(0.0, 0.33, 0.67))
     return pure * (0.55 + 0.45 * depth)
 

@@ -85,6 +85,55 @@ class _Placed(Field):
         """The shape's wedge repeated ``count`` times about the y axis, every other one mirrored."""
         return self._with("kaleidoscope", count)
 
+    def repeat(
+        self,
+        *spacing: Any,
+        count: Sequence[int] | None = None,
+        neighbours: int = 0,
+        mirrored: bool = False,
+    ) -> Self:
+        """The shape again and again, in cells of a grid; its middle cell is where the shape is.
+
+        Args:
+            spacing: From cell to cell, for each axis; 0 for an axis along which it is not repeated.
+                One number is meant for all three.
+            count: How many along each axis; without it there is no end. Cells are then counted from
+                0, at the lower corner.
+            neighbours: How many cells around are asked too: 0 where the shape keeps within its
+                cell, 1 or 2 where it reaches into others.
+            mirrored: Whether every other cell is mirrored, so that neighbours meet.
+        """
+        if mirrored:
+            return self._with("repeat mirrored", *spacing)
+        if count is None:
+            if neighbours:
+                return self._with("repeat neighbours", *spacing, neighbours=neighbours)
+            return self._with("repeat", *spacing)
+        axes = "xy" if self.flat else "xyz"
+        try:
+            counts = {f"count_{axis}": n for axis, n in zip(axes, count, strict=True)}
+        except (TypeError, ValueError):
+            refuse(
+                f"count is {len(axes)} whole numbers, not {count!r:.40}",
+                "count=(3, 2)" if self.flat else "count=(3, 1, 3)",
+                author_place(),
+            )
+        if neighbours:
+            counts["neighbours"] = neighbours
+            return self._with("repeat limited neighbours", *spacing, **counts)
+        return self._with("repeat limited", *spacing, **counts)
+
+    def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
+        """The shape ``count`` times about the y axis (flat: the origin), itself towards x."""
+        if neighbours:
+            return self._with("repeat polar neighbours", count=count, neighbours=neighbours)
+        return self._with("repeat polar", count=count)
+
+    def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
+        """Both parts that a plane cuts it into: what lies below, and what lies above."""
+        below = self._with("split below", normal, offset)
+        return below, self._with("split above", normal, offset)
+
     def round(self, radius: Any) -> Self:
         """The shape grown by ``radius``, its edges round."""
         return self._with("round", radius)
@@ -159,48 +208,6 @@ class Shape(_Placed):
     def shear(self, xy: Any = 0.0, xz: Any = 0.0, yz: Any = 0.0) -> Self:
         """The shape leaning: x moved by ``xy`` times y and ``xz`` times z, y by ``yz`` times z."""
         return self._with("shear", xy, xz, yz)
-
-    def repeat(
-        self,
-        *spacing: Any,
-        count: Sequence[int] | None = None,
-        neighbours: int = 0,
-        mirrored: bool = False,
-    ) -> Self:
-        """The shape again and again, in cells of a grid; its middle cell is where the shape is.
-
-        Args:
-            spacing: From cell to cell, for each axis; 0 for an axis along which it is not repeated.
-                One number is meant for all three.
-            count: How many along each axis; without it there is no end.
-            neighbours: How many cells around are asked too: 0 where the shape keeps within its
-                cell, 1 or 2 where it reaches into others.
-            mirrored: Whether every other cell is mirrored, so that neighbours meet.
-        """
-        if mirrored:
-            return self._with("repeat mirrored", *spacing)
-        if count is None:
-            if neighbours:
-                return self._with("repeat neighbours", *spacing, neighbours=neighbours)
-            return self._with("repeat", *spacing)
-        try:
-            counts = {f"count_{axis}": n for axis, n in zip("xyz", count, strict=True)}
-        except (TypeError, ValueError):
-            refuse(
-                f"count is three whole numbers, not {count!r:.40}",
-                "count=(3, 1, 3)",
-                author_place(),
-            )
-        if neighbours:
-            counts["neighbours"] = neighbours
-            return self._with("repeat limited neighbours", *spacing, **counts)
-        return self._with("repeat limited", *spacing, **counts)
-
-    def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
-        """The shape ``count`` times around the y axis; itself in the direction of x."""
-        if neighbours:
-            return self._with("repeat polar neighbours", count=count, neighbours=neighbours)
-        return self._with("repeat polar", count=count)
 
     def repeat_half(self, *spacing: Any) -> Self:
         """The shape again and again towards the positive side of each axis only."""
@@ -329,11 +336,6 @@ class Shape(_Placed):
     def tongue(self, other: Field, depth: Any, width: Any) -> Self:
         """A ridge of a rectangular profile where the surfaces meet."""
         return self._joined("tongue", other, depth=depth, width=width)
-
-    def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
-        """Both parts that a plane cuts it into: what lies below, and what lies above."""
-        below = self._with("split below", normal, offset)
-        return below, self._with("split above", normal, offset)
 
     def slice(self, origin: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 0.0, 1.0)) -> Shape2D:
         """The flat shape that a plane cuts out.
