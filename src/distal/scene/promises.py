@@ -55,12 +55,24 @@ class Promises:
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
-        result = inner[0]
         if len(inner) == 1:
-            return self._one(body, rule, result, own)
+            return self._one(body, rule, inner[0], own)
+        if rule.bounds is None and rule.slope is None:
+            return self._halved(body, rule, inner, own)
+        result = inner[0]
         for other in inner[1:]:
             result = self._two(body, rule, result, other, own)
         return result
+
+    def _halved(
+        self, body: Body, rule: Operator, inner: Sequence[Promise], own: Mapping[str, Expr]
+    ) -> Promise:
+        """Many joined, the halves first: a chain of hundreds would be as deep as it is long."""
+        if len(inner) == 1:
+            return inner[0]
+        middle = len(inner) // 2
+        a = self._halved(body, rule, inner[:middle], own)
+        return self._two(body, rule, a, self._halved(body, rule, inner[middle:], own), own)
 
     def given(self, body: Body, node: Node, shares: Sequence[Sequence[Expr]]) -> dict[str, Expr]:
         """What the children promise, under the names that an operator's functions ask for."""
