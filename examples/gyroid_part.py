@@ -4,7 +4,7 @@ A minimal surface carries load in all directions with little material; another s
 steers its thickness. Try: cell size, thickness, and how far the part is cut open.
 """
 
-import numpy as np
+import math
 
 from distal import (
     Box,
@@ -33,17 +33,17 @@ STEEL = metal((0.62, 0.6, 0.57), roughness=0.25)
 
 # The outer form: a foot with two bolts, a neck, and an eye for a shaft.
 foot = RoundBox((3.6, 0.6, 1.6), 0.12).translate(y=-0.9)
-eye = RoundedCylinder(0.8, 1.5, 0.1).rotate(x=np.pi / 2).translate(y=0.75)
+eye = RoundedCylinder(0.8, 1.5, 0.1).rotate(x=math.pi / 2).translate(y=0.75)
 neck = RoundBox((1.1, 1.4, 1.1), 0.1).translate(y=-0.2)
 body = foot.union(neck.union(eye, smooth=0.1), smooth=0.16)
-shaft = Cylinder(0.42, 2.0).rotate(x=np.pi / 2).translate(y=0.75)
+shaft = Cylinder(0.42, 2.0).rotate(x=math.pi / 2).translate(y=0.75)
 bolt = Cylinder(0.24, 2.0).translate(1.3, -0.9, 0.0).symmetry("x")
 holes = shaft | bolt
 
 # The skin, and the bushings around the holes; what fills the rest.
 skin = body.shell(0.07, "inner")
 bushings = (
-    Cylinder(0.56, 1.5).rotate(x=np.pi / 2).translate(y=0.75)
+    Cylinder(0.56, 1.5).rotate(x=math.pi / 2).translate(y=0.75)
     | Cylinder(0.38, 0.6).translate(1.3, -0.9, 0.0).symmetry("x")
 ) & body
 filling = Gyroid(cell, thickness=thin, solid=True)

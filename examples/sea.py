@@ -6,8 +6,6 @@ waves several times as often for the same sea. After "Sunset on the sea" of a gr
 
 from typing import Any
 
-import numpy as np
-
 from distal import Background, Camera, DistantLight, HemisphereLight, Material, Scene, Shape, time
 from distal.lang import (
     cos,
@@ -83,7 +81,7 @@ def sea(**march: Any) -> Scene:
     """The sea by one march or another."""
     waves = Shape.from_function(
         water,
-        slope=np.sqrt(1.0 + (STEEPEST * swell) ** 2),
+        slope=sqrt(1.0 + (STEEPEST * swell) ** 2),
         bounds=((-ENDLESS, TROUGH * swell, -ENDLESS), (ENDLESS, CREST * swell, ENDLESS)),
         swell=swell,
         time=time,

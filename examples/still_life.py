@@ -4,7 +4,7 @@ The recursion through glass and mirrors follows up to eight bounces, with Fresne
 glass's index of refraction, and a rougher gold.
 """
 
-import numpy as np
+import math
 
 from distal import (
     Camera,
@@ -39,7 +39,7 @@ outside = RoundedCylinder(0.5, 1.7, 0.12)
 inside = RoundedCylinder(0.43, 1.7, 0.1).translate(y=0.14)
 vase = (outside - inside).translate(0.45, 0.86, -1.2).paint(glass(ior, color=(0.75, 0.9, 0.95)))
 
-lemon = Ellipsoid((0.42, 0.31, 0.31)).union(Capsule(0.07, 0.9).rotate(z=np.pi / 2), smooth=0.06)
+lemon = Ellipsoid((0.42, 0.31, 0.31)).union(Capsule(0.07, 0.9).rotate(z=math.pi / 2), smooth=0.06)
 lemon = lemon.rotate(y=-0.6).translate(1.1, 0.31, 1.75).paint(plastic("#f2c41d", 0.35))
 die = RoundBox((0.55, 0.55, 0.55), 0.07).rotate(y=0.5).translate(-1.35, 0.275, 1.5)
 die = die.paint(plastic("#b5322b", 0.2))
