@@ -59,8 +59,7 @@ def doubt_functions(shape: Field, params: Mapping[str, Any], time: float) -> Non
 
 def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
     shape: Field = Field._of(node)
-    asked = {p.name for p in executor().parameters(shape)}
-    known = {name: value for name, value in params.items() if name in asked}
+    known = _read(shape, params)
 
     def value(p: Points) -> Points:
         found = executor().call(shape, (p,), {}, params=known, time=time, device="reference")
@@ -75,16 +74,21 @@ def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
     if not np.isfinite(values).all():
         at = _shown(p[~np.isfinite(values)][0])
         _warn(f"'{node.name}' gives no number at {at}; rays that come there see nothing", node)
-    _look_at_slope(node, value, p, float(np.max(high - low)))
+    _look_at_slope(node, value, p, values, float(np.max(high - low)))
 
 
-def _look_at_slope(node: Node, value: Any, p: Points, size: float) -> None:
+def _read(obj: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the parameters' values that an object reads."""
+    asked = {p.name for p in executor().parameters(obj)}
+    return {name: value for name, value in params.items() if name in asked}
+
+
+def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float) -> None:
     claimed = node.numbers["slope"].plain
     if not isinstance(claimed, float):  # it may follow parameters: the checkup computes it
         return
     h = STEP * size
     # Along the direction in which the value changes fastest, the change is at most the slope.
-    here = value(p)
     way = np.stack([value(p + h * axis) - here for axis in np.eye(p.shape[1])], axis=1)
     way = np.nan_to_num(way, posinf=0.0, neginf=0.0)
     way /= np.maximum(np.linalg.norm(way, axis=1), 1e-30)[:, None]
@@ -113,10 +117,8 @@ def doubt_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float
     if picture.linear is None or shows(picture.linear[..., :3]):
         return
     eye = _Eye(scene)
-    asked = {p.name for p in executor().parameters(eye)}
-    known = {name: value for name, value in params.items() if name in asked}
     shut = scene.renderer != "refracted"  # through glass a camera may look out
-    if shut and executor().call(eye, (), {}, params=known, time=time) < 0.0:
+    if shut and executor().call(eye, (), {}, params=_read(eye, params), time=time) < 0.0:
         refuse(
             f"the camera is inside '{scene.shape.name}', and all around it is dark",
             "move the camera, or look at the shape with view='slice'",

@@ -14,7 +14,6 @@ from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
 from distal.ir.nodes import (
     CompareOp,
-    Construct,
     Expr,
     FunctionRef,
     If,
@@ -26,7 +25,7 @@ from distal.ir.types import FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, T
 from distal.lang.functions import Func
 from distal.render import bounce, film, legend, settings, tonemap, views
 from distal.render.camera import Ray
-from distal.render.lights import LightSample
+from distal.render.lights import no_light
 from distal.scene.attributes import Attribute, Material, Site, attribute
 from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.values import Body
@@ -60,11 +59,15 @@ class Picturing:
         """The function of the frame that gives a pixel."""
         frame = Read("frame", FRAME)
         body = Body(taken={"frame"})
-        given = self.given(body, field(frame, "resolution"))
-        given["coord"] = field(frame, "coord")
-        given["radiance"] = self._radiance(view, field(frame, "resolution"))
-        given["transparent"] = boolean(transparent)
-        given["samples"] = self._assembly.number("Samples", INT, 1) if sampled else integer(1)
+        resolution = field(frame, "resolution")
+        given: dict[str, Expr] = {
+            "coord": field(frame, "coord"),
+            "resolution": resolution,
+            "camera": self._camera(resolution),
+            "radiance": self._radiance(view, resolution),
+            "transparent": boolean(transparent),
+            "samples": self._assembly.number("Samples", INT, 1) if sampled else integer(1),
+        }
         color = body.let("color", self.composer.call(film.exposed, given))
         if view == "steps":
             given["color"] = color
@@ -120,20 +123,20 @@ class Picturing:
         name: str,
         params: Sequence[tuple[str, Type]],
         make: Callable[[Body, Mapping[str, Expr]], Expr],
+        captured: Sequence[Expr] = (),
     ) -> FunctionRef:
-        """A function of its own, as a value."""
+        """A function of its own, as a value; ``captured`` are given to its last parameters."""
         body = Body(taken={n for n, _ in params})
         result = make(body, {n: Read(n, t) for n, t in params})
         body.statements.append(Return(result))
         declared = tuple(Param(n, t) for n, t in params)
         defined = self._assembly.define(name, declared, result.type, body.statements)
-        return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result.type))
+        free = tuple(t for _, t in params[: len(params) - len(captured)])
+        return FunctionRef(defined, tuple(captured), FunctionType(free, result.type))
 
     def _radiance(self, view: str, resolution: Expr) -> FunctionRef:
-        ray = self._assembly.struct(Ray)
-
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
-            asked = {**self.given(body, Read("resolution", VEC2)), **given}
+            asked = {**self.given(body, given["resolution"]), **given}
             if view == "slice":
                 asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
                 asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
@@ -142,13 +145,8 @@ class Picturing:
                 return self.composer.call(shown, asked)
             return self.composer.call(RENDERERS[self._scene.renderer], asked)
 
-        body = Body(taken={"ray", "resolution"})
-        params = (Param("ray", ray), Param("resolution", VEC2))
-        reads = {p.name: Read(p.name, p.type) for p in params}
-        result = make(body, reads)
-        body.statements.append(Return(result))
-        name = self._assembly.define("radiance", params, VEC4, body.statements)
-        return FunctionRef(name, (resolution,), FunctionType((ray,), VEC4))
+        params = (("ray", self._assembly.struct(Ray)), ("resolution", VEC2))
+        return self._function("radiance", params, make, (resolution,))
 
     def surface(self) -> FunctionRef:
         """What a place looks like: ``(p) -> Surface``."""
@@ -168,14 +166,12 @@ class Picturing:
 
     def _lights(self) -> FunctionRef:
         """The light of a number, as a place sees it: one place asks for all, in a loop."""
-        sample = self._assembly.struct(LightSample)
 
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
             site = {"p": given["p"]}
             calls = [light.emit(self.composer, site) for light in self._samples()]
             if not calls:
-                zero = number(0.0, VEC3)
-                return Construct((zero, number(0.0), zero, number(0.0)), sample)
+                return self.composer.call(no_light, {})
             for i, call in enumerate(calls[:-1]):
                 chosen = compare(CompareOp.EQ, given["i"], integer(i))
                 body.statements.append(If(chosen, (Return(call),), ()))
@@ -202,9 +198,8 @@ class Picturing:
         return self._function("background", (("direction", VEC3),), make)
 
     def _camera(self, resolution: Expr) -> FunctionRef:
-        ray = self._assembly.struct(Ray)
-        params = (Param("uv", VEC2), Param("resolution", VEC2))
-        reads = {p.name: Read(p.name, p.type) for p in params}
-        value = self._scene.camera.emit(self.composer, reads)
-        name = self._assembly.define("camera_ray", params, ray, (Return(value),))
-        return FunctionRef(name, (resolution,), FunctionType((VEC2,), ray))
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            return self._scene.camera.emit(self.composer, given)
+
+        params = (("uv", VEC2), ("resolution", VEC2))
+        return self._function("camera_ray", params, make, (resolution,))

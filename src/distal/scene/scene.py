@@ -65,7 +65,7 @@ class Scene(Composed):
         ambient_occlusion: How far ambient light looks for what hides it, in scene units; 0: not.
         bounces: How often light is followed through mirrors and glass.
         normals: "exact", or by differences: "six_taps", "tetrahedron" or "forward".
-        march: "sphere", or "heightfield" for terrain and water: long steps over it, then bisection.
+        march: "sphere", or "heightfield" for terrain and water: long steps over it, then a search.
         stride: The shortest step of that march at the start, for each unit that it is away.
         stride_growth: The factor it grows by from step to step.
         steps: The most steps of a ray.
