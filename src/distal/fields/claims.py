@@ -13,6 +13,7 @@ shape, or a choice (int, bool) fixed when it is compiled.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -24,6 +25,7 @@ from distal.lang.functions import Func
 # Stands for infinity in boxes: finite, so that it can be added and turned. A side beyond a
 # thousandth of it is infinite.
 UNBOUNDED: Final = 1e18
+ENDLESS: Final = UNBOUNDED / 1000.0
 
 
 @struct
@@ -202,6 +204,11 @@ PRIMITIVES: Final[dict[str, Primitive]] = {}
 OPERATORS: Final[dict[str, Operator]] = {}
 
 F = TypeVar("F", bound=Func)
+
+
+def ended(value: float) -> float:
+    """A computed bound as a number, infinite where it is none."""
+    return float(value) if abs(value) < ENDLESS else math.copysign(math.inf, value)
 
 
 def primitive(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from distal.lang import clamp, dot, func, log2, mat3, max, min, mix, select, vec3, vec4
+from distal.lang import clamp, func, log2, mat3, max, min, mix, select, vec3, vec4
 
 NONE = 0
 REINHARD = 1
@@ -109,9 +109,3 @@ def tone_mapped(c: vec3, tone_map: int) -> vec3:
 def display(color: vec4, exposure: float, tone_map: int) -> vec4:
     """Linear light, straight alpha, to display values."""
     return vec4(encode_srgb(tone_mapped(max(color.xyz, 0.0) * exposure, tone_map)), color.w)
-
-
-@func
-def luminance(c: vec3) -> float:
-    """How bright a linear color looks (Rec. 709)."""
-    return dot(c, vec3(0.2126, 0.7152, 0.0722))

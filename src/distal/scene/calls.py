@@ -72,7 +72,10 @@ class FunctionCall(Unchanging):
         key = (FunctionCall, id(value))
         if key not in made:
             wish = f"{_identifier(self.what)}_{name}"
-            made[key] = (value, _made(composer.assembly, value, wish))  # alive, so the id stays
+            made[key] = (
+                value,
+                expression_of(composer.assembly, value, wish),
+            )  # alive, so the id stays
         found: Expr = made[key][1]
         return found
 
@@ -107,7 +110,8 @@ def result_of(func: Func) -> Type | None:
         return None
 
 
-def _made(assembly: Assembly, value: Number | TextureValue | Buffer, wish: str) -> Expr:
+def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, wish: str) -> Expr:
+    """A value in a program: a uniform of its own, the author's expression, a resource."""
     if not isinstance(value, Number):
         return assembly.resource(value, wish)
     if isinstance(value.value, Expression):

@@ -34,7 +34,6 @@ class Composer:
         self.assembly = assembly
         self.call = assembly.call
         self.values = Values(assembly)
-        self.number, self.resource = self.values.number, self.values.resource
         self.promises = Promises(self.values)
         self._keys: dict[int, int] = {}
         self._known_keys: dict[Any, int] = {}

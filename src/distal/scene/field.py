@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Final, NoReturn, Self
 
 from distal.diagnostics import Span
 from distal.executor_hook import executor
-from distal.fields.claims import EXACT, UNBOUNDED, Claim, Limit, Operator
+from distal.fields.claims import EXACT, Claim, Limit, Operator, ended
 from distal.frontend import Assembly
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Call, Param, Read, Return
@@ -132,7 +132,7 @@ class Field(Composed):
     def bounds(self, *, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
         """A box around the surface and the inside: (low, high), each a tuple; infinite allowed."""
         _, _, low, high = self._promise(params, time)
-        return tuple(tuple(map(_unbounded, corner)) for corner in (low, high))
+        return tuple(tuple(map(ended, corner)) for corner in (low, high))
 
     @property
     def slope(self) -> float:
@@ -315,12 +315,6 @@ def _bare(node: Node) -> bool:
 
 
 _ASSOCIATIVE = ("union", "intersection")
-
-
-def _unbounded(value: float) -> float:
-    if abs(value) < UNBOUNDED / 1000.0:
-        return float(value)
-    return float("inf") if value > 0 else float("-inf")
 
 
 # The classes of shapes that are no library shape's own; the room of methods fills it.

@@ -27,6 +27,7 @@ from distal.render import bounce, film, legend, settings, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import no_light
 from distal.scene.attributes import Attribute, Material, Site, attribute
+from distal.scene.calls import expression_of
 from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.values import Body
 
@@ -52,7 +53,7 @@ class Picturing:
         self._node = scene.shape.node
         self.composer = Composer(assembly, [self._node])
         self._numbers = {
-            name: self.composer.number(value, name) for name, value in scene.numbers.items()
+            name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
         }
 
     def main(self, view: str, *, transparent: bool, sampled: bool, encoded: bool) -> str:

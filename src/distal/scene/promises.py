@@ -123,6 +123,21 @@ class Promises:
         return body.let("slope", multiply(child, constant_number(rule.slope)))
 
 
+class RememberedPromises(Promises):
+    """Promises of one function: that of every node is made once, and kept."""
+
+    def __init__(self, values: Values) -> None:
+        super().__init__(values)
+        self.found: dict[int, Promise] = {}
+
+    def of(self, body: Body, node: Node, values: Sequence[Expr]) -> Promise:
+        """The promise of a subtree, made once."""
+        known = self.found.get(id(node))
+        if known is None:
+            known = self.found[id(node)] = super().of(body, node, values)
+        return known
+
+
 def _named(a: Promise, b: Promise | None) -> dict[str, Expr]:
     if b is None:
         return {"slope": a.slope, "bounds": a.bounds}

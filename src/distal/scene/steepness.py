@@ -7,7 +7,7 @@ twist of something that has no end, say.
 from __future__ import annotations
 
 from distal.executor_hook import executor
-from distal.fields.claims import UNBOUNDED, Operator
+from distal.fields.claims import ENDLESS, Operator
 from distal.frontend import Assembly
 from distal.ir.build import number
 from distal.ir.nodes import Construct, Return
@@ -16,12 +16,9 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.scene.derived import PromiseOf
 from distal.scene.node import Node
-from distal.scene.promises import Promises
+from distal.scene.promises import RememberedPromises
 from distal.scene.refusals import refuse
 from distal.scene.values import Body, Values
-
-# A slope beyond this is none: rules answer UNBOUNDED, or sums and products with it.
-STEEPEST = UNBOUNDED / 1000.0
 
 
 class _Slopes(Composed):
@@ -35,7 +32,7 @@ class _Slopes(Composed):
     def compose(self, assembly: Assembly) -> str:
         """A function of nothing that gives them."""
         body, values = Body(), Values(assembly)
-        promises = Promises(values)
+        promises = RememberedPromises(values)
         found = tuple(promises.of(body, n, values.all(n)).slope for n in self._nodes)
         whole = Construct((*found, number(0.0)), self.result)
         body.statements.append(Return(whole))
@@ -59,7 +56,7 @@ def check_slopes(root: Node) -> None:
         return
     # Parents come first: the last one is the innermost.
     for node, slope in reversed(list(zip(risky, slopes, strict=False))):
-        if not slope < STEEPEST:
+        if not slope < ENDLESS:
             assert isinstance(node.rule, Operator)
             message = f"{node.rule.name} gives this shape no bound on its slope"
             hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(node.children)}"
@@ -71,7 +68,7 @@ def _boxed(children: tuple[Node, ...]) -> str:
     if len(children) != 1:
         return ""
     low, high = (tuple(corner) for corner in executor().call(PromiseOf(children[0]), (), {})[2:])
-    if any(abs(c) >= STEEPEST for c in low + high):
+    if any(abs(c) >= ENDLESS for c in low + high):
         return ""
     return f"; its box goes from {_corner(low)} to {_corner(high)}"
 

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from distal.executor_hook import executor
-from distal.fields.claims import UNBOUNDED
+from distal.fields.claims import ended
 from distal.frontend import Assembly
 from distal.ir.build import compose, index, number, swizzle
 from distal.ir.build import field as field_of
@@ -20,11 +20,8 @@ from distal.ir.nodes import Construct, Expr, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Array, Vector, tuple_type
 from distal.lang.composed import Composed
 from distal.scene.node import Node
-from distal.scene.promises import Promise, Promises
+from distal.scene.promises import Promise, RememberedPromises
 from distal.scene.values import Body, Values
-
-# A value beyond it stands for no bound at all.
-ENDLESS: Final = UNBOUNDED / 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,17 +56,13 @@ def survey(root: Node, params: Mapping[str, Any], time: float) -> dict[int, Prom
     slopes, divisors, lows, highs = (np.asarray(part, np.float64) for part in rows)
     return {
         id(node): Promised(
-            _ended(slopes[i]),
-            _ended(divisors[i]),
-            tuple(map(_ended, lows[i])),
-            tuple(map(_ended, highs[i])),
+            ended(slopes[i]),
+            ended(divisors[i]),
+            tuple(map(ended, lows[i])),
+            tuple(map(ended, highs[i])),
         )
         for i, node in enumerate(nodes)
     }
-
-
-def _ended(value: float) -> float:
-    return float(value) if abs(value) < ENDLESS else float(np.copysign(np.inf, value))
 
 
 class _Survey(Composed):
@@ -85,7 +78,7 @@ class _Survey(Composed):
         """The function of the number."""
         body = Body(taken={"i"})
         values = Values(assembly)
-        promises = _Remembering(values)
+        promises = RememberedPromises(values)
         promises.of(body, self._root, values.all(self._root))
         rows = [_row(promises.found[id(node)]) for node in self._nodes]
         which = Read("i", INT)
@@ -99,21 +92,6 @@ class _Survey(Composed):
         body.statements.append(Return(Construct(tuple(picked), self.result)))
         params = (Param("i", INT),)
         return assembly.define("promises", params, self.result, body.statements)
-
-
-class _Remembering(Promises):
-    """Keeps the promise of every node that it comes by."""
-
-    def __init__(self, values: Values) -> None:
-        super().__init__(values)
-        self.found: dict[int, Promise] = {}
-
-    def of(self, body: Body, node: Node, values: Sequence[Expr]) -> Promise:
-        """The promise of a subtree, made once."""
-        known = self.found.get(id(node))
-        if known is None:
-            known = self.found[id(node)] = super().of(body, node, values)
-        return known
 
 
 def _row(promise: Promise) -> tuple[Expr, ...]:

@@ -12,9 +12,8 @@ from dataclasses import dataclass, field
 from distal.frontend import Assembly
 from distal.ir.nodes import Expr, Let, Read, Stmt
 from distal.ir.types import BOOL, INT
-from distal.lang.expressions import Expression
 from distal.lang.resources import Buffer, TextureValue
-from distal.scene.conversion import Number
+from distal.scene.calls import expression_of
 from distal.scene.node import Node
 
 
@@ -46,22 +45,15 @@ class Values:
         self._all: dict[int, tuple[Expr, ...]] = {}
         self._alive: list[Node] = []  # what is known by its id must stay
 
-    def number(self, number: Number, wish: str) -> Expr:
-        """The value of a number: a uniform of its own, or the author's expression."""
-        if isinstance(number.value, Expression):
-            return self.assembly.expression(number.value)
-        return self.assembly.number(wish, number.type, number.value)
-
-    def resource(self, resource: TextureValue | Buffer, wish: str) -> Expr:
-        """A texture or buffer."""
-        return self.assembly.resource(resource, wish)
-
     def own(self, node: Node) -> tuple[Expr, ...]:
         """The values of a node's own numbers."""
         found = self._own.get(id(node))
         if found is None:
             stem = plain_name(node.name)
-            found = tuple(self.number(n, f"{stem}_{name}") for name, n in node.numbers.items())
+            found = tuple(
+                expression_of(self.assembly, n, f"{stem}_{name}")
+                for name, n in node.numbers.items()
+            )
             self._own[id(node)] = found
             self._alive.append(node)
         return found
