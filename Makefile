@@ -18,7 +18,8 @@ PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 p
 WORKERS ?= 2
 SWEEP ?= 5000
 SAMPLES ?= 40
-SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools
+SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
+	chromium xvfb xdotool imagemagick
 
 .PHONY: picture test lint units system bench sweep sweep-fields versions clean
 .NOTPARALLEL:
@@ -83,7 +84,7 @@ $(VENV)/.setup-venv:
 	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
 	@touch $@
 
-# Drivers in software and the GLSL validator. Never fatal: the tests say what they skip and why.
+# Drivers in software, the GLSL validator, a browser, a screen. Never fatal: the tests say what they skip and why.
 system:
 	@if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then \
 		echo "system packages: no apt-get here; the tests use what is installed" \
