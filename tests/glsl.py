@@ -90,7 +90,7 @@ def run_glsl(
     """
     assert_valid(artifact)
     shader = egl.EglShader(complete_text(artifact), artifact.interface["version"], artifact.vertex)
-    values = _values(artifact, size, dict(uniforms or {}))
+    values = uniform_values(artifact, size, dict(uniforms or {}))
     bound: list[Any] = []
     for entry in artifact.interface["textures"]:
         assert textures is not None
@@ -113,7 +113,14 @@ def run_glsl(
             texture.release()
 
 
-def _values(artifact: Artifact, size: tuple[int, int], uniforms: dict[str, Any]) -> dict[str, Any]:
+def uniform_values(
+    artifact: Artifact, size: tuple[int, int], uniforms: dict[str, Any]
+) -> dict[str, Any]:
+    """The value of every uniform by the name that the text has for it, defaults filled in.
+
+    Raises:
+        ValueError: A value names no uniform.
+    """
     values: dict[str, Any] = {}
     for entry in artifact.interface["uniforms"]:
         value = uniforms.pop(entry["name"], entry["default"])
