@@ -6,12 +6,12 @@ joins the front end, the devices and the film; ``distal.lang`` reaches it throug
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import time
+import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Final, TypeAlias
+from dataclasses import dataclass
+from typing import Any, Final
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -27,21 +27,19 @@ from distal.call_values import (
     single,
     with_names,
 )
-from distal.devices.base import Kernel
+from distal.devices.base import DeviceError, Kernel
 from distal.film.picture import Picture, Provenance
-from distal.frontend import lower, lower_captured
-from distal.frontend.freshness import Captured
+from distal.frontend import lower
 from distal.frontend.headers import MISSING, read_header
 from distal.frontend.matching import signature_of
-from distal.ir.nodes import Module, Origin, Return
-from distal.ir.printer import print_identity
+from distal.ir.nodes import Origin, Return
 from distal.ir.types import VEC4, Type
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
-from distal.passes.numbers import freeze as freeze_numbers
+from distal.lowered import Lowered, Types
 from distal.uniform_values import (
     LARGEST_SIDE_PX,
     Declared,
@@ -51,49 +49,14 @@ from distal.uniform_values import (
 )
 
 KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
-DEVICES: Final = {"cpu": "distal.devices.cpu", "reference": "distal.devices.reference"}
-
-
-Types: TypeAlias = tuple[Type, ...] | None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Lowered:
-    """A lowered function.
-
-    Attributes:
-        module: The IR.
-        digest: Hash of the printed IR without numbers' values: equal for functions that mean the
-            same but for these.
-        source_hash: Hash of the text of every file that its functions stand in.
-        captured: Tells whether the module still stands for the function.
-    """
-
-    module: Module
-    digest: str
-    source_hash: str
-    captured: Captured
-
-    @staticmethod
-    def of(function: Func | Composed | LangFunction, types: Types) -> Lowered:
-        """Lower a function for argument types."""
-        module, captured = lower_captured(function, types)
-        texts = sorted({"".join(o.source.lines) for o in captured.overloads})
-        return Lowered(module, _hash(print_identity(module)), _hash("\0".join(texts)), captured)
-
-    def frozen(self, numbers: Mapping[str, Any]) -> Lowered:
-        """The same with these values of a scene's numbers as constants."""
-        uniforms = tuple(
-            replace(u, default=numbers[u.name]) if u.origin is Origin.NUMBER else u
-            for u in self.module.uniforms
-        )
-        module = freeze_numbers(replace(self.module, uniforms=uniforms))
-        return replace(self, module=module, digest=_hash(print_identity(module)))
-
-    @property
-    def resources(self) -> dict[str, Any]:
-        """What the author declared of textures and buffers, by name."""
-        return {r.name: r.source for r in self.module.resources}
+# Name -> the module that prepares kernels for it, and what it is told besides.
+DEVICES: Final[dict[str, tuple[str, dict[str, str]]]] = {
+    "cpu": ("distal.devices.cpu", {}),
+    "reference": ("distal.devices.reference", {}),
+    "gpu": ("distal.devices.gpu", {"path": "compute"}),
+    "gpu-fragment": ("distal.devices.gpu", {"path": "fragment"}),
+}
+AUTO: Final = "auto"
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,14 +83,47 @@ class PythonExecutor:
         """The parameters that a function and what it calls read, by first use."""
         return list(self._parts(function).declared.parameters)
 
-    def render(
+    def reads_time(self, image: Image | Composed) -> bool:
+        """Whether the picture depends on the time."""
+        return any(
+            u.origin is Origin.FRAME and u.name == "time"
+            for part in self._parts(image).parts
+            for u in part.module.uniforms
+        )
+
+    def render(self, image: Image | Composed, *, device: str = "cpu", **options: Any) -> Picture:
+        """The picture of an image; see ``Image.render`` for what is not said here.
+
+        Args:
+            image: An image, a scene, or a view of one.
+            device: "cpu", "reference", "gpu", "gpu-fragment", or "auto": a GPU if there is one in
+                hardware, else the CPU. A suffix picks the adapter: "gpu:nvidia".
+            options: Besides: ``settings``, values of a scene's numbers by name, for this picture
+                only; ``freeze``: make constants of the numbers, for a picture that is worth its
+                own compilation.
+
+        Raises:
+            DeviceError: The device is missing or was lost; never with "auto", which then warns.
+        """
+        if device != AUTO:
+            return self._render_on(device, image, **options)
+        found = _found()
+        try:
+            return self._render_on(found, image, **options)
+        except DeviceError as error:
+            if found == "cpu":
+                raise
+            warnings.warn(f"{error}; rendering on the CPU instead", stacklevel=2)
+            return self._render_on("cpu", image, **options)
+
+    def _render_on(
         self,
+        device: str,
         image: Image | Composed,
         *,
         size: tuple[int, int],
         time: float = 0.0,
         params: Mapping[str, Any] | None = None,
-        device: str = "cpu",
         threads: int | None = None,
         progress: Callable[[float], Any] | None = None,
         cancel: Any = None,
@@ -137,11 +133,6 @@ class PythonExecutor:
         settings: Mapping[str, Any] | None = None,
         freeze: bool = False,
     ) -> Picture:
-        """The picture of an image; see ``Image.render`` for what is not said here.
-
-        ``settings`` are values of a scene's numbers by name, for this picture only. With ``freeze``
-        the numbers are constants of the kernel: for a picture that is worth its own compilation.
-        """
         size, seconds = checked_size(size), checked_time(time)
         begin = _now()
         run = self._parts(image)
@@ -174,6 +165,53 @@ class PythonExecutor:
             source=image.name, source_hash=parts[0].source_hash, parameters=values, time=seconds
         )
         return Picture(pixels, origin, stats, linear)
+
+    def draw(
+        self,
+        image: Image | Composed,
+        view: Any,
+        *,
+        format: str,
+        size: tuple[int, int],
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+        settings: Mapping[str, Any] | None = None,
+        adapter: str | None = None,
+    ) -> dict[str, Any]:
+        """Draw an image of display values into a texture view of wgpu, and wait for nothing.
+
+        Args:
+            image: What is drawn; its pixels are display values.
+            view: The texture's view, on the device of ``distal.devices.adapters``.
+            format: The texture's format.
+            size: Its width and height in pixels.
+            time: Seconds; this and what follows as for ``render``.
+            params: Values of parameters.
+            mouse: The mouse.
+            index: The frame's number.
+            seed: What random numbers start from.
+            settings: Values of a scene's numbers.
+            adapter: Which adapter; the best when None.
+
+        Returns:
+            What is known of the kernel.
+
+        Raises:
+            DeviceError: The device is missing or was lost.
+        """
+        run = self._parts(image)
+        assert len(run.parts) == 1, "a window shows display values"
+        size, declared = checked_size(size), run.declared
+        others = declared.number_values(settings or {})
+        others |= frame_values(size, checked_time(time), mouse, index, seed)
+        uniforms = declared.for_kernel(0, declared.parameter_values(params or {}), others)
+        name = "gpu-fragment" if adapter is None else f"gpu-fragment:{adapter}"
+        kernel = self._kernel(run.parts[0], name, 32)
+        kernel.draw(view, format, *size, uniforms, run.parts[0].resources)  # type: ignore[attr-defined]
+        return kernel.stats
 
     def call(
         self,
@@ -232,21 +270,27 @@ class PythonExecutor:
         return lowered
 
     def _kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
-        if device not in DEVICES:
-            raise ValueError(f"there is no device '{device}'; devices: {', '.join(DEVICES)}")
+        name, _, adapter = device.partition(":")
+        if name not in DEVICES or (adapter and not name.startswith("gpu")):
+            known = ", ".join((AUTO, *DEVICES))
+            raise ValueError(f"there is no device '{device}'; devices: {known}")
         key = (lowered.digest, device, precision)
         kernel = self._kernels.pop(key, None)
         if kernel is None:
-            room = importlib.import_module(DEVICES[device])
-            kernel = room.prepare(lowered.module, precision=precision)
+            room, options = DEVICES[name]
+            told = {**options, "adapter": adapter or None} if name.startswith("gpu") else options
+            prepare = importlib.import_module(room).prepare
+            kernel = prepare(lowered.module, precision=precision, **told)
         self._kernels[key] = kernel  # the last used stands last
         if len(self._kernels) > KERNELS_KEPT:
             self._kernels.pop(next(iter(self._kernels)), None)
         return kernel
 
 
-def _hash(text: str) -> str:
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+def _found() -> str:
+    """What "auto" means on this machine."""
+    found = importlib.import_module("distal.devices.adapters").resolve(AUTO)
+    return f"{found.device}:{found.adapter}" if found.adapter else str(found.device)
 
 
 class _ValueOf(Composed):

@@ -37,6 +37,14 @@ class Executor(Protocol):
         """The picture of an image or a scene; the options are those of ``Image.render``."""
         ...
 
+    def reads_time(self, image: Image | Composed) -> bool:
+        """Whether a picture depends on the time."""
+        ...
+
+    def draw(self, image: Image | Composed, view: Any, **options: Any) -> dict[str, Any]:
+        """Draw an image of display values into a texture view of wgpu."""
+        ...
+
     def parameters(self, function: Func | Composed) -> list[Parameter]:
         """The parameters that the function and what it calls read, by first use."""
         ...

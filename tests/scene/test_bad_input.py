@@ -304,7 +304,7 @@ PYTHON = {
     "unknown device": (
         lambda: Scene(Sphere()).render(device="gqu"),
         ValueError,
-        "there is no device 'gqu'; devices: cpu, reference",
+        "there is no device 'gqu'; devices: auto, cpu, reference, gpu, gpu-fragment",
     ),
     "no time": (
         lambda: Scene(Sphere()).render(time=math.nan),

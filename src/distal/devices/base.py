@@ -25,6 +25,10 @@ class Cancelled(Exception):  # noqa: N818 (nothing went wrong)
     """The work was ended because ``cancel`` said so; there is no result."""
 
 
+class DeviceError(Exception):
+    """A device that is missing, was lost or cannot do the work: why, and what would mend it."""
+
+
 class Kernel(Protocol):
     """A compiled module.
 

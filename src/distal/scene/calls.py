@@ -61,6 +61,10 @@ class FunctionCall(Unchanging):
             given[name] = self._emitted(composer, site, name, value)
         return composer.assembly.call(self.func, given)
 
+    def value(self, composer: Composer, name: str) -> Expr:
+        """One of its values, as the call gets it."""
+        return self._emitted(composer, {}, name, self.values[name])
+
     def _emitted(self, composer: Composer, site: Mapping[str, Expr], name: str, value: Any) -> Expr:
         if isinstance(value, bool | int):
             return composer.assembly.constant(value, BOOL if isinstance(value, bool) else INT)

@@ -78,6 +78,10 @@ class BaseCamera(Unchanging):
         """The ray of the point ``site["uv"]`` of the picture."""
         return self.call.emit(composer, site)
 
+    def number(self, composer: Composer, name: str) -> Expr | None:
+        """One of its values, such as its target; None for a camera that has no such."""
+        return self.call.value(composer, name) if name in self.call.values else None
+
     def functions(self) -> Iterator[Func]:
         """The functions that it calls."""
         return self.call.functions()

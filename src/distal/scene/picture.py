@@ -23,9 +23,10 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
-from distal.render import bounce, film, legend, settings, tonemap, views
+from distal.render import bounce, film, legend, settings, steer, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import no_light
+from distal.scene import steering
 from distal.scene.attributes import Attribute, Material, Site, attribute
 from distal.scene.calls import expression_of
 from distal.scene.compose import ZERO_CELL, Composer
@@ -56,7 +57,9 @@ class Picturing:
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
         }
 
-    def main(self, view: str, *, transparent: bool, sampled: bool, encoded: bool) -> str:
+    def main(
+        self, view: str, *, transparent: bool, sampled: bool, encoded: bool, steered: bool = False
+    ) -> str:
         """The function of the frame that gives a pixel."""
         frame = Read("frame", FRAME)
         body = Body(taken={"frame"})
@@ -64,7 +67,7 @@ class Picturing:
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
             "resolution": resolution,
-            "camera": self._camera(resolution),
+            "camera": self._steered(resolution) if steered else self._camera(resolution),
             "radiance": self._radiance(view, resolution),
             "transparent": boolean(transparent),
             "samples": self._assembly.number("Samples", INT, 1) if sampled else integer(1),
@@ -197,6 +200,41 @@ class Picturing:
             return self._scene.background.emit(self.composer, given)
 
         return self._function("background", (("direction", VEC3),), make)
+
+    def _steered(self, resolution: Expr) -> FunctionRef:
+        """The camera, moved by hand as the numbers of a ``Steering`` say."""
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            camera = self._scene.camera
+            asked = {**given, "camera": self._camera(given["resolution"]), "up": self._up()}
+            asked["pivot"] = camera.number(self.composer, "target") or self._pivot(body, asked)
+            for name, type, value in steering.NUMBERS:
+                asked[name] = self._assembly.number(f"{steering.PREFIX}{name}", type, value)
+            asked["rig"] = body.let("rig", self.composer.call(steer.rig, asked))
+            return self.composer.call(steer.steered_ray, asked)
+
+        params = (("uv", VEC2), ("resolution", VEC2))
+        return self._function("steered_ray", params, make, (resolution,))
+
+    def elevation(self) -> str:
+        """The function that gives how high the camera stands above what it looks at."""
+        given = {
+            "camera": self._camera(self._assembly.constant((1.0, 1.0), VEC2)),
+            "up": self._up(),
+        }
+        value = self.composer.call(steer.elevation, given)
+        return self._assembly.define("elevation", (), FLOAT, (Return(value),))
+
+    def _up(self) -> Expr:
+        """The axis that the camera stands upright along."""
+        found = self._scene.camera.number(self.composer, "up")
+        return self._assembly.constant((0.0, 1.0, 0.0), VEC3) if found is None else found
+
+    def _pivot(self, body: Body, given: Mapping[str, Expr]) -> Expr:
+        """What a camera without a target turns around."""
+        values = self.composer.values.all(self._node)
+        bounds = self.composer.promises.of(body, self._node, values).bounds
+        return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
 
     def _camera(self, resolution: Expr) -> FunctionRef:
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:

@@ -235,7 +235,13 @@ class Scene(Composed):
         return picture
 
     def view(
-        self, name: str, *, transparent: bool = False, sampled: bool = False, encoded: bool = False
+        self,
+        name: str,
+        *,
+        transparent: bool = False,
+        sampled: bool = False,
+        encoded: bool = False,
+        steered: bool = False,
     ) -> Composed:
         """The scene seen in another way: "normal", "depth" …; itself for "color".
 
@@ -244,12 +250,13 @@ class Scene(Composed):
             transparent: Whether alpha is 0 where nothing is met.
             sampled: Whether a pixel is the mean of ``Samples`` rays.
             encoded: Whether pixels are display values instead of linear light.
+            steered: Whether the camera moves by the numbers of a ``Steering``.
         """
         if name != "color" and name not in views.VIEWS:
             known = ", ".join(["color", *views.VIEWS])
             raise ValueError(f"there is no view '{name}'; views: {known}")
-        key = (name, transparent, sampled, encoded)
-        if key == ("color", False, False, False):
+        key = (name, transparent, sampled, encoded, steered)
+        if key == ("color", False, False, False, False):
             return self
         if key not in self._pictures:
             self._pictures[key] = View(self, *key)
@@ -294,12 +301,19 @@ class View(Composed):
     result = VEC4
 
     def __init__(
-        self, scene: Scene, view: str, transparent: bool, sampled: bool, encoded: bool
+        self,
+        scene: Scene,
+        view: str,
+        transparent: bool,
+        sampled: bool,
+        encoded: bool,
+        steered: bool,
     ) -> None:
         self.name = scene.name if view == "color" else f"{scene.name} ({view})"
         self._scene = scene
         self._view = view
         self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
+        self._steered = steered
         self.display = scene.display if view == "color" and not encoded else None
 
     def compose(self, assembly: Assembly) -> str:
@@ -309,6 +323,7 @@ class View(Composed):
             transparent=self._transparent,
             sampled=self._sampled,
             encoded=self._encoded and self._view == "color",
+            steered=self._steered,
         )
 
     def functions(self) -> Iterable[Func]:

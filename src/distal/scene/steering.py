@@ -1,0 +1,46 @@
+"""How a person moved a scene's camera, as five numbers.
+
+What flows in: gestures, already turned into angles and shares of the picture. What flows out: the
+values of the uniforms that a steered view reads; ``render/steer.py`` says what they do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from distal.ir.types import FLOAT, VEC2, Type
+
+# The numbers of a steered view, without the prefix of their uniforms: type, and value at rest.
+NUMBERS: Final[tuple[tuple[str, Type, Any], ...]] = (
+    ("yaw", FLOAT, 0.0),
+    ("pitch", FLOAT, 0.0),
+    ("zoom", FLOAT, 1.0),
+    ("pan", VEC2, (0.0, 0.0)),
+)
+PREFIX: Final = "View_"
+
+
+@dataclass(frozen=True, slots=True)
+class Steering:
+    """How far a camera was moved by hand; at rest it shows the author's own picture.
+
+    Attributes:
+        yaw: How far the eye went around what it looks at, to the right as it sees it, in radians.
+        pitch: How far it rose, in radians.
+        zoom: Factor on its distance: 0.5 is twice as near.
+        pan: How far what is seen was dragged, to the right and up; 1 is half the picture's height.
+    """
+
+    yaw: float = 0.0
+    pitch: float = 0.0
+    zoom: float = 1.0
+    pan: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Its uniforms by name."""
+        return {f"{PREFIX}{name}": getattr(self, name) for name, _, _ in NUMBERS}
+
+
+STILL: Final = Steering()
