@@ -93,3 +93,7 @@ class CompileError(Exception):
 
 class LoadError(Exception):
     """A scene file that cannot be found, read or run, or holds nothing to compile."""
+
+
+class DeviceError(Exception):
+    """A device that is missing, was lost or cannot do the work: why, and what would mend it."""

@@ -27,7 +27,8 @@ from distal.call_values import (
     single,
     with_names,
 )
-from distal.devices.base import DeviceError, Kernel
+from distal.devices.base import Kernel
+from distal.diagnostics import DeviceError
 from distal.film.picture import Picture, Provenance
 from distal.frontend import lower
 from distal.frontend.headers import MISSING, read_header

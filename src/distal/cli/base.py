@@ -16,7 +16,7 @@ import typer
 
 import distal
 from distal.cli.arguments import UsageError, read_scene
-from distal.diagnostics import CompileError, LoadError
+from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
 
 if TYPE_CHECKING:
@@ -37,10 +37,24 @@ application = typer.Typer(
 )
 
 
+# By the name under which Python knows it: a package of an extra, and that extra.
+EXTRA_PACKAGES: Final = {
+    "wgpu": "gpu",
+    "rendercanvas": "gpu",
+    "glfw": "gpu",
+    "av": "video",
+    "OpenEXR": "exr",
+    "anywidget": "notebook",
+}
+
+
 class Device(StrEnum):
     """What renders."""
 
+    AUTO = "auto"
     CPU = "cpu"
+    GPU = "gpu"
+    GPU_FRAGMENT = "gpu-fragment"
     REFERENCE = "reference"
 
 
@@ -57,14 +71,14 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
         except CompileError as error:
             print(error, file=sys.stderr)
             raise typer.Exit(1) from None
-        except (LoadError, SaveError) as error:
+        except (LoadError, SaveError, DeviceError) as error:
             print(f"error: {error}", file=sys.stderr)
             raise typer.Exit(1) from None
         except ModuleNotFoundError as error:
-            if error.name not in CORE_PACKAGES:
+            mend = _mend(error.name or "")
+            if mend is None:
                 raise
-            package = CORE_PACKAGES[error.name]
-            print(f"error: {package} is missing: pip install {package}", file=sys.stderr)
+            print(f"error: {mend}", file=sys.stderr)
             raise typer.Exit(1) from None
         except MemoryError as error:
             print(f"error: not enough memory: {error}".rstrip(": "), file=sys.stderr)
@@ -73,6 +87,16 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
             raise typer.Exit(130) from None
 
     return run
+
+
+def _mend(package: str) -> str | None:
+    """What is missing and how to get it; None for what is not ours to tell."""
+    if package in CORE_PACKAGES:
+        name = CORE_PACKAGES[package]
+        return f"{name} is missing: pip install {name}"
+    if package in EXTRA_PACKAGES:
+        return f"{package} is missing: pip install 'distal[{EXTRA_PACKAGES[package]}]'"
+    return None
 
 
 SceneArgument = Annotated[
@@ -88,6 +112,42 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
 ]
+
+DeviceOption = Annotated[
+    Device, typer.Option("--device", help="What renders; auto: a GPU, else the CPU.")
+]
+AdapterOption = Annotated[
+    str | None,
+    typer.Option(
+        "--adapter", metavar="NAME", help="Which GPU: its number in distal doctor, or its name."
+    ),
+]
+
+
+def chosen_device(device: Device, adapter: str | None) -> str:
+    """The device's name, as ``render`` takes it; where "auto" ends on the CPU, says why.
+
+    Raises:
+        UsageError: The options do not go together.
+        DeviceError: There is no such adapter.
+    """
+    if device in (Device.CPU, Device.REFERENCE):
+        if adapter is not None:
+            raise UsageError(f"--adapter is for a GPU, and --device is {device.value}")
+        if device is Device.CPU:
+            check_processor()
+        return device.value
+    if adapter is not None:
+        return f"{Device.GPU if device is Device.AUTO else device}:{adapter}"
+    if device is Device.AUTO:
+        from distal.devices.adapters import resolve
+
+        found = resolve(device.value)
+        if found.device == Device.CPU:
+            print(f"rendering on the CPU: {found.reason}", file=sys.stderr)
+            check_processor()
+            return Device.CPU.value
+    return device.value
 
 
 def load(scene: str) -> SceneCode:

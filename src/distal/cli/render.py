@@ -24,13 +24,15 @@ from distal.cli.arguments import (
     read_time,
 )
 from distal.cli.base import (
+    AdapterOption,
     Device,
+    DeviceOption,
     SceneArgument,
     SetOption,
     SizeOption,
     TimeOption,
     application,
-    check_processor,
+    chosen_device,
     load,
     reporting,
 )
@@ -109,7 +111,8 @@ def render(
     tone_map: Annotated[
         str | None, typer.Option(help="none, reinhard, aces, agx or neutral.", show_default=False)
     ] = None,
-    device: Annotated[Device, typer.Option(help="What renders.")] = Device.CPU,
+    device: DeviceOption = Device.CPU,
+    adapter: AdapterOption = None,
     threads: Annotated[
         int | None,
         typer.Option(min=1, max=1024, help="CPU threads; one per core if not given."),
@@ -126,8 +129,7 @@ def render(
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     wishes = read_wishes(view, plane, samples, transparent, exposure, tone_map)
     check_savable(output)
-    if device is Device.CPU:
-        check_processor()
+    device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
     obj = load(scene)
     run, values = prepared(obj, wishes, assignments or (), seconds)
@@ -137,7 +139,7 @@ def render(
             size=width_height,
             time=seconds,
             params=values,
-            device=device.value,
+            device=device_name,
             threads=threads,
             progress=progress,
         )
@@ -146,9 +148,9 @@ def render(
     figures = {
         "load_s": loaded - begin,
         **dict.fromkeys(("compile_s", "render_s", "cache_hit", "lanes", "threads")),
+        "device": device_name,
         **picture.stats,
         "save_s": time.perf_counter() - rendered,
-        "device": device.value,
         "size": list(width_height),
     }
     if stats:

@@ -13,6 +13,8 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.diagnostics import DeviceError as DeviceError
+
 # Called with the finished share, 0 to 1, from the calling thread.
 Progress: TypeAlias = Callable[[float], None]
 # Asked from the calling thread whether to end.
@@ -23,10 +25,6 @@ Values: TypeAlias = "NDArray[Any] | tuple[Values, ...]"
 
 class Cancelled(Exception):  # noqa: N818 (nothing went wrong)
     """The work was ended because ``cancel`` said so; there is no result."""
-
-
-class DeviceError(Exception):
-    """A device that is missing, was lost or cannot do the work: why, and what would mend it."""
 
 
 class Kernel(Protocol):
