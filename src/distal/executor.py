@@ -16,6 +16,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from distal.backends import get_target
 from distal.call_values import (
     bind,
     choose_types,
@@ -27,6 +28,7 @@ from distal.call_values import (
     single,
     with_names,
 )
+from distal.compiler import run_passes
 from distal.devices.base import Kernel
 from distal.diagnostics import DeviceError
 from distal.film.picture import Picture, Provenance
@@ -86,11 +88,12 @@ class PythonExecutor:
 
     def reads_time(self, image: Image | Composed) -> bool:
         """Whether the picture depends on the time."""
-        return any(
-            u.origin is Origin.FRAME and u.name == "time"
-            for part in self._parts(image).parts
-            for u in part.module.uniforms
-        )
+        target = get_target("numpy")
+        for part in self._parts(image).parts:
+            entered = run_passes(part.module, target, after="entry")
+            if any(u.origin is Origin.FRAME and u.name == "time" for u in entered.uniforms):
+                return True
+        return False
 
     def render(self, image: Image | Composed, *, device: str = "cpu", **options: Any) -> Picture:
         """The picture of an image; see ``Image.render`` for what is not said here.

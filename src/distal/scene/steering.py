@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from distal.ir.types import FLOAT, VEC2, Type
+from distal.lang.parameter_values import LARGEST_FLOAT
 
 # The numbers of a steered view, without the prefix of their uniforms: type, and value at rest.
 NUMBERS: Final[tuple[tuple[str, Type, Any], ...]] = (
@@ -30,12 +31,22 @@ class Steering:
         pitch: How far it rose, in radians.
         zoom: Factor on its distance: 0.5 is twice as near.
         pan: How far what is seen was dragged, to the right and up; 1 is half the picture's height.
+
+    Raises:
+        ValueError: A number is not finite, or zoom is not above 0.
     """
 
     yaw: float = 0.0
     pitch: float = 0.0
     zoom: float = 1.0
     pan: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        numbers = (self.yaw, self.pitch, self.zoom, *self.pan)
+        if not all(abs(n) <= LARGEST_FLOAT for n in numbers):
+            raise ValueError(f"a camera is moved by finite numbers, not {self!r}")
+        if not self.zoom > 0.0:
+            raise ValueError(f"zoom is a factor above 0, not {self.zoom:g}")
 
     @property
     def settings(self) -> dict[str, Any]:
