@@ -6,13 +6,16 @@ is run once from a snapshot of its text, so that a later edit never mixes in.
 
 from __future__ import annotations
 
+import hashlib
 import importlib
 import linecache
 import sys
 import types
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
+from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
 from distal.ir.nodes import EntryKind
@@ -23,6 +26,36 @@ from distal.lang.functions import Func, Image
 SceneCode: TypeAlias = Func | Composed
 
 _DEFAULT_NAMES = ("scene", "picture", "shape")
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedFrom:
+    """Where an object was loaded from.
+
+    Attributes:
+        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` as it was given: no folder is added.
+        files: The file, and the modules beside it that it imported.
+        digest: SHA-256 of their texts; the file's own name is no part of it.
+    """
+
+    source: str
+    files: tuple[Path, ...]
+    digest: str
+
+
+_loaded: WeakKeyDictionary[Any, LoadedFrom] = WeakKeyDictionary()
+
+
+def loaded_from(obj: object) -> LoadedFrom | None:
+    """Where ``load`` found an object; None of what was made in another way."""
+    return _loaded.get(obj)
+
+
+def hand_on(origin: object, made: object) -> None:
+    """Say that an object shows what another does, so that it comes from the same file."""
+    known = loaded_from(origin)
+    if known is not None:
+        _loaded[made] = known
 
 
 def gallery() -> dict[str, Path]:
@@ -47,8 +80,11 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
         CompileError: The file is not valid Python.
     """
     file = _find(str(path))
-    module = _run(file)
-    return _pick(module, file, name)
+    module, files, digest = _run(file)
+    found = _pick(module, file, name)
+    source = str(path) if name is None else f"{path}:{name}"
+    _loaded[found] = LoadedFrom(source, files, digest)
+    return found
 
 
 def _find(path: str) -> Path:
@@ -69,7 +105,8 @@ def _find(path: str) -> Path:
     return file
 
 
-def _run(file: Path) -> types.ModuleType:
+def _run(file: Path) -> tuple[types.ModuleType, tuple[Path, ...], str]:
+    """Run a file: its module, the files that took part, the hash of their texts."""
     text = _read(file)
     name = "distal_scene_" + "".join(c if c.isalnum() else "_" for c in file.stem)
     module = types.ModuleType(name)
@@ -100,21 +137,37 @@ def _run(file: Path) -> types.ModuleType:
         raise LoadError(_failure(file, error)) from error
     finally:
         sys.path.remove(folder)
-        _forget_neighbours(Path(folder), known)
-    return module
+        neighbours = _forget_neighbours(Path(folder), known)
+    return module, (file, *neighbours), _digest(text, Path(folder), neighbours)
 
 
-def _forget_neighbours(folder: Path, known: Set[str]) -> None:
-    """Let the next scene import its own neighbours, and edited ones anew.
+def _digest(text: str, folder: Path, neighbours: Iterable[Path]) -> str:
+    """The hash of a file's text and of its neighbours', each with its place beside the file."""
+    whole = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
+    for path in neighbours:
+        whole.update(f"\0{path.relative_to(folder).as_posix()}\0".encode("utf-8", "surrogatepass"))
+        try:
+            whole.update(path.read_bytes().replace(b"\r\n", b"\n"))
+        except OSError:  # gone since it was imported: then no later text is equal
+            whole.update(b"\0")
+    return whole.hexdigest()
+
+
+def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:
+    """Let the next scene import its own neighbours, and edited ones anew; their files, sorted.
 
     Python keeps imported modules by name alone: the ``shapes`` of one folder would serve the scenes
     of another. What the scene imported stays alive in its globals.
     """
     tops = {name.partition(".")[0] for name in set(sys.modules) - known}
     near = {top for top in tops if _stands_in(sys.modules.get(top), folder)}
+    files: set[Path] = set()
     for name in set(sys.modules) - known:
         if name.partition(".")[0] in near:
-            del sys.modules[name]
+            file = getattr(sys.modules.pop(name), "__file__", None)
+            if file is not None and Path(file).is_relative_to(folder):
+                files.add(Path(file))
+    return sorted(files)
 
 
 def _stands_in(module: types.ModuleType | None, folder: Path) -> bool:
