@@ -64,7 +64,8 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
 
     Args:
         obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point.
-        target: One of ``ir llvm glsl-es300 glsl-330 glsl-es100 shadertoy wgsl wgsl-compute``.
+        target: One of ``ir llvm shadertoy glslcanvas isf glsl-es300 glsl-330 glsl-es100 wgsl
+            wgsl-compute``.
         after: For ``ir``: the pass after which to stop; ``"lower"`` for none at all.
 
     Raises:

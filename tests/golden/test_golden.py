@@ -21,6 +21,8 @@ SUFFIXES = {
     "glsl-es300": "frag",
     "glsl-330": "frag",
     "glsl-es100": "frag",
+    "glslcanvas": "frag",
+    "isf": "fs",
     "shadertoy": "frag",
     "wgsl": "wgsl",
     "wgsl-compute": "wgsl",

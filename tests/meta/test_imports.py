@@ -70,7 +70,7 @@ ALONE = [
     for name, path in distal.gallery().items()
     if "import numpy" not in path.read_text() and name != "sea_sphere_tracing"
 ]
-REFUSED = {"glsl-es100": ("catalogue", "city", "room_door")}
+REFUSED = dict.fromkeys(("glsl-es100", "glslcanvas", "isf"), ("catalogue", "city", "room_door"))
 
 
 def test_scenes_are_among_those_that_need_nothing():

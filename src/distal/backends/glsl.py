@@ -1,4 +1,4 @@
-"""GLSL: WebGL 2 (ES 3.00), desktop 3.30, glslCanvas (ES 1.00) and Shadertoy.
+"""GLSL: WebGL 2 (ES 3.00), desktop 3.30, WebGL 1 (ES 1.00), glslCanvas, ISF and Shadertoy.
 
 In: a module that has been through the passes. Out: its fragment text, the vertex text where there
 is one, and the interface. The text of functions and of programs is written by
@@ -10,14 +10,16 @@ from __future__ import annotations
 from typing import Any, Final
 
 from distal.backends.base import Artifact
-from distal.backends.glsl_resources import shadertoy_channels
-from distal.backends.glsl_stages import DIALECTS, Program, fragment_lines, vertex_lines
+from distal.backends.glsl_isf import IsfHeader
+from distal.backends.glsl_resources import canvas_textures, shadertoy_channels
+from distal.backends.glsl_stages import DIALECTS, Declares, Program, fragment_lines, vertex_lines
 from distal.backends.glsl_uniforms import beyond_room
 from distal.backends.interface import interface
 from distal.backends.keywords import (
     GLSL_CANVAS_NAMES,
     GLSL_FUNCTIONS,
     GLSL_KEYWORDS,
+    ISF_NAMES,
     SHADERTOY_NAMES,
 )
 from distal.backends.module_names import ModuleNames, name_module, reachable
@@ -33,14 +35,17 @@ _RESERVED: Final = GLSL_KEYWORDS | GLSL_FUNCTIONS
 TARGETS: Final = (
     Target("glsl-es300", "glsl", FramePlace.VERTEX),
     Target("glsl-330", "glsl", FramePlace.VERTEX),
-    Target(
-        "glsl-es100",
-        "glsl100",
-        FramePlace.PIXEL,
-        unsigned=False,
-        dynamic_loops=False,
-        dynamic_index=False,
-        texel_fetch=False,
+    *(
+        Target(
+            name,
+            "glsl100",
+            FramePlace.PIXEL,
+            unsigned=False,
+            dynamic_loops=False,
+            dynamic_index=False,
+            texel_fetch=False,
+        )
+        for name in ("glsl-es100", "glslcanvas", "isf")
     ),
     Target("shadertoy", "glsl", FramePlace.PIXEL),
 )
@@ -49,14 +54,19 @@ _FIRST_NAMES: Final = {
     "glsl-es300": frozenset({"fragment_color"}),
     "glsl-330": frozenset({"fragment_color"}),
     "glsl-es100": GLSL_CANVAS_NAMES,
+    "glslcanvas": GLSL_CANVAS_NAMES,
+    "isf": ISF_NAMES,
     "shadertoy": SHADERTOY_NAMES,
 }
 _VERSIONS: Final = {
     "glsl-es300": "300 es",
     "glsl-330": "330",
     "glsl-es100": "100",
+    "glslcanvas": "100",
+    "isf": "100",
     "shadertoy": "300 es",
 }
+_RESOURCE_NAMES: Final = {"glslcanvas": canvas_textures, "shadertoy": shadertoy_channels}
 
 
 def emit(module: Module, target: Target) -> Artifact:
@@ -68,6 +78,9 @@ def emit(module: Module, target: Target) -> Artifact:
     program = _program(without_frame(module), target)
     module = program.module
     text, places = joined(fragment_lines(program))
+    # Not among the lines that are broken to a width: the comment's texts are data.
+    text = "".join(f"{line}\n" for line in program.header) + text
+    places = (*(None for _ in program.header), *places)
     if target.frame is not FramePlace.VERTEX or module.kind is not EntryKind.IMAGE:
         return Artifact(text, _interface(program, target), None, places)
     vertex, vertex_places = joined(vertex_lines(program))
@@ -81,16 +94,23 @@ def _program(module: Module, target: Target) -> Program:
         for uniform in module.uniforms
         if uniform.origin is Origin.FRAME and uniform.name in dialect.texts
     }
-    channels = shadertoy_channels(module.resources) if target.name == "shadertoy" else {}
-    names = name_module(
-        module, _RESERVED, GLSL_KEYWORDS, _FIRST_NAMES[target.name], fixed, channels
-    )
+    first = _FIRST_NAMES[target.name]
+    header: tuple[str, ...] = ()
+    assign = _RESOURCE_NAMES.get(target.name)
+    resources = assign(module.resources) if assign is not None else {}
+    if target.name == "isf" and module.kind is EntryKind.IMAGE:
+        isf = IsfHeader.of(module, _RESERVED | ISF_NAMES)
+        fixed |= isf.texts
+        first |= isf.names
+        header, resources = isf.lines, isf.resources
+    names = name_module(module, _RESERVED, GLSL_KEYWORDS, first, fixed, resources)
     packing = None
     if target.frame is FramePlace.VERTEX:
         packing = pack(_sent(module))
-    constants = beyond_room(module.uniforms) if dialect.declared else frozenset()
+    own = dialect.numbers is Declares.TEXT
+    constants = beyond_room(module.uniforms) if own else frozenset()
     vectors = _vectors(names, packing)
-    return Program(module, names, dialect, target.name, fixed, constants, packing, vectors)
+    return Program(module, names, dialect, target.name, fixed, constants, packing, vectors, header)
 
 
 def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
@@ -117,8 +137,9 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
         result["uniforms"] = [u for u in result["uniforms"] if u not in apart]
         result["constants"] = apart
     for uniform in result["uniforms"]:
-        # glslCanvas hands in the mouse as two numbers; the text makes Frame.mouse of them.
-        uniform["uniform"] = uniform["uniform"].removeprefix("vec4(").partition(",")[0]
+        # The text makes a vector of what the place hands in: u_mouse of vec4(u_mouse, 0.0, 0.0).
+        spelled = uniform["uniform"].removeprefix("vec4(").removeprefix("vec3(")
+        uniform["uniform"] = spelled.partition(",")[0].partition(" ")[0]
     result["version"] = _VERSIONS[target.name]
     for buffer in result["buffers"]:
         buffer["count"] = names.counts[buffer["name"]]

@@ -46,13 +46,29 @@ def shadertoy_channels(resources: tuple[ResourceDeclaration, ...]) -> dict[str, 
     return {resource.name: f"iChannel{i}" for i, resource in enumerate(resources)}
 
 
+def canvas_textures(resources: tuple[ResourceDeclaration, ...]) -> dict[str, str]:
+    """Resource -> the name that glslCanvas gives the textures of ``data-textures``, in order.
+
+    Raises:
+        CompileError: There is a texture that the place cannot hold.
+    """
+    for resource in resources:
+        if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
+            raise CompileError.at(
+                f"glslCanvas has pictures only, and the scene reads '{resource.name}' "
+                f"({resource.type})",
+                None,
+            )
+    return {resource.name: f"u_tex{i}" for i, resource in enumerate(resources)}
+
+
 def resource_lines(resource: ResourceDeclaration, names: ModuleNames, target: str) -> list[str]:
     """The declaration of a resource."""
     name = names.resources[resource.name]
     if isinstance(resource.type, Texture):
-        if target == "shadertoy":
+        if target in ("shadertoy", "isf"):
             return [f"// {name}: {resource.name} ({resource.type}, {resource.wrap})"]
-        precision = "" if target in ("glsl-330", "glsl-es100") else "highp "
+        precision = "highp " if target == "glsl-es300" else ""
         return [f"uniform {precision}{_SAMPLERS[resource.type.shape]} {name};"]
     assert isinstance(resource.type, Buffer)
     kind = kind_of(resource.type.element)

@@ -9,9 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from enum import Enum
+from typing import assert_never
 
 from distal.backends.clike import place
 from distal.backends.code import Code, Line
+from distal.backends.glsl_isf import ISF_MOUSE, IsfWriter, sampler_lines
 from distal.backends.glsl_resources import accessor_lines, resource_lines
 from distal.backends.glsl_uniforms import constant_line, constant_lines, default_text
 from distal.backends.glsl_writer import Glsl100Writer, GlslWriter
@@ -34,6 +37,14 @@ from distal.ir.types import VEC2, Array, Buffer, Struct
 from distal.ir.walk import expressions_in, nodes_in
 
 
+class Declares(Enum):
+    """Where a text gets a uniform from."""
+
+    TEXT = "text"  # it declares it, and whoever draws sets it
+    PLACE = "place"  # the place has declared it already
+    NOBODY = "nobody"  # nothing there would set it: it is a constant
+
+
 @dataclass(frozen=True, slots=True)
 class Dialect:
     """One version of GLSL in one place.
@@ -43,7 +54,9 @@ class Dialect:
         output: What the entry assigns the color to.
         coord: The text of the pixel's coordinate.
         main: The line that opens the entry.
-        declared: Whether uniforms are declared; else they are constants or the place's own.
+        frame: Who declares what every picture has: time, resolution …
+        parameters: Who declares the author's parameters.
+        numbers: Who declares a scene's numbers.
         initialised: Whether a uniform's declaration may give its default.
         texts: Frame values that the place provides under its own names.
     """
@@ -52,56 +65,67 @@ class Dialect:
     output: str
     coord: str
     main: str
-    declared: bool
+    frame: Declares
+    parameters: Declares
+    numbers: Declares
     initialised: bool
     texts: dict[str, str]
 
 
 _PRECISION = ("precision highp float;", "precision highp int;")
 
+_TEXT, _PLACE, _NOBODY = Declares.TEXT, Declares.PLACE, Declares.NOBODY
+_HEAD_100 = ("#ifdef GL_ES", *_PRECISION, "#endif")
+_CANVAS = {
+    "resolution": "u_resolution",
+    "time": "u_time",
+    # The place tells where the mouse is, and nothing of its buttons.
+    "mouse": "vec4(u_mouse, 0.0, 0.0)",
+    "index": "u_frame",
+}
+_TOY = {
+    "resolution": "iResolution.xy",
+    "time": "iTime",
+    "mouse": "iMouse",
+    "index": "iFrame",
+}
+_ISF = {
+    "resolution": "RENDERSIZE",
+    "time": "TIME",
+    # The place has no mouse: an input of ours says where it would be, in shares of the picture.
+    "mouse": f"vec4({ISF_MOUSE} * RENDERSIZE, 0.0, 0.0)",
+    "index": "FRAMEINDEX",
+}
+_FRAGMENT = ("fragment_color", "gl_FragCoord.xy", "void main()")
+_OLD = ("gl_FragColor", "gl_FragCoord.xy", "void main()")
+_OWN = (_TEXT, _TEXT, _TEXT)
+
 DIALECTS = {
-    "glsl-es300": Dialect(
-        ("#version 300 es", *_PRECISION),
-        "fragment_color",
-        "gl_FragCoord.xy",
-        "void main()",
-        True,
-        False,
-        {},
-    ),
-    "glsl-330": Dialect(
-        ("#version 330",), "fragment_color", "gl_FragCoord.xy", "void main()", True, True, {}
-    ),
-    "glsl-es100": Dialect(
-        ("#ifdef GL_ES", *_PRECISION, "#endif"),
+    "glsl-es300": Dialect(("#version 300 es", *_PRECISION), *_FRAGMENT, *_OWN, False, {}),
+    "glsl-330": Dialect(("#version 330",), *_FRAGMENT, *_OWN, True, {}),
+    "glsl-es100": Dialect(_HEAD_100, *_OLD, *_OWN, False, _CANVAS),
+    "glslcanvas": Dialect(_HEAD_100, *_OLD, _TEXT, _NOBODY, _NOBODY, False, _CANVAS),
+    "isf": Dialect(
+        _HEAD_100,
         "gl_FragColor",
-        "gl_FragCoord.xy",
+        # Not gl_FragCoord: a host may draw into a part of its target.
+        "isf_FragNormCoord * RENDERSIZE",
         "void main()",
-        True,
+        *(_PLACE, _PLACE, _NOBODY),
         False,
-        {
-            "resolution": "u_resolution",
-            "time": "u_time",
-            # The place tells where the mouse is, and nothing of its buttons.
-            "mouse": "vec4(u_mouse, 0.0, 0.0)",
-            "index": "u_frame",
-        },
+        _ISF,
     ),
     "shadertoy": Dialect(
         (),
         "fragColor",
         "fragCoord",
         "void mainImage(out vec4 fragColor, in vec2 fragCoord)",
+        *(_PLACE, _NOBODY, _NOBODY),
         False,
-        False,
-        {
-            "resolution": "iResolution.xy",
-            "time": "iTime",
-            "mouse": "iMouse",
-            "index": "iFrame",
-        },
+        _TOY,
     ),
 }
+OLD_TARGETS = frozenset({"glsl-es100", "glslcanvas", "isf"})  # GLSL ES 1.00
 
 _ES100_TYPES = {"resolution": "vec2 u_resolution", "time": "float u_time", "mouse": "vec2 u_mouse"}
 
@@ -118,10 +142,13 @@ class Program:
     constants: frozenset[str]  # numbers that there is no room for among the uniforms
     packing: Packing | None
     vectors: list[str]  # the names of the packed vectors
+    header: tuple[str, ...] = ()  # comments that the place reads
 
     def writer(self) -> GlslWriter:
         """A writer for one stage."""
-        kind = Glsl100Writer if self.target == "glsl-es100" else GlslWriter
+        if self.target == "isf":
+            return IsfWriter(self.names, self.fixed)
+        kind = Glsl100Writer if self.target in OLD_TARGETS else GlslWriter
         return kind(self.names, self.fixed)
 
 
@@ -288,7 +315,9 @@ def _uniform_lines(
     for resource in program.module.resources:
         if resource.name in resources:
             lines += resource_lines(resource, program.names, program.target)
-        if resource.name in fetched_names:
+        if program.target == "isf" and resource.name in resources:
+            accessors += ["", *sampler_lines(resource, program.names)]
+        elif resource.name in fetched_names:
             accessors += ["", *accessor_lines(resource, program.names)]
     return [Line(""), *map(Line, lines), *map(Line, accessors)] if lines else []
 
@@ -297,15 +326,29 @@ def _uniform_line(program: Program, uniform: UniformDeclaration) -> list[str]:
     spelled = program.names.uniforms[uniform.name]
     dialect = program.dialect
     comment = uniform_comment(uniform)
-    if uniform.origin is Origin.FRAME and uniform.name in dialect.texts:
-        if not dialect.declared:
-            return []  # the place declares it
-        return [f"uniform {_ES100_TYPES.get(uniform.name, 'int u_frame')};"]
-    if not dialect.declared:
+    declares = _declares(dialect, uniform)
+    if declares is Declares.PLACE:
+        return []
+    if declares is Declares.NOBODY:
         return [constant_line(uniform, spelled)]
+    if uniform.origin is Origin.FRAME and uniform.name in dialect.texts:
+        return [f"uniform {_ES100_TYPES.get(uniform.name, 'int u_frame')};"]
     if dialect.initialised and uniform.origin is not Origin.FRAME:
         return [f"uniform {uniform.type} {spelled} = {default_text(uniform)};{comment}"]
     return [f"uniform {uniform.type} {spelled};{comment}"]
+
+
+def _declares(dialect: Dialect, uniform: UniformDeclaration) -> Declares:
+    match uniform.origin:
+        case Origin.FRAME:
+            known = dialect.frame is Declares.TEXT or uniform.name in dialect.texts
+            return dialect.frame if known else Declares.NOBODY
+        case Origin.PARAMETER:
+            return dialect.parameters
+        case Origin.NUMBER:
+            return dialect.numbers
+        case _:
+            assert_never(uniform.origin)
 
 
 def _frame_lines(program: Program, in_functions: set[str]) -> list[Line]:

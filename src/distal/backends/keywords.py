@@ -147,3 +147,11 @@ SHADERTOY_NAMES: Final = _words(
     """
 )
 GLSL_CANVAS_NAMES: Final = _words("u_resolution u_time u_delta u_date u_mouse u_frame")
+ISF_NAMES: Final = _words(
+    """
+    PASSINDEX RENDERSIZE TIME TIMEDELTA FRAMEINDEX DATE isf_FragNormCoord isf_FragCoord
+    isf_fragCoord isf_vertShaderInit vv_FragNormCoord vv_vertShaderInit position IMG_PIXEL
+    IMG_NORM_PIXEL IMG_THIS_PIXEL IMG_THIS_NORM_PIXEL IMG_SIZE VVSAMPLER_2DBYPIXEL
+    VVSAMPLER_2DBYNORM VVSAMPLER_2DRECTBYPIXEL VVSAMPLER_2DRECTBYNORM inputImage
+    """
+)

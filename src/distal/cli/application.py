@@ -32,10 +32,12 @@ class TargetName(StrEnum):
 
     IR = "ir"
     LLVM = "llvm"
+    SHADERTOY = "shadertoy"
+    GLSLCANVAS = "glslcanvas"
+    ISF = "isf"
     GLSL_ES300 = "glsl-es300"
     GLSL_330 = "glsl-330"
     GLSL_ES100 = "glsl-es100"
-    SHADERTOY = "shadertoy"
     WGSL = "wgsl"
     WGSL_COMPUTE = "wgsl-compute"
 
