@@ -42,6 +42,7 @@ from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
+from distal.loading import loaded_from
 from distal.lowered import Lowered, Types
 from distal.uniform_values import (
     LARGEST_SIDE_PX,
@@ -165,8 +166,17 @@ class PythonExecutor:
                 linear, uniforms, parts[1].resources, threads=threads, cancel=cancel
             )
         stats["render_s"] = _now() - compiled
+        known = loaded_from(image)
         origin = Provenance(
-            source=image.name, source_hash=parts[0].source_hash, parameters=values, time=seconds
+            source=image.name if known is None else known.source,
+            source_hash=parts[0].source_hash if known is None else known.digest,
+            parameters=values,
+            time=seconds,
+            index=others["index"],
+            seed=others["seed"],
+            mouse=others["mouse"],
+            freeze=freeze,
+            device=device,
         )
         return Picture(pixels, origin, stats, linear)
 

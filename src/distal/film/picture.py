@@ -8,39 +8,25 @@ were made.
 
 from __future__ import annotations
 
-import json
+import importlib.util
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.film.png import encode
+from distal.film import metadata, png
+from distal.film.metadata import Provenance
 from distal.film.replacement import SaveError, check_destination, replacement
-from distal.version import __version__
 
-SUFFIXES = (".png",)
+# Suffix -> the bits of a channel that its files may have; the first are its usual ones.
+FORMATS: Final = {".png": (8, 16), ".exr": (16, 32)}
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Provenance:
-    """Where a picture came from: what is needed to render it again.
-
-    Attributes:
-        source: Name of the scene's file or function, as the author knows it; may be empty.
-        source_hash: Hash of the source that was compiled; may be empty.
-        parameters: The value of each parameter by name, as plain JSON values.
-        time: Seconds.
-    """
-
-    source: str = ""
-    source_hash: str = ""
-    parameters: Mapping[str, Any] = field(default_factory=dict)
-    time: float = 0.0
+__all__ = ["FORMATS", "Picture", "Provenance", "check_savable"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,12 +40,17 @@ class Picture:
         provenance: Where the picture came from; it travels in the file's metadata.
         stats: What rendering took: times in seconds and how the work was done.
         light: The same pixels before they were encoded, where the renderer has them.
+        layers: What else is known of each pixel's middle, by name: "depth" (float32, scene units
+            along the ray, infinite where nothing is met), "normal" (float32, (height, width, 3),
+            world space, toward the eye; 0), "albedo" (float32, (height, width, 3), linear; 0),
+            "material" (uint32, from 1 in the order of the author's tree; 0).
     """
 
     array: NDArray[np.float32]
     provenance: Provenance = field(default_factory=Provenance)
     stats: Mapping[str, Any] = field(default_factory=dict)
     light: NDArray[np.float32] | None = field(default=None, repr=False)
+    layers: Mapping[str, NDArray[Any]] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "array", _checked(self.array))
@@ -68,6 +59,8 @@ class Picture:
                 raise ValueError(f"light of shape {self.light.shape} for {self.array.shape}")
             object.__setattr__(self, "light", _checked(self.light))
         object.__setattr__(self, "stats", MappingProxyType(dict(self.stats)))
+        layers = {name: _layer(name, values, self.array) for name, values in self.layers.items()}
+        object.__setattr__(self, "layers", MappingProxyType(layers))
 
     @property
     def linear(self) -> NDArray[np.float32]:
@@ -99,33 +92,41 @@ class Picture:
     @property
     def metadata(self) -> dict[str, str]:
         """The texts that a saved file carries."""
-        origin = self.provenance
-        return {
-            "Software": f"distal {__version__}",
-            "distal:version": __version__,
-            "distal:source": origin.source,
-            "distal:source-hash": origin.source_hash,
-            "distal:parameters": json.dumps(dict(origin.parameters), sort_keys=True),
-            "distal:time": repr(float(origin.time)),
-            "distal:size": f"{self.width}x{self.height}",
-        }
+        return metadata.texts(self.provenance, (self.width, self.height))
 
-    def save(self, path: str | PathLike[str]) -> None:
+    def told(self, **facts: Any) -> Picture:
+        """The same picture, with more known of where it came from; ``Provenance`` has the names."""
+        return replace(self, provenance=replace(self.provenance, **facts))
+
+    def save(self, path: str | PathLike[str], bits: int | None = None) -> None:
         """Write the picture; the suffix says how. The file appears whole or not at all.
 
-        PNG: 8 bits with sRGB declared, nearest rounding, metadata as in ``metadata``.
+        PNG: display values with sRGB declared, nearest rounding, straight alpha. EXR: linear
+        light, before exposure and tone mapping, premultiplied, and the layers. Both carry
+        ``metadata``.
+
+        Args:
+            path: A file that ends in .png or .exr.
+            bits: Of each channel: 8 (the usual) or 16 of a PNG, 16 (half floats, the usual) or 32
+                of an EXR.
 
         Raises:
-            SaveError: The suffix is unknown, or the file cannot be written.
+            SaveError: The suffix is unknown, it has no such bits, or the file cannot be written.
         """
         destination = Path(path)
-        check_savable(destination)
+        suffix, bits = check_savable(destination, bits)
+        if suffix == ".exr":
+            # Asked for by name: OpenEXR is an extra, and heavy.
+            encode = importlib.import_module("distal.film.exr").encode
+            data = encode(self.linear, self.layers, self.metadata, bits)
+        else:
+            data = png.encode(self.array, self.metadata, bits)
         with replacement(destination) as file:
-            file.write(self._repr_png_())
+            file.write(data)
 
     def _repr_png_(self) -> bytes:
         """The bytes that a notebook shows."""
-        return encode(self.array, self.metadata)
+        return png.encode(self.array, self.metadata)
 
     def __repr__(self) -> str:
         name = self.provenance.source
@@ -153,13 +154,34 @@ def _decoded(array: NDArray[np.float32]) -> NDArray[np.float32]:
     return linear
 
 
-def check_savable(path: Path) -> None:
-    """Refuse a path that ``Picture.save`` would refuse, before any work is spent on it.
+def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
+    """Refuse what ``Picture.save`` would refuse, before any work is spent on it.
+
+    Returns:
+        The suffix, and the bits of a channel.
 
     Raises:
-        SaveError: The suffix is unknown, or no file can stand there.
+        SaveError: The suffix is unknown, it has no such bits, its package is missing, or no file
+            can stand there.
     """
-    if path.suffix.lower() not in SUFFIXES:
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
         named = f"the suffix '{path.suffix}'" if path.suffix else "no suffix"
-        raise SaveError(f"cannot write {path}: it has {named}, pictures end in {SUFFIXES[0]}")
+        raise SaveError(f"cannot write {path}: it has {named}, pictures end in .png or .exr")
+    usual = FORMATS[suffix]
+    if bits is not None and bits not in usual:
+        raise SaveError(f"cannot write {path}: a channel has {usual[0]} or {usual[1]} bits")
+    if suffix == ".exr" and importlib.util.find_spec("OpenEXR") is None:
+        mend = "OpenEXR is missing: pip install 'distal[exr]'"
+        raise SaveError(f"cannot write {path}: {mend}")
     check_destination(path)
+    return suffix, bits or usual[0]
+
+
+def _layer(name: str, values: NDArray[Any], array: NDArray[np.float32]) -> NDArray[Any]:
+    """A layer, not to be written to."""
+    if values.shape[:2] != array.shape[:2]:
+        raise ValueError(f"layer {name} of shape {values.shape} for {array.shape}")
+    view = values.view()
+    view.setflags(write=False)
+    return view
