@@ -13,6 +13,7 @@ from distal.executor_hook import (
     set_calculator_loader,
     set_combiner_loader,
     set_executor_loader,
+    set_presenter_loader,
 )
 from distal.shape_names import SHAPE_NAMES
 from distal.version import __version__
@@ -110,9 +111,14 @@ def _combiner() -> Any:
     return importlib.import_module("distal.frontend.python_expressions").combine
 
 
+def _presenter() -> Any:
+    return importlib.import_module("distal.presenter").Presenter()
+
+
 set_executor_loader(_executor)
 set_calculator_loader(_calculator)
 set_combiner_loader(_combiner)
+set_presenter_loader(_presenter)
 
 
 def _unknown(name: str) -> str:

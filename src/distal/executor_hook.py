@@ -7,6 +7,7 @@ here, and the loader is called the first time something is really run.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
@@ -54,6 +55,22 @@ class Executor(Protocol):
         ...
 
 
+class Presenter(Protocol):
+    """Shows pictures elsewhere than in a file of their own."""
+
+    def show(self, obj: Any, **options: Any) -> Any:
+        """A live picture in a notebook."""
+        ...
+
+    def export(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
+        """A page, or a text."""
+        ...
+
+    def video(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
+        """A video, or a sequence of pictures."""
+        ...
+
+
 # An operator or built-in by name, and its operands; None where one is no value of scene code.
 Combiner: TypeAlias = "Callable[[str, Sequence[Any]], Expression | None]"
 # The value of a built-in of plain numbers and vectors, without a device; None where unknown.
@@ -61,6 +78,7 @@ Calculator: TypeAlias = "Callable[[Intrinsic, Sequence[Any]], Any | None]"
 
 _calculator: Callable[[], Calculator] | None = None
 _combiner: Callable[[], Combiner] | None = None
+_presenter: Callable[[], Presenter] | None = None
 _loader: Callable[[], Executor] | None = None
 _executor: Executor | None = None
 
@@ -81,6 +99,19 @@ def set_combiner_loader(loader: Callable[[], Combiner]) -> None:
     """Say who knows the rules of operators between expressions."""
     global _combiner
     _combiner = loader
+
+
+def set_presenter_loader(loader: Callable[[], Presenter]) -> None:
+    """Say who shows pictures."""
+    global _presenter
+    _presenter = loader
+
+
+def presenter() -> Presenter:
+    """Who shows pictures."""
+    if _presenter is None:
+        raise RuntimeError("nothing here shows pictures: no presenter was set")
+    return _presenter()
 
 
 def combined(operation: str, operands: Sequence[Any]) -> Expression | None:

@@ -13,6 +13,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from distal.executor_hook import executor
+from distal.lang.presentable import Presentable
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ class Func:
         return f"<{type(self).__name__.lower()} {self.__qualname__}>"
 
 
-class Image(Func):
+class Image(Func, Presentable):
     """A picture: a function from a Frame to the color of its pixel."""
 
     def render(

@@ -22,7 +22,7 @@ from distal.scene.viewable import Viewable, viewable
 _PLAYER: Final = Path(__file__).parents[1] / "export" / "player.js"
 
 
-class LiveView(anywidget.AnyWidget):  # type: ignore[misc]  # anywidget has no types
+class LiveView(anywidget.AnyWidget):
     """A live picture. Observe ``params``, ``time``, ``view``, ``steering`` as any trait's.
 
     Attributes:

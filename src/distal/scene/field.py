@@ -19,6 +19,7 @@ from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import FLOAT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.presentable import Presentable
 from distal.scene.binding import bound, own_node
 from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.conversion import Asked, Number, number
@@ -36,7 +37,7 @@ from distal.scene.values import plain_name
 MOST_PARTS: Final = 2048
 
 
-class Field(Composed):
+class Field(Composed, Presentable):
     """What solid and flat shapes share."""
 
     flat: ClassVar[bool] = False

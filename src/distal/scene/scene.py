@@ -20,6 +20,7 @@ from distal.ir.types import FLOAT, FRAME, INT, VEC3, VEC4
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.presentable import Presentable
 from distal.render import tonemap, views
 from distal.scene.backgrounds import as_background
 from distal.scene.cameras import BaseCamera, Camera
@@ -46,7 +47,7 @@ _LIMITS: Final = {
 }
 
 
-class Scene(Composed):
+class Scene(Composed, Presentable):
     """Shapes, lights and a camera.
 
     Args:
