@@ -10,7 +10,7 @@ import functools
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -54,13 +54,14 @@ class Wishes:
     transparent: bool
     exposure: float | None
     tone_map: str | None
+    layers: tuple[str, ...] | None = None
 
     @property
     def options(self) -> dict[str, Any]:
         """What ``Scene.render`` is told of them."""
-        said = {"view": self.view, "plane": self.plane, "samples": self.samples}
-        said["transparent"] = self.transparent
-        plain = (None, False, "color")
+        said: dict[str, Any] = {"view": self.view, "plane": self.plane, "samples": self.samples}
+        said |= {"transparent": self.transparent, "layers": self.layers}
+        plain = (None, False, "color", ())
         return {name: value for name, value in said.items() if value not in plain}
 
     def refuse_for_image(self, name: str) -> None:
@@ -71,6 +72,7 @@ class Wishes:
             "--transparent": self.transparent or None,
             "--exposure": self.exposure,
             "--tone-map": self.tone_map,
+            "--layers": self.layers or None,
         }
         for option, value in given.items():
             if value is not None:
@@ -82,7 +84,10 @@ class Wishes:
 def render(
     scene: SceneArgument,
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="The picture's file.", show_default=False)
+        Path,
+        typer.Option(
+            "-o", "--output", help="The picture's file: .png or .exr.", show_default=False
+        ),
     ],
     size: SizeOption = "640x480",
     at: TimeOption = "0",
@@ -111,6 +116,19 @@ def render(
     tone_map: Annotated[
         str | None, typer.Option(help="none, reinhard, aces, agx or neutral.", show_default=False)
     ] = None,
+    bits: Annotated[
+        int | None,
+        typer.Option(help="Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR."),
+    ] = None,
+    layers: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAMES",
+            help="What an EXR holds besides color: depth,normal,albedo,material or none; "
+            "all without it.",
+            show_default=False,
+        ),
+    ] = None,
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
     threads: Annotated[
@@ -128,10 +146,11 @@ def render(
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     wishes = read_wishes(view, plane, samples, transparent, exposure, tone_map)
-    check_savable(output)
+    suffix, _ = check_savable(output, bits)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
     obj = load(scene)
+    wishes = replace(wishes, layers=read_layers(layers, suffix, obj, wishes.view))
     run, values = prepared(obj, wishes, assignments or (), seconds)
     loaded = time.perf_counter()
     with ProgressBar() as progress:
@@ -144,7 +163,7 @@ def render(
             progress=progress,
         )
     rendered = time.perf_counter()
-    picture.save(output)
+    picture.save(output, bits)
     figures = {
         "load_s": loaded - begin,
         **dict.fromkeys(("compile_s", "render_s", "cache_hit", "lanes", "threads")),
@@ -181,6 +200,24 @@ def read_wishes(
     return Wishes(seen, wanted, samples, transparent, exposure, tone_map)
 
 
+def read_layers(given: str | None, suffix: str, obj: Any, view: str) -> tuple[str, ...]:
+    """The layers that a file of a suffix is to hold: those that were asked for, else all."""
+    from distal.lang.functions import Func
+    from distal.scene.layers import NAMES, checked_layers
+
+    if given is None:
+        all_of_them = suffix == ".exr" and view == "color" and not isinstance(obj, Func)
+        return NAMES if all_of_them else ()
+    if given == "none":
+        return ()
+    if suffix != ".exr":
+        raise UsageError(f"layers are for an .exr, not for a {suffix}")
+    try:
+        return checked_layers(name.strip() for name in given.split(","))
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
 def prepared(
     obj: Any, wishes: Wishes, assignments: Sequence[str], seconds: float
 ) -> tuple[Run, Mapping[str, Any]]:
@@ -213,7 +250,7 @@ def _image_run(image: Any, view: str) -> Run:
         seen = view_of_image(image, view)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    return functools.partial(executor().render, seen)
+    return lambda **options: executor().render(seen, **options).told(view=view)
 
 
 def _scene_run(scene: Any, wishes: Wishes) -> Run:

@@ -98,6 +98,10 @@ class Picture:
         """The same picture, with more known of where it came from; ``Provenance`` has the names."""
         return replace(self, provenance=replace(self.provenance, **facts))
 
+    def with_layers(self, layers: Mapping[str, NDArray[Any]]) -> Picture:
+        """The same picture with layers."""
+        return replace(self, layers=layers)
+
     def save(self, path: str | PathLike[str], bits: int | None = None) -> None:
         """Write the picture; the suffix says how. The file appears whole or not at all.
 

@@ -132,6 +132,10 @@ def _nearer(a: Expr, b: Expr) -> Expr:
     return select(compare(CompareOp.LT, b, a), number(1.0), number(0.0))
 
 
+def _more_shown(a: Expr, b: Expr, share: Expr) -> Expr:
+    return select(compare(CompareOp.GT, share, number(0.5)), b, a)
+
+
 def paints(node: Node) -> bool:
     """Whether anything in a subtree is painted."""
     return any(n.material is not None or n.cut_material is not None for n in node.walk())
@@ -177,6 +181,24 @@ class Material(Attribute):
         return body.let("shown", surface)
 
 
+class MaterialNumber(Material):
+    """Which material a place shows, as a number from 1 on, in the order of the author's tree."""
+
+    def __init__(self, composer: Composer, default: Any) -> None:
+        super().__init__(composer, default)
+        self.materials: list[Any] = []
+
+    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """The one of which more shows."""
+        return _more_shown(a, b, share)
+
+    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+        if not any(known is material for known in self.materials):
+            self.materials.append(material)
+        found = next(i for i, known in enumerate(self.materials, 1) if known is material)
+        return number(float(found))
+
+
 class Part(Attribute):
     """Which leaf of the tree a place belongs to, as a number."""
 
@@ -193,7 +215,7 @@ class Part(Attribute):
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """The one of which more shows."""
-        return select(compare(CompareOp.GT, share, number(0.5)), b, a)
+        return _more_shown(a, b, share)
 
     def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
         """The cutter's own part: it made the face."""

@@ -8,7 +8,7 @@ ask for is known by name; it takes what it names.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
@@ -23,11 +23,11 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
-from distal.render import bounce, film, legend, settings, steer, tonemap, views
+from distal.render import bounce, film, layers, legend, settings, steer, tonemap, views
 from distal.render.camera import Ray
 from distal.render.lights import no_light
 from distal.scene import steering
-from distal.scene.attributes import Attribute, Material, Site, attribute
+from distal.scene.attributes import Attribute, Material, MaterialNumber, Site, attribute
 from distal.scene.calls import expression_of
 from distal.scene.compose import ZERO_CELL, Composer
 from distal.scene.values import Body
@@ -43,6 +43,9 @@ RENDERERS: Final[dict[str, Func]] = {
     "mirrored": bounce.seen_mirrored,
     "refracted": bounce.seen_refracted,
 }
+# Of tables of different functions the type checker knows no more than that they hold objects.
+LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
+VIEWS: Final = cast(Mapping[str, Func], views.VIEWS)
 
 
 class Picturing:
@@ -68,7 +71,7 @@ class Picturing:
             "coord": field(frame, "coord"),
             "resolution": resolution,
             "camera": self._steered(resolution) if steered else self._camera(resolution),
-            "radiance": self._radiance(view, resolution),
+            "radiance": self._radiance(self._shown(view), resolution),
             "transparent": boolean(transparent),
             "samples": self._assembly.number("Samples", INT, 1) if sampled else integer(1),
         }
@@ -82,6 +85,20 @@ class Picturing:
         body.statements.append(Return(color))
         params = (Param("frame", FRAME),)
         return self._assembly.define("picture", params, VEC4, body.statements, self._scene.place)
+
+    def layer(self, name: str, *, steered: bool) -> str:
+        """The function of the frame that gives a layer's values at a pixel's middle."""
+        frame = Read("frame", FRAME)
+        resolution = field(frame, "resolution")
+        given: dict[str, Expr] = {
+            "coord": field(frame, "coord"),
+            "resolution": resolution,
+            "camera": self._steered(resolution) if steered else self._camera(resolution),
+            "radiance": self._radiance(LAYERS[name], resolution),
+        }
+        value = self.composer.call(layers.through_middle, given)
+        params = (Param("frame", FRAME),)
+        return self._assembly.define("layer", params, VEC4, (Return(value),), self._scene.place)
 
     def displayed(self, color: Expr) -> Expr:
         """Linear light encoded for display."""
@@ -138,16 +155,20 @@ class Picturing:
         free = tuple(t for _, t in params[: len(params) - len(captured)])
         return FunctionRef(defined, tuple(captured), FunctionType(free, result.type))
 
-    def _radiance(self, view: str, resolution: Expr) -> FunctionRef:
+    def _shown(self, view: str) -> Func:
+        """What follows a ray for a view."""
+        return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
+
+    def _radiance(self, shown: Func, resolution: Expr) -> FunctionRef:
         def make(body: Body, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, given["resolution"]), **given}
-            if view == "slice":
+            if shown is views.view_slice:
                 asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
                 asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
-            if view != "color":
-                shown: Func = views.VIEWS[view]  # type: ignore[assignment]  # the stub's functions differ
-                return self.composer.call(shown, asked)
-            return self.composer.call(RENDERERS[self._scene.renderer], asked)
+            if shown is layers.layer_material:
+                kind = MaterialNumber(self.composer, self._scene.material)
+                asked["identity"] = self.known_of_place("material_number", kind)
+            return self.composer.call(shown, asked)
 
         params = (("ray", self._assembly.struct(Ray)), ("resolution", VEC2))
         return self._function("radiance", params, make, (resolution,))

@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Final
 
 from distal.diagnostics import Span
-from distal.executor_hook import executor
 from distal.fields.claims import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
@@ -21,12 +20,14 @@ from distal.lang import func, vec3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
+from distal.loading import hand_on
 from distal.render import tonemap, views
 from distal.scene.backgrounds import as_background
 from distal.scene.cameras import BaseCamera, Camera
 from distal.scene.cells import check_cells
 from distal.scene.conversion import Asked, choice, number
 from distal.scene.field import Field
+from distal.scene.layers import Layer
 from distal.scene.lights import DistantLight, HemisphereLight, Light
 from distal.scene.materials import as_material
 from distal.scene.numbers import arguments
@@ -34,6 +35,7 @@ from distal.scene.picture import NORMALS, Picturing
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
 from distal.scene.steepness import check_slopes
+from distal.scene.steering import Steering
 
 MOST_SAMPLES: Final = 65536
 _LIMITS: Final = {
@@ -144,6 +146,7 @@ class Scene(Composed, Presentable):
             place=place,
         )
         self.display = Display(self)
+        self.asked_display: Mapping[str, Any] = {}
         self._pictures: dict[tuple[Any, ...], Composed] = {}
         self._whole = True
 
@@ -184,6 +187,8 @@ class Scene(Composed, Presentable):
         transparent: bool = False,
         plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
         freeze: bool = False,
+        steering: Steering | None = None,
+        layers: Sequence[str] = (),
     ) -> Any:
         """Compute the picture.
 
@@ -205,35 +210,26 @@ class Scene(Composed, Presentable):
             plane: What "slice" shows: the plane's normal, of length 1, and its distance from the
                 origin along it.
             freeze: Make constants of all numbers: slower to compile, a little faster to run.
+            steering: How the camera is moved by hand; None: not.
+            layers: What else to compute of each pixel's middle, for ``Picture.layers``: "depth",
+                "normal", "albedo", "material".
         """
-        if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
-            raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
-        settings: dict[str, Any] = {"Samples": samples} if samples > 1 else {}
-        if view == "slice":
-            settings |= slice_settings(plane)
-        doubts = importlib.import_module("distal.scene.doubts")  # needs NumPy, as pictures do
-        doubts.doubt_functions(self.shape, params or {}, time)
-        picture = executor().render(
-            self.view(view, transparent=transparent, sampled=samples > 1),
+        rendering = importlib.import_module("distal.scene.rendering")  # needs NumPy
+        return rendering.rendered(
+            self,
+            rendering.Wish(samples, view, transparent, plane, steering, layers),
+            progress,
             size=size,
             time=time,
             params=params,
             device=device,
             threads=threads,
-            progress=progress,
             cancel=cancel,
             mouse=mouse,
             index=index,
             seed=seed,
-            settings=settings,
             freeze=freeze,
         )
-        if view == "color" and not transparent and not doubts.shows(picture.array[..., 3]):
-            message = f"the camera is inside '{self.shape.name}', and no ray finds a way out"
-            refuse(message, "move the camera, or look at the shape with view='slice'", self.place)
-        if view == "color":
-            doubts.doubt_black(self, picture, params or {}, time)
-        return picture
 
     def view(
         self,
@@ -263,6 +259,18 @@ class Scene(Composed, Presentable):
             self._pictures[key] = View(self, *key)
         return self._pictures[key]
 
+    def layer(self, name: str, *, steered: bool = False) -> Composed:
+        """What else is known of each pixel's middle: an image of plain values (``render.layers``).
+
+        Args:
+            name: "depth", "normal", "albedo" or "material".
+            steered: Whether the camera moves by the numbers of a ``Steering``.
+        """
+        key = ("layer", name, steered)
+        if key not in self._pictures:
+            self._pictures[key] = Layer(self, name, steered=steered)
+        return self._pictures[key]
+
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
         """The same scene, its light shown in another way; None keeps what it says itself."""
         made = Scene.__new__(Scene)
@@ -273,8 +281,12 @@ class Scene(Composed, Presentable):
         if tone_map is not None:
             made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
         made.display = Display(made)
+        given = {"exposure": exposure, "tone_map": tone_map}
+        said = {name: value for name, value in given.items() if value is not None}
+        made.asked_display = {**self.asked_display, **said}
         made._pictures = {}
         made._whole = True
+        hand_on(self, made)
         return made
 
     def text(self) -> Composed:
@@ -310,6 +322,7 @@ class View(Composed):
         encoded: bool,
         steered: bool,
     ) -> None:
+        hand_on(scene, self)
         self.name = scene.name if view == "color" else f"{scene.name} ({view})"
         self._scene = scene
         self._view = view

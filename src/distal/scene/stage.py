@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
+from distal.loading import hand_on
 from distal.scene.backgrounds import GradientBackground
 from distal.scene.cameras import Camera
 from distal.scene.field import Field
@@ -36,6 +37,7 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
         params: Values of parameters by name, for the frame.
         time: Seconds.
     """
+    given = shape
     if isinstance(shape, Shape2D):
         low, high = _finite(shape, params, time)
         shape = shape.extrude(_PLATE * math.dist(low, high)).named(shape.name)
@@ -48,7 +50,7 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
     below = shape.bounds(params=params, time=time)[0][1]
     if math.isfinite(below):
         shown.append(Plane(y=below - 1e-3 * radius).paint((0.45, 0.46, 0.5)))
-    return Scene(
+    scene = Scene(
         shown,
         lights=[
             DistantLight((0.5, 1.0, 0.6), 0.75, angle=0.12),
@@ -62,6 +64,8 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
         far=50.0 * radius,
         name=shape.name,
     )
+    hand_on(given, scene)
+    return scene
 
 
 def _finite(

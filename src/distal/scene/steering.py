@@ -42,11 +42,15 @@ class Steering:
     pan: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        numbers = (self.yaw, self.pitch, self.zoom, *self.pan)
-        if not all(abs(n) <= LARGEST_FLOAT for n in numbers):
+        if not all(abs(n) <= LARGEST_FLOAT for n in self.numbers):
             raise ValueError(f"a camera is moved by finite numbers, not {self!r}")
         if not self.zoom > 0.0:
             raise ValueError(f"zoom is a factor above 0, not {self.zoom:g}")
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """The five numbers: yaw, pitch, zoom, pan's x and y."""
+        return (self.yaw, self.pitch, self.zoom, *self.pan)
 
     @property
     def settings(self) -> dict[str, Any]:

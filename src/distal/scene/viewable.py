@@ -116,7 +116,9 @@ class Viewable:
         """The picture; the options are those of ``Image.render``: size, time, params, device."""
         image = self.image(view, steered=steering is not None)
         settings = {} if steering is None else self.settings(steering, view)
-        return executor().render(image, settings=settings, **options)
+        picture = executor().render(image, settings=settings, **options)
+        moved = steering.numbers if steering is not None and self.steers else None
+        return picture.told(view=view, steering=moved)
 
     def _has(self, view: str) -> bool:
         try:
