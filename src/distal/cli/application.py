@@ -15,14 +15,15 @@ from typing import Annotated
 import typer
 
 import distal
-from distal.cli import check, probe, render
-from distal.cli.arguments import UsageError, read_scene
+from distal.cli import check, export, probe, render, video
+from distal.cli.arguments import EXAMPLE_PREFIX, UsageError, read_scene
 from distal.cli.base import SceneArgument, application, load, reporting
+from distal.export.texts import with_header
 from distal.film.replacement import check_destination, replacement
 from distal.version import __version__
 
 # Importing them is what adds their commands.
-COMMANDS = (render, check, probe)
+COMMANDS = (render, check, probe, export, video)
 
 __all__ = ["COMMANDS", "TargetName", "application"]
 
@@ -92,13 +93,14 @@ def compile(
             raise UsageError(f"'{output}' is the scene itself")
         check_destination(output)
     artifact = distal.compile(load(scene), target=target.value, after=after)
+    text = with_header(artifact, target.value, _file_name(scene))
     if output is None:
-        print(artifact.text.rstrip("\n"))
+        print(text.rstrip("\n"))
         return
     files = {output.with_suffix(".json"): json.dumps(artifact.interface, indent=2)}
     if artifact.vertex is not None:
         files[output.with_suffix(".vert")] = artifact.vertex
-    files[output] = artifact.text
+    files[output] = text
     for path, text in files.items():
         with replacement(path) as file:
             file.write(text.rstrip("\n").encode() + b"\n")
@@ -123,6 +125,14 @@ def doctor() -> None:
     show(findings)
     if any(finding.state is State.BROKEN for finding in findings):
         raise typer.Exit(1)
+
+
+def _file_name(scene: str) -> str:
+    """The name of the author's file, as FILE[:NAME] or example:NAME tell it."""
+    path = read_scene(scene)[0]
+    if path.startswith(EXAMPLE_PREFIX):
+        return f"{path.removeprefix(EXAMPLE_PREFIX)}.py"
+    return Path(path).name
 
 
 def _check_pass(name: str) -> None:

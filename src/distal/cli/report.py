@@ -54,6 +54,64 @@ class ProgressBar:
         self._progress.update(self._task, completed=done, total=total)
 
 
+class FrameBar:
+    """The bar of a sequence: frames, frames a second, time that remains.
+
+    Called with frames done, all frames, and what is being done with them.
+    """
+
+    def __init__(self) -> None:
+        self._begin = time.monotonic()
+        self._progress: Progress | None = None
+        self._tasks: dict[str, tuple[TaskID, float, int]] = {}
+        self._wanted = sys.stderr.isatty()
+
+    def __enter__(self) -> FrameBar:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._stop()
+
+    def __call__(self, done: int, total: int, what: str) -> None:
+        """Show how far the work is."""
+        if not self._wanted or time.monotonic() - self._begin < PATIENCE_S:
+            return
+        if self._progress is None:
+            columns = (
+                TextColumn("{task.description}"),
+                BarColumn(),
+                TextColumn("{task.completed:.0f}/{task.total:.0f}"),
+                TextColumn("{task.fields[pace]}"),
+                TimeRemainingColumn(),
+            )
+            self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
+            self._progress.start()
+        now = time.monotonic()
+        if what not in self._tasks:
+            # Frames that an earlier run made cost no time: the pace is that of this run.
+            task = self._progress.add_task(what, total=total, completed=done, pace="")
+            self._tasks[what] = (task, now, done)
+        task, begin, first = self._tasks[what]
+        pace = f"{(done - first) / (now - begin):.1f} fps" if now > begin else ""
+        self._progress.update(task, completed=done, total=total, pace=pace)
+
+    def say(self, line: str) -> None:
+        """A line that stays, above the bar."""
+        self._stop()
+        say(line)
+
+    def _stop(self) -> None:
+        if self._progress is not None:
+            self._progress.stop()
+            self._progress = None
+            self._tasks = {}
+
+
 def say(line: str) -> None:
     """One line to the person; stdout stays for data."""
     print(line, file=sys.stderr)
