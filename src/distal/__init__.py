@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from distal.compiler import compile as compile
     from distal.diagnostics import CompileError as CompileError
     from distal.diagnostics import LoadError as LoadError
+    from distal.export.registry import export as export
     from distal.film.picture import Picture as Picture
     from distal.lang.expressions import time as time
     from distal.loading import gallery as gallery
@@ -71,6 +72,7 @@ _ROOMS = {
     "distal.backends.base": ("Artifact",),
     "distal.compiler": ("compile",),
     "distal.diagnostics": ("CompileError", "LoadError"),
+    "distal.export": ("export",),
     "distal.film.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.loading": ("gallery", "load"),
@@ -130,7 +132,9 @@ def _unknown(name: str) -> str:
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(_unknown(name))
-    value = getattr(importlib.import_module(_HOMES[name]), name)
+    room = importlib.import_module(_HOMES[name])
+    # The room "export" is itself what is called: Python binds a room's name here when it loads one.
+    value = room if room.__name__ == f"{__name__}.{name}" else getattr(room, name)
     globals()[name] = value
     return value
 

@@ -196,14 +196,17 @@ def test_a_fault_of_ours_is_not_dressed_up(scene, run):
 
 def test_compile_prints_the_text_alone(scene, run):
     result = run("compile", "s.py", "--target", "wgsl")
-    assert (result.exit_code, result.stdout) == (0, "// wgsl None\n")
+    assert result.exit_code == 0
+    # Under a comment that says whose it is, and how it is used.
+    assert result.stdout.startswith("/*\n * s.py, written by distal ")
+    assert result.stdout.endswith(" */\n\n// wgsl None\n")
     assert run("compile", "s.py", "--target", "ir", "--after", "lower").stdout == "// ir lower\n"
 
 
 def test_compile_to_a_file_writes_interface_and_vertex_stage_beside_it(scene, run):
     result = run("compile", "s.py", "--target", "glsl-es300", "-o", "a.frag")
     assert (result.exit_code, result.stdout) == (0, "")
-    assert Path("a.frag").read_text() == "// glsl-es300 None\n"
+    assert Path("a.frag").read_text().endswith(" */\n\n// glsl-es300 None\n")
     assert json.loads(Path("a.json").read_text()) == {"a": 1}
     assert Path("a.vert").read_text() == "vertex\n"
     assert len(list(Path().iterdir())) == 3
