@@ -3,6 +3,7 @@ struct Uniforms {
     time: f32,
     filter_: f32,  // Filter, 0.01 to 1.0
     outline: u32,  // Outline
+    tile: vec4u,  // the part to compute: corner, size; zeros: the whole picture
 }
 
 @group(0) @binding(0) var<uniform> uniforms: Uniforms;
@@ -72,12 +73,14 @@ fn pixel(coord: vec2f) -> vec4f {
 
 @compute @workgroup_size(8, 8)
 fn compute_main(@builtin(global_invocation_id) id: vec3u) {
-    let size = vec2u(uniforms.resolution);
+    let part = uniforms.tile;
+    let size = select(vec2u(uniforms.resolution), part.zw, part.z > 0u);
     if (id.x >= size.x || id.y >= size.y) {
         return;
     }
     // The picture's top row comes first; coordinates count from the bottom.
-    let coord = vec2f(f32(id.x) + 0.5, uniforms.resolution.y - (f32(id.y) + 0.5));
+    let center = vec2f(id.xy + part.xy) + 0.5;
+    let coord = vec2f(center.x, uniforms.resolution.y - center.y);
     pixels[id.y * size.x + id.x] = pixel(coord);
 }
 

@@ -3,6 +3,7 @@ struct Uniforms {
     time: f32,
     filter_: f32,  // Filter, 0.01 to 1.0
     outline: u32,  // Outline
+    tile: vec4u,  // the part to compute: corner, size; zeros: the whole picture
 }
 
 @group(0) @binding(0) var<uniform> uniforms: Uniforms;
@@ -78,7 +79,8 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     // Positions count from the top, coordinates from the bottom.
-    return pixel(vec2f(position.x, uniforms.resolution.y - position.y));
+    let center = position.xy + vec2f(uniforms.tile.xy);
+    return pixel(vec2f(center.x, uniforms.resolution.y - center.y));
 }
 
 // Run once for each picture, before the pixels.

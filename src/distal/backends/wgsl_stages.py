@@ -2,8 +2,12 @@
 
 In: a module shaped for WGSL. Out: the text. Group 0 holds the uniforms (binding 0) and the
 per-frame values: written by one invocation of ``frame_main`` (binding 2), read by all pixels as a
-uniform (binding 1). It also holds the picture of a compute program (binding 3). Group 1 holds
-textures with their samplers, and buffers.
+uniform (binding 1). It also holds what a compute program writes (binding 3), and of a function what
+it is called with (binding 4). Group 1 holds textures with their samplers, and buffers.
+
+A large picture is computed part by part, so that no driver takes a long computation for a hanging
+one. The last member of the uniforms says which part: its corner and its size. Left at zeros it is
+the whole picture.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from distal.backends.code import Code, Line
 from distal.backends.module_names import ModuleNames, called_by, reachable, types_in
 from distal.backends.module_text import per_frame_reads, uniform_comment
 from distal.backends.names import Namer
+from distal.backends.wgsl_functions import function_binding_lines, function_entry_lines
 from distal.backends.wgsl_layout import Layout, shared_type
 from distal.backends.wgsl_resources import accessor_lines, binding_lines, fetched_resources
 from distal.backends.wgsl_writer import Expense, WgslWriter
@@ -27,6 +32,7 @@ OWN_NAMES = frozenset(
     {
         *("uniforms", "Uniforms", "frame", "Frame", "frame_output", "pixels", "pixel"),
         *("vertex_main", "fragment_main", "compute_main", "frame_main"),
+        *("source", "arguments", "results", "pixels_main", "points_main"),
     }
 )
 
@@ -38,6 +44,7 @@ class Program:
     module: Module
     names: ModuleNames
     resolution: str  # the member of the uniforms that is the picture's size
+    tile: str  # the member that says which part of the picture is computed; "" of a function
     uniforms: Layout
     frame: Layout
     compute: bool
@@ -60,6 +67,8 @@ def program_lines(program: Program) -> list[Line]:
         writer.line("")
     if is_image:
         writer.lines += map(Line, _entry_points(program))
+    elif program.compute:
+        writer.lines += map(Line, function_entry_lines(entry, writer, names))
     used = list(functions)
     if module.frame:
         used += _write_frame(program, writer, functions)
@@ -130,12 +139,14 @@ def _entry_points(program: Program) -> list[str]:
         return [
             "@compute @workgroup_size(8, 8)",
             "fn compute_main(@builtin(global_invocation_id) id: vec3u) {",
-            f"    let size = vec2u(uniforms.{program.resolution});",
+            f"    let part = uniforms.{program.tile};",
+            f"    let size = select(vec2u(uniforms.{program.resolution}), part.zw, part.z > 0u);",
             "    if (id.x >= size.x || id.y >= size.y) {",
             "        return;",
             "    }",
             "    // The picture's top row comes first; coordinates count from the bottom.",
-            f"    let coord = vec2f(f32(id.x) + 0.5, {height} - (f32(id.y) + 0.5));",
+            "    let center = vec2f(id.xy + part.xy) + 0.5;",
+            f"    let coord = vec2f(center.x, {height} - center.y);",
             "    pixels[id.y * size.x + id.x] = pixel(coord);",
             "}",
             "",
@@ -151,7 +162,8 @@ def _entry_points(program: Program) -> list[str]:
         "@fragment",
         "fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {",
         "    // Positions count from the top, coordinates from the bottom.",
-        f"    return pixel(vec2f(position.x, {height} - position.y));",
+        f"    let center = position.xy + vec2f(uniforms.{program.tile}.xy);",
+        f"    return pixel(vec2f(center.x, {height} - center.y));",
         "}",
         "",
     ]
@@ -167,6 +179,9 @@ def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line
             type = writer.type_name(shared_type(uniform.type))
             comment = uniform_comment(uniform)
             lines.append(f"    {names.uniforms[uniform.name]}: {type},{comment}")
+        if program.tile:
+            note = "the part to compute: corner, size; zeros: the whole picture"
+            lines.append(f"    {program.tile}: vec4u,  // {note}")
         lines += ["}", "", "@group(0) @binding(0) var<uniform> uniforms: Uniforms;"]
     if module.frame:
         lines += ["", "// Values that are the same in all pixels, computed by frame_main."]
@@ -182,6 +197,8 @@ def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line
         ]
     if program.compute and module.kind is EntryKind.IMAGE:
         lines += ["", "@group(0) @binding(3) var<storage, read_write> pixels: array<vec4f>;"]
+    elif program.compute:
+        lines += function_binding_lines(module.function(module.entry))
     nodes: list[Expr] = [*nodes_in(*(value for _, value in module.frame))]
     for function in functions:
         nodes += expressions_in(function.body)
