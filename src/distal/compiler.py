@@ -63,7 +63,8 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
     """Compile a scene, an ``@image`` or a ``@func`` to the text of a target.
 
     Args:
-        obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point.
+        obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point
+            (``wgsl-compute``: one that calls it for many points).
         target: One of ``ir llvm shadertoy glslcanvas isf glsl-es300 glsl-330 glsl-es100 wgsl
             wgsl-compute``.
         after: For ``ir``: the pass after which to stop; ``"lower"`` for none at all.
