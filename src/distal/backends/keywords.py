@@ -143,7 +143,8 @@ WGSL_PREDECLARED: Final = (
 SHADERTOY_NAMES: Final = _words(
     """
     iResolution iTime iTimeDelta iFrame iFrameRate iChannelTime iChannelResolution iMouse iDate
-    iSampleRate iChannel0 iChannel1 iChannel2 iChannel3 fragColor fragCoord
+    iSampleRate iChannel0 iChannel1 iChannel2 iChannel3 iCh0 iCh1 iCh2 iCh3 fragColor fragCoord
+    shadertoy_out_color st_assert HW_PERFORMANCE
     """
 )
 GLSL_CANVAS_NAMES: Final = _words("u_resolution u_time u_delta u_date u_mouse u_frame")
