@@ -170,6 +170,7 @@ class PythonExecutor:
         origin = Provenance(
             source=image.name if known is None else known.source,
             source_hash=parts[0].source_hash if known is None else known.digest,
+            neighbours=() if known is None else known.neighbours,
             parameters=values,
             time=seconds,
             index=others["index"],

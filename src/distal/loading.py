@@ -14,7 +14,7 @@ import types
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
@@ -25,6 +25,7 @@ from distal.lang.functions import Func, Image
 # What a file may define for us.
 SceneCode: TypeAlias = Func | Composed
 
+EXAMPLE_PREFIX: Final = "example:"
 _DEFAULT_NAMES = ("scene", "picture", "shape")
 
 
@@ -35,11 +36,13 @@ class LoadedFrom:
     Attributes:
         source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` as it was given: no folder is added.
         files: The file, and the modules beside it that it imported.
-        digest: SHA-256 of their texts; the file's own name is no part of it.
+        neighbours: The places of these modules beside the file, with slashes.
+        digest: What ``digest_of`` gives for them.
     """
 
     source: str
     files: tuple[Path, ...]
+    neighbours: tuple[str, ...]
     digest: str
 
 
@@ -80,16 +83,47 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
         CompileError: The file is not valid Python.
     """
     file = _find(str(path))
-    module, files, digest = _run(file)
+    text = _read(file)
+    module, modules = _run(file, text)
     found = _pick(module, file, name)
     source = str(path) if name is None else f"{path}:{name}"
-    _loaded[found] = LoadedFrom(source, files, digest)
+    folder = file.resolve().parent
+    neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
+    digest = _digest(text, folder, neighbours)
+    _loaded[found] = LoadedFrom(source, (file, *modules), neighbours, digest)
     return found
 
 
+def split_source(text: str) -> tuple[str, str | None]:
+    """FILE[:NAME] or example:NAME[:NAME] as the path that ``load`` takes, and the name."""
+    prefix = EXAMPLE_PREFIX if text.startswith(EXAMPLE_PREFIX) else ""
+    rest = text.removeprefix(prefix)
+    file, colon, name = rest.rpartition(":")
+    # A colon may belong to the file's own name, or to a drive (C:\scene.py).
+    if not colon or not name.isidentifier() or (not prefix and Path(rest).exists()):
+        file, name = rest, ""
+    return prefix + file, name or None
+
+
+def digest_of(path: str | Path, neighbours: Iterable[str] = ()) -> str:
+    """SHA-256 of the text of a file and of modules beside it, without running them.
+
+    A file alone has the hash of its text with the line ends of Unix; its name is no part of it.
+
+    Args:
+        path: As for ``load``.
+        neighbours: The places of the modules beside it, with slashes.
+
+    Raises:
+        LoadError: There is no such file.
+    """
+    file = _find(str(path))
+    return _digest(_read(file), file.resolve().parent, neighbours)
+
+
 def _find(path: str) -> Path:
-    if path.startswith("example:"):
-        wanted = path.removeprefix("example:")
+    if path.startswith(EXAMPLE_PREFIX):
+        wanted = path.removeprefix(EXAMPLE_PREFIX)
         examples = gallery()
         if wanted not in examples:
             raise LoadError(f"there is no example '{wanted}'; examples: {', '.join(examples)}")
@@ -105,9 +139,8 @@ def _find(path: str) -> Path:
     return file
 
 
-def _run(file: Path) -> tuple[types.ModuleType, tuple[Path, ...], str]:
-    """Run a file: its module, the files that took part, the hash of their texts."""
-    text = _read(file)
+def _run(file: Path, text: str) -> tuple[types.ModuleType, list[Path]]:
+    """Run a file: its module, and the modules beside it that it imported."""
     name = "distal_scene_" + "".join(c if c.isalnum() else "_" for c in file.stem)
     module = types.ModuleType(name)
     module.__file__ = str(file)
@@ -138,19 +171,26 @@ def _run(file: Path) -> tuple[types.ModuleType, tuple[Path, ...], str]:
     finally:
         sys.path.remove(folder)
         neighbours = _forget_neighbours(Path(folder), known)
-    return module, (file, *neighbours), _digest(text, Path(folder), neighbours)
+    return module, neighbours
 
 
-def _digest(text: str, folder: Path, neighbours: Iterable[Path]) -> str:
-    """The hash of a file's text and of its neighbours', each with its place beside the file."""
+def _digest(text: str, folder: Path, neighbours: Iterable[str]) -> str:
     whole = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
-    for path in neighbours:
-        whole.update(f"\0{path.relative_to(folder).as_posix()}\0".encode("utf-8", "surrogatepass"))
-        try:
-            whole.update(path.read_bytes().replace(b"\r\n", b"\n"))
-        except OSError:  # gone since it was imported: then no later text is equal
-            whole.update(b"\0")
+    for place in neighbours:
+        whole.update(f"\0{place}\0".encode("utf-8", "surrogatepass"))
+        whole.update(_neighbour(folder, place))
     return whole.hexdigest()
+
+
+def _neighbour(folder: Path, place: str) -> bytes:
+    """The text of a module beside a file; of none, what no text is equal to."""
+    try:
+        file = (folder / place).resolve()
+        if not file.is_relative_to(folder) or not file.is_file():  # no device, nothing elsewhere
+            return b"\0"
+        return file.read_bytes().replace(b"\r\n", b"\n")
+    except (OSError, ValueError):
+        return b"\0"
 
 
 def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:

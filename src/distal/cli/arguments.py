@@ -10,13 +10,10 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
-from pathlib import Path
-from typing import Final
 
 from distal.lang.parameter_values import LARGEST_FLOAT, Value
 from distal.lang.parameters import Parameter
-
-EXAMPLE_PREFIX: Final = "example:"
+from distal.loading import EXAMPLE_PREFIX, split_source
 
 
 class UsageError(Exception):
@@ -25,15 +22,10 @@ class UsageError(Exception):
 
 def read_scene(text: str) -> tuple[str, str | None]:
     """FILE[:NAME] or example:NAME[:NAME] as the path that ``distal.load`` takes, and the name."""
-    prefix = EXAMPLE_PREFIX if text.startswith(EXAMPLE_PREFIX) else ""
-    rest = text.removeprefix(prefix)
-    file, colon, name = rest.rpartition(":")
-    # A colon may belong to the file's own name, or to a drive (C:\scene.py).
-    if not colon or not name.isidentifier() or (not prefix and Path(rest).exists()):
-        file, name = rest, ""
-    if not file:
-        raise UsageError(f"'{text}' names no {'example' if prefix else 'file'}")
-    return prefix + file, name or None
+    path, name = split_source(text)
+    if path in ("", EXAMPLE_PREFIX):
+        raise UsageError(f"'{text}' names no {'example' if path else 'file'}")
+    return path, name
 
 
 def read_size(text: str, largest: int) -> tuple[int, int]:

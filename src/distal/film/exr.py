@@ -10,14 +10,16 @@ from __future__ import annotations
 
 import importlib
 import io
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.film.metadata import PREFIX, ReadError
+from distal.film.metadata import LARGEST_SIDE_PX, PREFIX, ReadError
 
 BITS: Final = (16, 32)
 
@@ -92,34 +94,57 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
     """The size, the bits of a color's channel and our texts of an EXR.
 
     Raises:
-        ReadError: The file is broken.
+        ReadError: The file is broken or cut short.
         ModuleNotFoundError: OpenEXR is missing.
     """
-    channels, header = _read(path)
-    color = channels.get("R")
-    if color is None:
-        raise ReadError(f"{path} has no channel R")
-    found = {k: v for k, v in header.items() if k.startswith(PREFIX) and isinstance(v, str)}
-    height, width = color.shape
-    return (width, height), color.dtype.itemsize * 8, found
+    openexr = importlib.import_module("OpenEXR")
+    try:
+        file = openexr.InputFile(str(path))
+        header = file.header()
+        window = header["dataWindow"]
+        width, height = (int(v) + 1 for v in (window.max.x, window.max.y))
+        if not 0 < max(width, height) <= LARGEST_SIDE_PX:
+            raise ValueError(f"it claims {width}x{height} pixels")
+        if not file.isComplete():
+            raise ValueError("its end is missing")
+        bits = 16 if str(header["channels"]["R"].type) == "HALF" else 32
+    except Exception as error:  # its C++ raises what it likes on broken files
+        why = (str(error).splitlines() or ["it cannot be read"])[0]
+        raise ReadError(f"{path} is broken: it is no whole EXR: {why}") from None
+    texts = {key: _text(value) for key, value in header.items() if key.startswith(PREFIX)}
+    return (width, height), bits, texts
 
 
-def decode(path: Path) -> dict[str, NDArray[Any]]:
+def decode(data: bytes) -> dict[str, NDArray[Any]]:
     """The channels of an EXR by name, each (height, width).
 
     Raises:
         ReadError: The file is broken.
         ModuleNotFoundError: OpenEXR is missing.
     """
-    return _read(path)[0]
-
-
-def _read(path: Path) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     openexr = importlib.import_module("OpenEXR")
     try:
-        # All of it: a file cut short has a whole header.
-        with openexr.File(str(path), separate_channels=True) as file:
-            channels = {name: channel.pixels for name, channel in file.channels().items()}
-            return channels, dict(file.header())
-    except Exception as error:  # its C++ raises what it likes on broken files
-        raise ReadError(f"{path} is no whole EXR: {str(error).splitlines()[0]}") from None
+        with _quiet(), openexr.File(io.BytesIO(data), separate_channels=True) as file:
+            return {name: channel.pixels for name, channel in file.channels().items()}
+    except Exception:
+        raise ReadError("it is no whole EXR") from None
+
+
+def _text(value: Any) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep to itself what the library's C++ prints of a broken file, beside what it raises."""
+    kept = [os.dup(number) for number in (1, 2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for number in (1, 2):
+            os.dup2(nowhere, number)
+        yield
+    finally:
+        for number, copy in zip((1, 2), kept, strict=True):
+            os.dup2(copy, number)
+            os.close(copy)
+        os.close(nowhere)

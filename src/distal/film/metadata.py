@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +18,8 @@ from typing import Any, Final
 from distal.version import __version__
 
 PREFIX: Final = "distal:"
+# What is larger was not rendered here: refused before its pixels take memory.
+LARGEST_SIDE_PX: Final = 16384
 _HEAD_PNG: Final = b"\x89PNG\r\n\x1a\n"
 _HEAD_EXR: Final = b"\x76\x2f\x31\x01"
 
@@ -34,6 +37,7 @@ class Provenance:
             loaded for, the name of the scene or function; may be empty.
         source_hash: SHA-256 of the text of that file and of the modules beside it that it imports;
             of what no file was loaded for, of the files that its functions stand in; may be empty.
+        neighbours: The places of these modules beside the file.
         parameters: The value of each parameter by name, as plain JSON values.
         time: Seconds.
         index: The frame's number.
@@ -53,6 +57,7 @@ class Provenance:
 
     source: str = ""
     source_hash: str = ""
+    neighbours: tuple[str, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
     time: float = 0.0
     index: int = 0
@@ -76,7 +81,8 @@ class Record:
 
     Attributes:
         provenance: Where it came from.
-        size: Width and height in pixels.
+        size: Width and height in pixels, as it was rendered.
+        stored_size: The file's own: another if a program scaled or cropped it since.
         version: The version of distal that made it.
         format: "png" or "exr".
         bits: Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR.
@@ -84,6 +90,7 @@ class Record:
 
     provenance: Provenance
     size: tuple[int, int]
+    stored_size: tuple[int, int]
     version: str
     format: str
     bits: int
@@ -107,6 +114,8 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         "distal:transparent": json.dumps(origin.transparent),
         "distal:device": origin.device,
     }
+    if origin.neighbours:
+        found["distal:neighbours"] = json.dumps(origin.neighbours)
     if origin.plane is not None:
         found["distal:plane"] = json.dumps([list(origin.plane[0]), origin.plane[1]])
     if origin.exposure is not None:
@@ -139,6 +148,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
         read = Provenance(
             source=found.get("distal:source", ""),
             source_hash=found.get("distal:source-hash", ""),
+            neighbours=tuple(map(str, json_of("distal:neighbours", []))),
             parameters=dict(json_of("distal:parameters", {})),
             time=float(found.get("distal:time", "0")),
             index=int(found.get("distal:index", "0")),
@@ -191,9 +201,19 @@ def read(path: Path) -> Record:
         )
     try:
         origin = provenance(found)
+        rendered = _size(found.get("distal:size"), size)
     except ReadError as error:
         raise ReadError(f"cannot rebuild {path}: {error}") from None
-    return Record(origin, size, found.get("distal:version", ""), kind, bits)
+    return Record(origin, rendered, size, found.get("distal:version", ""), kind, bits)
+
+
+def _size(text: str | None, otherwise: tuple[int, int]) -> tuple[int, int]:
+    if text is None:
+        return otherwise
+    found = re.fullmatch(r"([0-9]{1,6})x([0-9]{1,6})", text)
+    if found is None:
+        raise ReadError("what it says about itself is garbled")
+    return int(found[1]), int(found[2])
 
 
 def _numbers(given: Any, count: int) -> tuple[float, ...]:

@@ -16,9 +16,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image as PillowImage
-from PIL.PngImagePlugin import PngInfo, putchunk
+from PIL.PngImagePlugin import PngImageFile, PngInfo, putchunk
 
-from distal.film.metadata import PREFIX, ReadError
+from distal.film.metadata import LARGEST_SIDE_PX, PREFIX, ReadError
 
 BITS: Final = (8, 16)
 
@@ -109,15 +109,17 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
         ReadError: The file is broken.
     """
     try:
-        with PillowImage.open(path) as image:
-            # Texts that stand behind the pixels too, as other programs write them.
-            image.load()
+        # Not by Image.open, which takes large pictures for an attack.
+        with PngImageFile(path) as image:
+            if max(image.size) > LARGEST_SIDE_PX:
+                raise ValueError(f"it claims {image.width}x{image.height} pixels")
+            image.load()  # finds what is cut off, and texts that stand behind the pixels
             texts = {str(key): str(value) for key, value in image.info.items()}
             size = image.size
         with path.open("rb") as file:
             bits = file.read(25)[24]
     except Exception as error:  # Pillow raises of every kind on broken files
-        raise ReadError(f"{path} is no whole PNG: {error}") from None
+        raise ReadError(f"{path} is broken: it is no whole PNG: {error}") from None
     return size, bits, {key: text for key, text in texts.items() if key.startswith(PREFIX)}
 
 
@@ -129,7 +131,7 @@ def decode(data: bytes) -> NDArray[Any]:
     """
     try:
         if data[24] != 16:
-            with PillowImage.open(io.BytesIO(data)) as image:
+            with PngImageFile(io.BytesIO(data)) as image:
                 return np.asarray(image.convert("RGBA"))
         return _read_deep(data)
     except ReadError:
