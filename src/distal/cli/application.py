@@ -15,15 +15,16 @@ from typing import Annotated
 import typer
 
 import distal
-from distal.cli import check, export, probe, render, video
-from distal.cli.arguments import EXAMPLE_PREFIX, UsageError, read_scene
+from distal.cli import check, export, probe, render, rerender, video
+from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, application, load, reporting
 from distal.export.texts import with_header
 from distal.film.replacement import check_destination, replacement
+from distal.loading import EXAMPLE_PREFIX
 from distal.version import __version__
 
 # Importing them is what adds their commands.
-COMMANDS = (render, check, probe, export, video)
+COMMANDS = (render, check, probe, export, video, rerender)
 
 __all__ = ["COMMANDS", "TargetName", "application"]
 
