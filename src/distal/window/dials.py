@@ -134,7 +134,7 @@ class Dial:
         low, high = self._range
         if self.parameter.log:
             # The exponent in steps: at the ends the value is the end, to the last bit.
-            return low * (high / low) ** min(max(share, 0.0), 1.0)
+            return low * math.pow(high / low, min(max(share, 0.0), 1.0))
         return low + (high - low) * share
 
     def _from_range(self, number: float) -> Value:

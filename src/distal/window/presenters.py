@@ -129,21 +129,16 @@ class TextureMaker:
         self.device = device
         self._gpu = gpu
         self._adapter = adapter
-        self._ready: set[tuple[int, str]] = set()
-        self._kept: list[Viewable] = []
+        self._ready: tuple[Viewable | None, set[str]] = (None, set())
         self._textures: list[Any] = []
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs, by drawing a few pixels of it."""
-        key = (id(viewable), shot.view)
-        if key in self._ready:
+        known, views = self._ready
+        if known is viewable and shot.view in views:
             return
         self._draw(viewable, shot, self._texture(_SMALLEST), _SMALLEST)
-        if viewable not in self._kept[-1:]:
-            # Kept alive: a number that means a viewable must not come to mean another.
-            self._kept = [viewable]
-            self._ready = {known for known in self._ready if known[0] == key[0]}
-        self._ready.add(key)
+        self._ready = (viewable, {shot.view, *(views if known is viewable else ())})
 
     def make(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
@@ -180,5 +175,4 @@ class TextureMaker:
             size=(*size, 1),
             format=TEXTURE_FORMAT,
             usage="RENDER_ATTACHMENT|TEXTURE_BINDING|COPY_SRC",
-            view_formats=[TEXTURE_FORMAT, f"{TEXTURE_FORMAT}-srgb"],
         )

@@ -7,12 +7,13 @@ device and no thread.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from distal.lang.parameter_values import Value
+from distal.lang.parameters import Parameter
 from distal.scene.steering import STILL, Steering
 from distal.window.clock import LATEST_S, Clock
 from distal.window.dials import Dial, dials
@@ -108,17 +109,15 @@ class Session:
         self._moving_until = float("-inf")
         self.adopt(viewable, now)
 
-    def adopt(self, viewable: Viewable, now: float) -> None:
-        """Show something else under the same view, time, camera and parameters, if still valid."""
+    def adopt(self, viewable: Viewable, now: float, *, animated: bool | None = None) -> None:
+        """Show something else under the same view, time, camera and parameters, if still valid.
+
+        ``animated`` is the viewable's own, where it is known: asking takes a while.
+        """
         self.viewable = viewable
-        self.animated = viewable.animated
+        self.animated = viewable.animated if animated is None else animated
         self.dials: list[Dial] = dials(viewable.parameters)
-        known = {p.name: p for p in viewable.parameters}
-        self.values = {
-            name: value
-            for name, value in self.values.items()
-            if name in known and _is_valid(known[name], value)
-        }
+        self.values = valid_values(viewable.parameters, self.values)
         self.chosen = max(min(self.chosen, len(self.dials) - 1), 0)
         if self.view not in viewable.views:
             self.view = viewable.views[0]
@@ -259,6 +258,13 @@ class Session:
         elif self._grab in (Grab.TIME, Grab.DIAL):
             self.drag(x, y, now)
 
+    def is_free(self, x: float, y: float) -> bool:
+        """Whether the pointer is on the picture, and not on what is drawn over it."""
+        if not self.shows_overlay:
+            return True
+        on_bar = self.animated and time_bar(*self.size).holds(x, y)
+        return not on_bar and not (self.shows_parameters and self.table.frame.holds(x, y))
+
     def _held(self, x: float, y: float, button: int, shift: bool) -> Grab | None:
         if self.shows_overlay and button == _LEFT:
             if self.animated and time_bar(*self.size).holds(x, y):
@@ -319,12 +325,19 @@ class Session:
         return x / max(width, 1.0), 1 - y / max(height, 1.0)
 
 
-def _is_valid(parameter: Any, value: Value) -> bool:
+def valid_values(parameters: Sequence[Parameter], values: Mapping[str, Value]) -> dict[str, Value]:
+    """The values that parameters of these names still take."""
+    known = {parameter.name: parameter for parameter in parameters}
+    return {
+        name: value
+        for name, value in values.items()
+        if name in known and _is_valid(known[name], value)
+    }
+
+
+def _is_valid(parameter: Parameter, value: Value) -> bool:
     try:
         parameter.check(value)
     except (TypeError, ValueError):
         return False
     return True
-
-
-__all__ = ["FRAMES_PER_S", "Grab", "Session", "Shot"]

@@ -2,7 +2,7 @@
 
 What flows in: a canvas of rendercanvas, a device of wgpu, a frame, panels. What flows out: pixels
 on the screen that are exactly the frame's where the sizes agree. No formula of color stands here:
-where a surface encodes what is written to it, textures are read through views that decode.
+where a surface encodes what is written to it, textures have the format that is read decoded.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from distal.window.overlay import Panel
 from distal.window.presenters import TEXTURE_FORMAT, Made
-
-_PREFERRED: Final = ("bgra8unorm", "rgba8unorm", "bgra8unorm-srgb", "rgba8unorm-srgb")
 
 _SHADER: Final = """
 @group(0) @binding(0) var image: texture_2d<f32>;
@@ -55,8 +53,7 @@ class Surface:
     def __init__(self, canvas: Any, device: Any) -> None:
         self._device = device
         self._context = canvas.get_context("wgpu")
-        self.format = self._chosen_format(device.adapter)
-        self._context.configure(device=device, format=self.format, alpha_mode="opaque")
+        self.format = self._configured()
         encodes = self.format.endswith("-srgb")
         self._read_format = f"{TEXTURE_FORMAT}-srgb" if encodes else TEXTURE_FORMAT
         module = device.create_shader_module(code=_SHADER)
@@ -71,7 +68,7 @@ class Surface:
     def show(self, made: Made) -> None:
         """Take a frame as the picture from now on."""
         if made.texture is not None:
-            self._frame = made.texture
+            self._frame = self._readable(made.texture)
             return
         assert made.pixels is not None
         height, width = made.pixels.shape[:2]
@@ -108,17 +105,33 @@ class Surface:
         draws.end()
         self._device.queue.submit([encoder.finish()])
 
-    def _chosen_format(self, adapter: Any) -> str:
-        """One that takes values as they are, where the surface has such a one."""
-        offered = offered_formats(self._context, adapter)
-        for format in _PREFERRED:
-            if format in offered:
-                return format
-        preferred: str = self._context.get_preferred_format(adapter)
-        return preferred
+    def _configured(self) -> str:
+        """Configure the surface to take values as they are, where it can; the format it has."""
+        preferred = str(self._context.get_preferred_format(self._device.adapter))
+        for format in (preferred.removesuffix("-srgb"), preferred):
+            try:
+                self._context.configure(device=self._device, format=format, alpha_mode="opaque")
+            except ValueError:  # this surface has only formats that encode
+                if format == preferred:
+                    raise
+                continue
+            break
+        return format
+
+    def _readable(self, texture: Any) -> Any:
+        """The texture, or its copy in the format that is read decoded."""
+        if texture.format == self._read_format:
+            return texture
+        width, height = texture.size[:2]
+        copy = self._texture(width, height)
+        encoder = self._device.create_command_encoder()
+        places = {"texture": texture}, {"texture": copy}
+        encoder.copy_texture_to_texture(*places, (width, height, 1))
+        self._device.queue.submit([encoder.finish()])
+        return copy
 
     def _put(self, draws: Any, pipeline: Any, texture: Any, sampler: Any) -> None:
-        view = texture.create_view(format=self._read_format)
+        view = texture.create_view()
         group = self._device.create_bind_group(
             layout=pipeline.get_bind_group_layout(0),
             entries=[{"binding": 0, "resource": view}, {"binding": 1, "resource": sampler}],
@@ -139,9 +152,8 @@ class Surface:
     def _texture(self, width: int, height: int) -> Any:
         return self._device.create_texture(
             size=(width, height, 1),
-            format=TEXTURE_FORMAT,
+            format=self._read_format,
             usage="COPY_DST|TEXTURE_BINDING",
-            view_formats=[TEXTURE_FORMAT, f"{TEXTURE_FORMAT}-srgb"],
         )
 
     def _upload(self, texture: Any, pixels: NDArray[np.uint8]) -> None:
@@ -163,11 +175,3 @@ class Surface:
             primitive={"topology": "triangle-list"},
             fragment={"module": module, "entry_point": fragment, "targets": [target]},
         )
-
-
-def offered_formats(context: Any, adapter: Any) -> Sequence[str]:
-    """The formats that a surface can have; none where the versions at hand do not tell."""
-    inner = getattr(context, "_wgpu_context", None)
-    ask = getattr(inner, "_get_capabilities", None)
-    formats: Sequence[str] = ask(adapter)["formats"] if ask is not None else ()
-    return formats
