@@ -9,18 +9,16 @@ from __future__ import annotations
 import ctypes.util
 import importlib.metadata
 import importlib.util
-import json
 import os
 import platform
 import shutil
-import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from distal.version import __version__
 
@@ -77,11 +75,6 @@ PACKAGES: Final = (
 )
 
 _PROBE: Final = "doctor-probe"
-_GPU_TIMEOUT_S: Final = 30  # a driver that hangs must not take the doctor along
-_GPU_QUESTION: Final = """
-import json, wgpu
-print(json.dumps([dict(a.info) for a in wgpu.gpu.enumerate_adapters_sync()], default=str))
-"""
 
 
 def examine() -> list[Finding]:
@@ -187,42 +180,24 @@ def _packages() -> Iterator[Finding]:
 
 
 def _gpu() -> Iterator[Finding]:
+    """The adapters with their numbers for ``--adapter``, and what "auto" makes of them."""
     if importlib.util.find_spec("wgpu") is None:
         return
-    adapters, complaint = _gpu_adapters()
-    for adapter in adapters:
-        kind = adapter.get("adapter_type", "")
-        detail = f"{kind}, {adapter.get('backend_type', '')}, {adapter.get('description', '')}"
-        yield Finding("gpu", str(adapter.get("device", "?")), State.READY, detail.rstrip(", "))
-    if not adapters:
-        yield Finding(
-            "gpu",
-            "adapters",
-            State.OPTIONAL,
-            complaint or "none",
-            "install the GPU's driver, or in software: apt-get install mesa-vulkan-drivers",
-        )
+    from distal.devices import adapters
 
-
-def _gpu_adapters() -> tuple[list[dict[str, Any]], str]:
-    """The adapters, asked in a process of its own; and a complaint, or ""."""
-    try:
-        answer = subprocess.run(
-            [sys.executable, "-c", _GPU_QUESTION],
-            capture_output=True,
-            text=True,
-            timeout=_GPU_TIMEOUT_S,
-            stdin=subprocess.DEVNULL,
-            # Any existing folder silences Mesa's complaint about a missing one.
-            env={"XDG_RUNTIME_DIR": "/tmp", **os.environ},
-        )
-    except subprocess.TimeoutExpired:
-        return [], f"the driver did not answer within {_GPU_TIMEOUT_S} s"
-    if answer.returncode != 0:
-        last = answer.stderr.strip().splitlines()[-1:] or [f"exit code {answer.returncode}"]
-        return [], last[0]
-    adapters: list[dict[str, Any]] = json.loads(answer.stdout.strip().splitlines()[-1])
-    return adapters, ""
+    found, complaint = adapters.asked_apart()
+    best = adapters.hardware()
+    for row in found:
+        told = (row.kind, row.backend, row.driver, "taken by auto" if row == best else "")
+        detail = ", ".join(part for part in told if part)
+        yield Finding("gpu", f"{row.number}: {row.name}", State.READY, detail)
+    remedy = "install the GPU's driver"
+    if not found:
+        remedy += ", or in software: apt-get install mesa-vulkan-drivers"
+        yield Finding("gpu", "adapters", State.OPTIONAL, complaint or "none", remedy)
+    elif best is None:
+        reason = adapters.resolve("auto").reason
+        yield Finding("gpu", "auto", State.OPTIONAL, f"takes the CPU; {reason}", remedy)
 
 
 def _system() -> Iterator[Finding]:

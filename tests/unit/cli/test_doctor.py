@@ -5,9 +5,12 @@ import subprocess
 import tomllib
 from pathlib import Path
 
+import pytest
 from packaging.requirements import Requirement
 
 from distal import doctor
+from distal.devices import adapters
+from distal.devices.adapters import Adapter
 from distal.doctor import PACKAGES, State, examine
 
 PROJECT = tomllib.loads(Path(__file__).parents[3].joinpath("pyproject.toml").read_text())["project"]
@@ -38,15 +41,49 @@ def test_missing_packages_come_with_the_command_that_mends(monkeypatch):
     assert find(findings, "wgpu").remedy == "pip install 'distal[gpu]'"
 
 
-def test_a_hanging_or_dying_driver_is_a_finding(monkeypatch):
+@pytest.fixture
+def asked_anew():
+    adapters.asked_apart.cache_clear()
+    yield
+    adapters.asked_apart.cache_clear()
+
+
+def test_a_hanging_or_dying_driver_is_a_finding(monkeypatch, asked_anew):
     def hang(*_, timeout, **__):
         raise subprocess.TimeoutExpired("python", timeout)
 
     monkeypatch.setattr(subprocess, "run", hang)
-    assert doctor._gpu_adapters() == ([], "the driver did not answer within 30 s")
+    found = find(doctor._gpu(), "adapters")
+    assert (found.state, found.detail) == (
+        State.OPTIONAL,
+        "the driver did not answer within 30 s",
+    )
+    adapters.asked_apart.cache_clear()
     died = subprocess.CompletedProcess([], -11, "", "")
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: died)
-    assert doctor._gpu_adapters() == ([], "exit code -11")
+    found = find(doctor._gpu(), "adapters")
+    assert found.detail == "the driver crashed when it was asked (signal 11)"
+    assert "apt-get install mesa-vulkan-drivers" in found.remedy
+
+
+def test_adapters_have_numbers_and_the_one_that_auto_takes_is_marked(monkeypatch):
+    rows = [
+        Adapter(0, "llvmpipe (LLVM 15)", "CPU", "Vulkan", "Mesa"),
+        Adapter(1, "Arc", "IntegratedGPU", "Vulkan"),
+        Adapter(2, "RTX", "DiscreteGPU", "OpenGL"),
+        Adapter(3, "RTX", "DiscreteGPU", "Vulkan", "555.1"),
+    ]
+    monkeypatch.setattr(adapters, "asked_apart", lambda: (rows, ""))
+    told = [(f.subject, f.detail) for f in doctor._gpu()]
+    assert told == [
+        ("0: llvmpipe (LLVM 15)", "CPU, Vulkan, Mesa"),
+        ("1: Arc", "IntegratedGPU, Vulkan"),
+        ("2: RTX", "DiscreteGPU, OpenGL"),
+        ("3: RTX", "DiscreteGPU, Vulkan, 555.1, taken by auto"),
+    ]
+    monkeypatch.setattr(adapters, "asked_apart", lambda: (rows[:1], ""))
+    auto = find(doctor._gpu(), "auto")
+    assert auto.detail == "takes the CPU; no GPU: only llvmpipe, in software"
 
 
 def test_a_failing_look_is_a_finding_and_the_rest_goes_on(monkeypatch):
@@ -54,7 +91,7 @@ def test_a_failing_look_is_a_finding_and_the_rest_goes_on(monkeypatch):
         raise RuntimeError("no clock")
 
     monkeypatch.setattr(doctor, "_cpu_model", broken)
-    monkeypatch.setattr(doctor, "_gpu_adapters", lambda: ([], ""))
+    monkeypatch.setattr(adapters, "asked_apart", lambda: ([], ""))
     findings = examine()
     assert find(findings, "examination").detail == "RuntimeError: no clock"
     assert find(findings, "numpy").state is State.READY
