@@ -15,7 +15,7 @@ from typing import Annotated
 import typer
 
 import distal
-from distal.cli import check, export, probe, render, rerender, video
+from distal.cli import check, export, probe, render, rerender, video, view
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, application, load, reporting
 from distal.export.texts import with_header
@@ -24,7 +24,7 @@ from distal.loading import EXAMPLE_PREFIX
 from distal.version import __version__
 
 # Importing them is what adds their commands.
-COMMANDS = (render, check, probe, export, video, rerender)
+COMMANDS = (render, check, probe, export, video, rerender, view)
 
 __all__ = ["COMMANDS", "TargetName", "application"]
 
