@@ -26,6 +26,9 @@ FLAGS: Final = (
     *("--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost, EXCLUDE 127.0.0.1",
 )
+# WebGL on the machine's OpenGL instead: given besides, they win. Mesa's llvmpipe compiles the
+# gallery's largest scene in a second; SwiftShader takes minutes and all memory for some.
+MESA: Final = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
 START_MS: Final = 30_000  # 1 s alone; other work on the machine may make it ten times that
 ACTION_MS: Final = 20_000  # playwright's own limit for one step, unless a test says otherwise
 

@@ -3,9 +3,9 @@
 In: an ``Artifact`` of glsl-es300 or shadertoy (WebGL 2) or of glsl-es100 (WebGL 1, a text as
 glslCanvas wraps it), the picture's size, values of uniforms, textures and buffers by the author's
 names. Out: the picture in 32-bit floats. What to set is read from the artifact's interface alone,
-and a uniform that it keeps silent about is an error. Nothing here is the player's: ``tests/
-webgl_page.html`` is a second opinion on the texts. One page serves the process; a program is
-compiled once.
+and a uniform that it keeps silent about is an error. Nothing here is the player's:
+``tests/webgl_page.html`` is a second opinion on the texts. One page of each driver serves the
+process; a program is compiled once.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.backends.base import Artifact
-from tests.browser import BrowserUnavailableError, browser
+from tests.browser import MESA, BrowserUnavailableError, browser
 from tests.glsl import BUFFER_WIDTH, complete_text, uniform_values
 
 PAGE: Final = Path(__file__).with_name("webgl_page.html")
@@ -32,7 +32,8 @@ QUAD: Final = {
     "webgl": f"attribute vec2 position;\n{COVERING}",
 }
 SHAPES: Final = {"Texture2D": "flat", "TextureCube": "cube", "Texture3D": "volume"}
-LIMIT_S: Final = 100.0
+DRIVERS: Final[dict[str, tuple[str, ...]]] = {"swiftshader": (), "mesa": MESA}
+LIMIT_S: Final = 60.0
 
 
 class WebGLError(RuntimeError):
@@ -60,6 +61,7 @@ def run_webgl(
     uniforms: Mapping[str, Any] | None = None,
     textures: Mapping[str, NDArray[np.float32]] | None = None,
     buffers: Mapping[str, NDArray[Any]] | None = None,
+    driver: str = "swiftshader",
 ) -> NDArray[np.float32]:
     """The picture, float32 of shape (height, width, 4), top row first.
 
@@ -69,13 +71,14 @@ def run_webgl(
         uniforms: Values by the author's names; the rest take their defaults.
         textures: float32 arrays (height, width, 4), bottom row first, or (depth or face, …).
         buffers: Arrays (count,) or (count, components).
+        driver: What the browser's WebGL runs on: ``swiftshader``, or ``mesa`` for large scenes.
 
     Raises:
         BrowserUnavailableError: There is no browser.
         WebGLError: The text is refused, or not drawn within ``LIMIT_S``.
         ValueError: A value names no uniform.
     """
-    return drawn(artifact, size, uniforms, textures, buffers).pixels
+    return drawn(artifact, size, uniforms, textures, buffers, driver).pixels
 
 
 def drawn(
@@ -84,6 +87,7 @@ def drawn(
     uniforms: Mapping[str, Any] | None = None,
     textures: Mapping[str, NDArray[np.float32]] | None = None,
     buffers: Mapping[str, NDArray[Any]] | None = None,
+    driver: str = "swiftshader",
     limit_s: float = LIMIT_S,
 ) -> Drawn:
     """The same as ``run_webgl``, with the time it took."""
@@ -103,41 +107,42 @@ def drawn(
         "size": size,
         "limit_s": limit_s,
     }
-    answer = _asked("drawWithin", request)
+    answer = _asked(driver, "drawWithin", request)
     pixels = np.frombuffer(base64.b64decode(answer["pixels"]), np.float32)
     picture = pixels.reshape(size[1], size[0], 4)[::-1].copy()
     return Drawn(picture, answer["compile_s"], answer["draw_s"])
 
 
-def renderer(context: str = "webgl2") -> str:
+def renderer(driver: str = "swiftshader", context: str = "webgl2") -> str:
     """What draws, as the browser tells it: ``ANGLE (…, SwiftShader driver)``."""
-    return str(_asked("rendererOf", context))
+    return str(_asked(driver, "rendererOf", context))
 
 
-@dataclass
-class _Open:
-    browser: Any = None
-    page: Any = None
+_pages: dict[str, tuple[Any, Any]] = {}
 
 
-_open = _Open()
+def _page(driver: str) -> tuple[Any, Any]:
+    """The browser of a driver and its page."""
+    running = browser(*DRIVERS[driver])
+    known = _pages.get(driver)
+    if known is None or known[0] is not running or known[1].is_closed():
+        page = running.new_page()
+        page.goto(PAGE.resolve().as_uri())
+        known = _pages[driver] = (running, page)
+    return known
 
 
-def _page() -> Any:
-    running = browser()
-    if _open.page is None or _open.page.is_closed() or _open.browser is not running:
-        _open.browser, _open.page = running, running.new_page()
-        _open.page.goto(PAGE.resolve().as_uri())
-    return _open.page
+def _asked(driver: str, function: str, argument: Any) -> Any:
+    """What a function of the page returns.
 
-
-def _asked(function: str, argument: Any) -> Any:
-    """What a function of the page returns; after a fault the next call gets a fresh page."""
-    page = _page()
+    After a fault the next call gets a fresh browser: one that is still busy with a program would
+    keep all others waiting, and Chromium refuses WebGL to a page that lost it too often.
+    """
+    running, page = _page(driver)
     try:
         return page.evaluate(f"(argument) => {function}(argument)", argument)
     except Exception as error:
-        page.close()
+        running.close()
         message = str(error).removeprefix("Page.evaluate: ").removeprefix("Error: ")
         raise WebGLError(message.split("\n    at ")[0]) from None
 
