@@ -105,7 +105,9 @@ def payload(*programs: dict[str, Any], **changes: Any) -> dict[str, Any]:
     }
 
 
-def write(path: Path, *payloads: dict[str, Any], style: str = "height:100vh", tail: str = "") -> Path:
+def write(
+    path: Path, *payloads: dict[str, Any], style: str = "height:100vh", tail: str = ""
+) -> Path:
     """A page that shows the payloads, one below the other."""
     scenes = "".join(
         f'<div data-distal style="{style}"><img alt="A trial." width="4" height="3"></div>'

@@ -14,7 +14,7 @@ export interface Complaint {
   text: string;
 }
 
-const NUMBERED = /^\s*(?:\w+:\s*)?\d+(?::(\d+)|\((\d+)\))/;
+const NUMBERED = /^\s*(?:[a-z]+:\s*)?\d+(?::(\d+)|\((\d+)\))/i;
 
 export function complaints(
   log: string,

@@ -51,8 +51,8 @@ export class Resolution {
     return this.#scale;
   }
 
-  /** Rows of so many pixels that fit one submission, at least one. */
+  /** Rows of so many pixels that fit one submission, at least one; `Infinity` where all do. */
   rows(width: number): number {
-    return Math.max(1, Math.floor(BAND_MS / ((this.cost ?? 0) * width + 1e-9)));
+    return Math.max(1, Math.floor(BAND_MS / ((this.cost ?? 0) * width)));
   }
 }
