@@ -7,6 +7,7 @@ run to the next. Knows neither pictures nor time.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
@@ -18,6 +19,8 @@ from distal.devices.gpu_memory import Resources, UniformBytes, view_dimension
 from distal.ir.types import Type
 
 _SHARED, _READ = 0, 1  # groups: the program's own buffers; the author's textures and buffers
+_PLACE: Final = re.compile(r"┌─ (.+:\d+)")
+_SAID: Final = re.compile(r"\berror: (.+)")
 LARGEST_DISPATCH: Final = 65535  # workgroups along one axis that every GPU allows
 
 
@@ -69,10 +72,12 @@ class Program:
             raise DeviceError(self._refused(error)) from error
 
     def _refused(self, error: BaseException) -> str:
-        """What the driver says of our text, with the author's lines; on one line."""
-        lines = [part.strip() for part in map_message(self._artifact, str(error)).splitlines()]
-        told = [part for part in lines if part.strip("│╷╵|^ =") and part != "Validation Error"]
-        return f"{self.gpu.adapter.name} refuses the program: {' '.join(told)}; or --device cpu"
+        """What is said of our text, on one line, with the author's place where it is known."""
+        told = map_message(self._artifact, str(error))
+        place, said = _PLACE.search(told), _SAID.search(told)
+        where = f" at {place[1]}" if place else ""
+        what = said[1] if said else " ".join(told.split())
+        return f"{self.gpu.adapter.name} refuses the program{where}: {what}; or --device cpu"
 
     # Pipelines
 

@@ -38,7 +38,7 @@ class Pace:
     """How fast one kernel is, and how large its next part may be.
 
     Attributes:
-        most: The most pixels of a part, whatever the time says: what fits a binding.
+        most: The most pixels of a part, whatever the time says: what fits a binding; 8 or more.
         first: The pixels of the very first part.
     """
 
