@@ -236,17 +236,26 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
 
 
 def _failure(file: Path, error: Exception) -> str:
-    """Say where in the author's file an exception came from, in a line or two."""
-    line = None
+    """Say where in the author's files an exception came from, in a line or two."""
+    name, line = str(file), None
+    folder = file.resolve().parent
     trace = error.__traceback__
     while trace is not None:
-        if trace.tb_frame.f_code.co_filename == str(file):
-            line = trace.tb_lineno
+        code_file = trace.tb_frame.f_code.co_filename
+        if code_file == str(file) or Path(code_file).parent == folder:
+            name, line = code_file, trace.tb_lineno
         trace = trace.tb_next
-    place = f"{file}:{line}" if line is not None else str(file)
-    lines = [f"{type(error).__name__}: {error}", f"  --> {place}"]
+    if name != str(file):  # a neighbour: named as the author names the scene beside it
+        linecache.checkcache(name)
+        shown = str(file.parent / Path(name).name)
+    else:
+        shown = name
+    lines = [
+        f"{type(error).__name__}: {error}",
+        f"  --> {shown if line is None else f'{shown}:{line}'}",
+    ]
     if line is not None:
-        lines.append(f"  {linecache.getline(str(file), line).strip()}")
+        lines.append(f"  {linecache.getline(name, line).strip()}")
     return "\n".join(lines)
 
 
