@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
 from distal.lang.parameter_values import Value
-from distal.loading import loaded_from
+from distal.loading import EXAMPLE_PREFIX, loaded_from
 from distal.scene.viewable import viewable
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
@@ -32,7 +32,6 @@ from distal.window.session import Session, Shot
 from distal.window.worker import Worker
 
 if TYPE_CHECKING:
-    from distal.scene.viewable import Viewable
     from distal.window.surface import Surface
 
 _NOTE_S: Final = 4.0
@@ -58,6 +57,12 @@ class Origin:
     path: str
     name: str | None
     files: tuple[Path, ...]
+
+    @property
+    def title(self) -> str:
+        """What a person calls it: most scenes are named "scene" in their files."""
+        stem = Path(self.path.removeprefix(EXAMPLE_PREFIX)).stem
+        return stem if self.name is None else f"{stem}:{self.name}"
 
 
 class Application:
@@ -202,7 +207,7 @@ class Application:
 
     def _figures(self, now: float) -> str:
         session, made, shown = self._session, self._making.made, self._making.shown
-        words = [session.viewable.name, session.view]
+        words = [self._origin.title, session.view]
         if session.clock.speed != 1.0:
             words.append(f"{session.clock.speed:g}x")
         if session.playing and now - self._status_at < _FIGURES_S and self._status:
@@ -352,10 +357,10 @@ class Application:
         """Save what is wanted now, as sharp as the window is large."""
         session, size = self._session, self._frame_size()
         shot, viewable = session.shot(time.monotonic()), session.viewable
-        device = self._making.maker.device
+        device, title = self._making.maker.device, self._origin.title
 
         def job(_: object) -> Path:
-            path = free_name(Path.cwd(), viewable, shot)
+            path = free_name(Path.cwd(), title, shot)
             picture(viewable, shot, size, device).save(path)
             return path
 
@@ -374,9 +379,9 @@ class Application:
         self._full_screen_from = set_full_screen(self._canvas, self._full_screen_from)
 
 
-def free_name(folder: Path, viewable: Viewable, shot: Shot) -> Path:
+def free_name(folder: Path, title: str, shot: Shot) -> Path:
     """A file's name after the scene and the time that no file has yet."""
-    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in viewable.name)[:60]
+    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in title)[:60]
     stem = f"{plain or 'picture'}-{shot.time:.2f}s"
     if shot.view != "color":
         stem += "-" + "".join(c if c.isalnum() else "_" for c in shot.view)
@@ -438,21 +443,19 @@ def view(
         ValueError: There is no such view.
     """
     check_display()
-    origin = loaded_from(obj)
-    files = origin.files if origin is not None else ()
+    known = loaded_from(obj)
+    origin = Origin(path, name, known.files if known is not None else ())
     shown = viewable(obj, params, time_s)
     if seen_as not in shown.views:
         raise ValueError(f"there is no view '{seen_as:.40}'; views: {', '.join(shown.views)}")
-    canvas = open_canvas(size, f"{shown.name} - distal")
+    canvas = open_canvas(size, f"{origin.title} - distal")
     try:
         surface, maker = open_surface(canvas, device)
         session = Session(
             shown, time=time_s, values=params, view=seen_as, paused=paused, now=time.monotonic()
         )
         loop = canvas._rc_canvas_group.get_loop()
-        application = Application(
-            session, Origin(path, name, files), maker, canvas, surface, loop, scale=scale
-        )
+        application = Application(session, origin, maker, canvas, surface, loop, scale=scale)
         interrupted = _run(application, canvas, loop)
     finally:
         canvas.close()
@@ -466,8 +469,11 @@ def _run(application: Application, canvas: Any, loop: Any) -> bool:
 
     def interrupt(_signal: int, _frame: object) -> None:
         nonlocal interrupted
+        if interrupted:  # asked twice: whatever it is that does not end
+            raise KeyboardInterrupt
         interrupted = True
-        canvas.close()
+        # Not closed here: this may be in the middle of drawing on it.
+        loop.call_soon_threadsafe(canvas.close)
 
     def begin() -> None:
         # The loop has set its own by now, which would tell of it on the terminal.

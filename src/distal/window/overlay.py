@@ -7,6 +7,7 @@ same object again. Knows no window and no GPU.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from typing import Any, Final
@@ -22,6 +23,7 @@ from distal.window.session import Session
 
 _TEXT_SIZE: Final = 13
 _BACK: Final = (16, 18, 24, 196)
+_BACK_OF_HELP: Final = (16, 18, 24, 238)
 _BACK_OF_MISTAKE: Final = (48, 10, 14, 232)
 _TEXT: Final = (240, 242, 246, 255)
 _DIM: Final = (168, 176, 190, 255)
@@ -244,7 +246,7 @@ def _text_width(text: str, place: _Place) -> float:
 
 def _status(text: str, place: _Place) -> Panel:
     room = place.width - 2 * layout.MARGIN
-    across = min(_text_width(text, place) + 20, max(room, 1))
+    across = min(_text_width(text, place) + 22, max(room, 1))
     frame = layout.Rectangle(layout.MARGIN, layout.MARGIN, across, layout.STATUS_HEIGHT)
     canvas = _Canvas(frame, place)
     canvas.text(frame.x + 10, frame.y + frame.height / 2, text, room=frame.width - 20)
@@ -310,7 +312,8 @@ def _help(place: _Place) -> Panel:
     line = min(21.0, max((place.height - 24) / len(HELP), 1.0))
     down = line * len(HELP) + 20
     x, y = max((place.width - across) / 2, 0.0), max((place.height - down) / 2, 0.0)
-    canvas = _Canvas(layout.Rectangle(x, y, min(across, place.width), down), place)
+    frame = layout.Rectangle(x, y, min(across, place.width), down)
+    canvas = _Canvas(frame, place, _BACK_OF_HELP)
     for number, (keys, words) in enumerate(HELP):
         middle = y + 10 + line * (number + 0.5)
         canvas.text(x + 16, middle, keys, _ACCENT)
@@ -319,7 +322,7 @@ def _help(place: _Place) -> Panel:
 
 
 def _note(text: str, place: _Place) -> Panel:
-    across = min(_text_width(text, place) + 24, place.width)
+    across = min(_text_width(text, place) + 26, place.width)
     x = (place.width - across) / 2
     y = max(place.height - layout.BAR_HEIGHT - 44, 0.0)
     frame = layout.Rectangle(x, y, across, 30)
@@ -340,7 +343,7 @@ def _trouble(text: str, place: _Place) -> Panel:
     columns = max(int((across - 2 * padding) // cell), 8)
     room = place.px(place.height - layout.BAR_HEIGHT) - top - margin
     count = max((room - 2 * padding) // line_px, 1)
-    lines = [part for line in text.splitlines() for part in _folded(line.expandtabs(4), columns)]
+    lines = _fitted([line.expandtabs(4) for line in text.splitlines()], columns)
     if len(lines) > count:
         lines = [*lines[: count - 1], "…"]
     longest = max(map(len, lines), default=1)
@@ -360,5 +363,33 @@ def _trouble(text: str, place: _Place) -> Panel:
     return Panel(margin, top, np.asarray(image))
 
 
-def _folded(line: str, columns: int) -> list[str]:
-    return [line[at : at + columns] for at in range(0, len(line), columns)] or [""]
+_GUTTER: Final = re.compile(r" *\d* \| ?")
+_CARETS: Final = re.compile(r" *\| *(\^+)")
+
+
+def _fitted(lines: list[str], columns: int) -> list[str]:
+    """Lines of at most so many columns: words go on below, source stays over its caret."""
+    fitted: list[str] = []
+    shift = 0
+    for line, below in zip(lines, [*lines[1:], ""], strict=True):
+        carets = _CARETS.fullmatch(below)
+        is_source = _GUTTER.match(line) is not None
+        if carets is not None:
+            # The line moves to the left until the place that is meant can be seen.
+            shift = max(min(carets.end(1), carets.start(1) + columns // 2) - columns + 2, 0)
+        if is_source and (carets is not None or _CARETS.fullmatch(line)):
+            fitted.append(_windowed(line, shift, columns))
+        else:
+            fitted += [line[at : at + columns] for at in range(0, len(line), columns)] or [""]
+    return fitted
+
+
+def _windowed(line: str, shift: int, columns: int) -> str:
+    """A line behind its gutter, from a column on, as far as it fits."""
+    found = _GUTTER.match(line)
+    gutter = found.group() if found is not None else ""
+    rest = line[len(gutter) :]
+    if shift:
+        rest = (" " if rest[:shift].isspace() else "…") + rest[shift + 1 :]
+    room = columns - len(gutter)
+    return gutter + (rest if len(rest) <= room else rest[: room - 1] + "…")

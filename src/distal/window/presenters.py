@@ -131,6 +131,7 @@ class TextureMaker:
         self._adapter = adapter
         self._ready: tuple[Viewable | None, set[str]] = (None, set())
         self._textures: list[Any] = []
+        self._texel: Any = None
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs, by drawing a few pixels of it."""
@@ -167,8 +168,21 @@ class TextureMaker:
             settings=viewable.settings(shot.steering, shot.view) if shot.steering else {},
             adapter=self._adapter,
         )
-        # Waited for, so that frames do not pile up in the driver and what is told is true.
-        self._gpu.queue.on_submitted_work_done_sync()
+        self._wait_for(texture)
+
+    def _wait_for(self, texture: Any) -> None:
+        """Until it is drawn: frames must not pile up in the driver, and figures must be true.
+
+        One texel is read; wgpu 0.32 for Python breaks when the queue itself is asked.
+        """
+        if self._texel is None:
+            self._texel = self._gpu.create_buffer(size=256, usage="COPY_DST|MAP_READ")
+        encoder = self._gpu.create_command_encoder()
+        place = {"buffer": self._texel, "offset": 0, "bytes_per_row": 256, "rows_per_image": 1}
+        encoder.copy_texture_to_buffer({"texture": texture}, place, (1, 1, 1))
+        self._gpu.queue.submit([encoder.finish()])
+        self._texel.map_async("READ").sync_wait()
+        self._texel.unmap()
 
     def _texture(self, size: tuple[int, int]) -> Any:
         return self._gpu.create_texture(
