@@ -91,9 +91,9 @@ def tiles(width: int, height: int, pace: Pace) -> Iterator[Tile]:
     """
     y, budget = 0, pace.start(width * height)
     while y < height:
-        rows = max(1, budget // width)
-        if rows >= _ROW or rows >= height - y:
-            rows = height - y if rows >= height - y else rows - rows % _ROW
+        rows = min(budget // width, height - y)
+        if rows == height - y or rows >= _ROW:
+            rows -= rows % _ROW if rows < height - y else 0
             yield Tile(0, y, width, rows)
             budget = pace.next()
         else:  # a row of workgroups is too much: pieces of one
