@@ -56,8 +56,7 @@ class Converter:
     def frame(self, array: NDArray[np.float32]) -> Any:
         """The frame of a picture; what is transparent shows its color."""
         levels = levels_of(array)
-        # A frame of the array's own memory where FFmpeg can read its rows.
-        made = self._av.VideoFrame.from_ndarray(levels, "rgba")
+        made = self._av.VideoFrame.from_numpy_buffer(levels, "rgba")
         if self._codec.exact:
             return self._reformatter.reformat(made, format=self._codec.pixels, threads=1)
         return self._reformatter.reformat(
