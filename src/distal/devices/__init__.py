@@ -1,1 +1,0 @@
-"""Where compiled scenes run. ``base.Kernel`` is what each device gives back."""

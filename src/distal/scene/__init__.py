@@ -1,1 +1,0 @@
-"""Scenes as objects: shapes, materials, lights, cameras; they make IR of library functions."""

@@ -1,9 +1,0 @@
-from distal.lang import func
-
-
-@func
-def scene(x: float) -> float:
-    class Local:
-        y: float
-
-    return x

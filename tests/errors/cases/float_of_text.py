@@ -1,6 +1,0 @@
-from distal.lang import func
-
-
-@func
-def scene(x: float) -> float:
-    return x + float("inf")

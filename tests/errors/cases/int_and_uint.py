@@ -1,6 +1,0 @@
-from distal.lang import func, uint
-
-
-@func
-def scene(h: uint, i: int) -> uint:
-    return h + i

@@ -1,3 +1,0 @@
-from distal.lang import func
-
-scene = func(lambda x: x)

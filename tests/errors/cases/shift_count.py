@@ -1,6 +1,0 @@
-from distal.lang import func
-
-
-@func
-def scene(n: int) -> int:
-    return n << 32
