@@ -1,0 +1,489 @@
+"""The window: joins what a person does, what is made, and what is on the screen.
+
+What flows in: a scene, where it came from, a device. What flows out: an exit code when the window
+is closed. The parts that can be thought about alone stand in the other modules; here are events,
+timers and the order of things.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from distal.diagnostics import CompileError, DeviceError, LoadError
+from distal.film.replacement import SaveError
+from distal.lang.parameter_values import Value
+from distal.loading import EXAMPLE_PREFIX, loaded_from
+from distal.scene.viewable import viewable
+from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
+from distal.window.log import Log
+from distal.window.making import Making, Order
+from distal.window.overlay import Overlay, Reading, reading
+from distal.window.presenters import Made, Maker, picture
+from distal.window.reload import PERIOD_S, Watch, files_in, load_again
+from distal.window.screen import check_display, open_canvas, open_surface, set_full_screen
+from distal.window.session import Session, Shot
+from distal.window.worker import Worker
+
+if TYPE_CHECKING:
+    from distal.window.surface import Surface
+
+_NOTE_S: Final = 4.0
+_FIGURES_S: Final = 0.25  # digits that change faster cannot be read
+_SLOW_S: Final = 0.4  # after which a person is told what is being waited for
+_REPEAT_AFTER_S: Final = 0.35
+_REPEAT_S: Final = 1 / 15
+_WHEEL_NOTCH: Final = 100.0
+_PATIENCE_S: Final = 0.5
+_KIND_MISTAKES: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where the scene came from, so that it can be loaded again.
+
+    Attributes:
+        path: What ``distal.load`` takes.
+        name: Which object of the file.
+        files: The files that took part.
+    """
+
+    path: str
+    name: str | None
+    files: tuple[Path, ...]
+
+    @property
+    def title(self) -> str:
+        """What a person calls it: most scenes are named "scene" in their files."""
+        stem = Path(self.path.removeprefix(EXAMPLE_PREFIX)).stem
+        return stem if self.name is None else f"{stem}:{self.name}"
+
+
+class Application:
+    """A window at work."""
+
+    def __init__(
+        self,
+        session: Session,
+        origin: Origin,
+        maker: Maker,
+        canvas: Any,
+        surface: Surface,
+        loop: Any,
+        *,
+        scale: float,
+    ) -> None:
+        self._session, self._origin, self._canvas = session, origin, canvas
+        self._surface, self._loop, self._scale = surface, loop, scale
+        self._log = Log()
+        self._worker = Worker(loop.call_soon_threadsafe)
+        self._making = Making(maker, self._worker, self._finished, self._failing)
+        self._overlay = Overlay()
+        self._watch = Watch(origin.files)
+        self._is_loading = False
+        self._busy_since: float | None = None
+        self._trouble_of_file = self._trouble_of_frame = ""
+        self._told = ""
+        self._note, self._note_until = "", 0.0
+        self._status, self._status_at = "", float("-inf")
+        self._read: Reading | None = None
+        self._wake_at: float | None = None
+        self._held: Action | None = None
+        self._full_screen_from: tuple[int, ...] | None = None
+        self._listen()
+
+    # The order of things
+
+    def start(self) -> None:
+        """Begin, once the loop runs."""
+        self._canvas.request_draw(self._draw)
+        self._loop.call_later(PERIOD_S, self._look_at_files)
+        self._resize()
+
+    def stop(self, patience_s: float) -> bool:
+        """End the worker; whether it ended in time."""
+        return self._worker.stop(patience_s)
+
+    def wake(self) -> None:
+        """Look at everything once; called whenever something has happened."""
+        if self._canvas.get_closed():
+            return
+        now = time.monotonic()
+        self._wake_at = None
+        shot = self._session.shot(now)
+        moving = self._session.is_moving(now)
+        again = self._making.want(
+            self._session.viewable,
+            shot,
+            self._frame_size(),
+            is_moving=moving or self._session.playing,
+        )
+        if again is not None:
+            self._wake_in(again)
+        if moving:
+            self._wake_in(self._session.settles_in(now) or PERIOD_S)
+        if self._note and now < self._note_until:
+            self._wake_in(self._note_until - now)
+        if self._wait(now) is not None:
+            self._wake_in(_SLOW_S)
+        if self._reading(now) != self._read:
+            self._canvas.request_draw()
+
+    def _wake_in(self, seconds: float) -> None:
+        at = time.monotonic() + seconds
+        if self._wake_at is not None and self._wake_at <= at:
+            return
+        self._wake_at = at
+
+        def wake() -> None:
+            if self._wake_at == at:  # else another came first
+                self.wake()
+
+        self._loop.call_later(max(seconds, 0.001), wake)
+
+    def _frame_size(self) -> tuple[int, int]:
+        width, height = self._canvas.get_physical_size()
+        return max(round(width * self._scale), 1), max(round(height * self._scale), 1)
+
+    def _draw(self) -> None:
+        now = time.monotonic()
+        self._read = self._reading(now)
+        size, ratio = self._canvas.get_physical_size(), self._canvas.get_pixel_ratio()
+        self._surface.draw(self._overlay.panels(self._read, size, ratio))
+        shown = self._making.shown
+        if shown is not None:
+            self._log("drawn", size=size, shown=_facts(shown), trouble=self._trouble)
+
+    # What is made
+
+    def _finished(self, order: Order, made: Made) -> None:
+        if made.share == 1.0:
+            self._trouble_of_frame = ""
+            self._surface.show(made)
+            if order.shot.mouse == self._session.mouse:
+                self._session.frame_begun()
+            self._log("frame", **_facts(order), ms=made.seconds * 1000)
+            self._canvas.request_draw()
+        self.wake()
+
+    def _failing(self, order: Order, error: BaseException) -> None:
+        self._trouble_of_frame = self._tell(error)
+        self.wake()
+
+    # What is read
+
+    @property
+    def _trouble(self) -> str:
+        return self._trouble_of_file or self._trouble_of_frame
+
+    def _reading(self, now: float) -> Reading:
+        note = self._note if now < self._note_until else self._wait(now) or ""
+        return reading(
+            self._session, now, status=self._figures(now), trouble=self._trouble, note=note
+        )
+
+    def _wait(self, now: float) -> str | None:
+        """What takes so long, where something does."""
+        if not self._worker.waiting:
+            self._busy_since = None
+            return None
+        if self._busy_since is None:
+            self._busy_since = now
+        if self._is_loading:
+            what = "loading the saved file …"
+        elif self._making.shown is None:
+            what = "compiling …"
+        elif self._making.is_busy:
+            what = "rendering …"
+        else:
+            what = "saving the picture …"
+        return what if now - self._busy_since > _SLOW_S else ""
+
+    def _figures(self, now: float) -> str:
+        session, made, shown = self._session, self._making.made, self._making.shown
+        words = [self._origin.title, session.view]
+        if session.clock.speed != 1.0:
+            words.append(f"{session.clock.speed:g}x")
+        if session.playing and now - self._status_at < _FIGURES_S and self._status:
+            return self._status
+        if made is not None and shown is not None:
+            if session.playing or session.is_moving(now):
+                words.append(f"{self._making.frames_per_s:.0f} fps")
+            words.append(f"{made.seconds * 1000:.1f} ms")
+            words.append("{}x{}".format(*shown.pixels))
+        words.append(self._making.maker.device)
+        words.append("H: help")
+        self._status, self._status_at = "   ".join(words), now
+        return self._status
+
+    def _say(self, text: str) -> None:
+        self._note, self._note_until = text, time.monotonic() + _NOTE_S
+
+    def _tell(self, error: BaseException) -> str:
+        """A mistake's text; it is also told on the terminal, once."""
+        if isinstance(error, _KIND_MISTAKES):
+            text = str(error)
+        else:
+            text = f"{type(error).__name__}: {error}"
+            traceback.print_exception(error)  # a fault of ours
+        if isinstance(error, LoadError | SaveError | DeviceError):
+            text = f"error: {text}"
+        if text != self._told:
+            print(text, file=sys.stderr, flush=True)
+            self._log("trouble", text=text)
+        self._told = text
+        return text
+
+    # The scene's files
+
+    def _look_at_files(self) -> None:
+        if self._canvas.get_closed():
+            return
+        if not self._is_loading and self._watch.has_changed():
+            self._load()
+        self._loop.call_later(PERIOD_S, self._look_at_files)
+
+    def _load(self) -> None:
+        self._is_loading = True
+        origin, session = self._origin, self._session
+        shot, maker = session.shot(time.monotonic()), self._making.maker
+
+        def job(_: object) -> Any:
+            return load_again(origin.path, origin.name, shot, maker)
+
+        self._worker.submit(job, self._loaded)
+        self.wake()
+
+    def _loaded(self, result: Any) -> None:
+        self._is_loading = False
+        if isinstance(result, BaseException):
+            self._trouble_of_file = self._tell(result)
+            self._watch.watch([*self._origin.files, *files_in(result, self._origin.files[0])])
+        else:
+            self._trouble_of_file = self._trouble_of_frame = self._told = ""
+            self._origin = Origin(self._origin.path, self._origin.name, result.files)
+            self._watch.watch(result.files)
+            self._session.adopt(result.viewable, time.monotonic(), animated=result.animated)
+            self._log("loaded", files=[str(file) for file in result.files])
+        self.wake()
+
+    # What a person does
+
+    def _listen(self) -> None:
+        handlers: Mapping[str, Callable[[dict[str, Any]], None]] = {
+            "key_down": self._key_down,
+            "key_up": self._key_up,
+            "char": self._typed,
+            "pointer_down": self._pressed,
+            "pointer_move": self._moved,
+            "pointer_up": self._released,
+            "double_click": self._double_clicked,
+            "wheel": self._wheeled,
+            "resize": lambda _: self._resize(),
+        }
+        for event, handler in handlers.items():
+            self._canvas.add_event_handler(handler, event)
+
+    def _resize(self) -> None:
+        self._session.size = self._canvas.get_logical_size()
+        self._canvas.request_draw()
+        self.wake()
+
+    def _key_down(self, event: dict[str, Any]) -> None:
+        action = action_of_key(event["key"])
+        if action is None:
+            return
+        shift = "Shift" in event["modifiers"]
+        self._act(action, shift=shift)
+        if action in REPEATED:
+            self._held = action
+            self._loop.call_later(_REPEAT_AFTER_S, self._repeat, action, shift)
+
+    def _key_up(self, event: dict[str, Any]) -> None:
+        if action_of_key(event["key"]) is self._held:
+            self._held = None
+
+    def _repeat(self, action: Action, shift: bool) -> None:
+        if self._held is action and not self._canvas.get_closed():
+            self._act(action, shift=shift)
+            self._loop.call_later(_REPEAT_S, self._repeat, action, shift)
+
+    def _typed(self, event: dict[str, Any]) -> None:
+        action = action_of_character(event["data"])
+        if action is not None:
+            self._act(action)
+
+    def _act(self, action: Action, *, shift: bool = False) -> None:
+        if action is Action.QUIT:
+            self._canvas.close()
+            return
+        if action is Action.SCREENSHOT:
+            self._save()
+        elif action is Action.FULL_SCREEN:
+            self._toggle_full_screen()
+        else:
+            self._session.act(action, time.monotonic(), shift=shift)
+        self.wake()
+
+    def _pressed(self, event: dict[str, Any]) -> None:
+        shift = "Shift" in event["modifiers"]
+        x, y, button = event["x"], event["y"], event["button"]
+        self._session.press(x, y, button, time.monotonic(), shift=shift)
+        self.wake()
+
+    def _moved(self, event: dict[str, Any]) -> None:
+        self._session.drag(event["x"], event["y"], time.monotonic())
+        self.wake()
+
+    def _released(self, event: dict[str, Any]) -> None:
+        self._session.release(time.monotonic())
+        self.wake()
+
+    def _double_clicked(self, event: dict[str, Any]) -> None:
+        if self._session.viewable.steers and self._session.is_free(event["x"], event["y"]):
+            self._act(Action.RESET_CAMERA)
+
+    def _wheeled(self, event: dict[str, Any]) -> None:
+        self._session.wheel(event["dy"] / _WHEEL_NOTCH, time.monotonic())
+        self.wake()
+
+    def _save(self) -> None:
+        """Save what is wanted now, as sharp as the window is large."""
+        session, size = self._session, self._frame_size()
+        shot, viewable = session.shot(time.monotonic()), session.viewable
+        device, title = self._making.maker.device, self._origin.title
+
+        def job(_: object) -> Path:
+            path = free_name(Path.cwd(), title, shot)
+            picture(viewable, shot, size, device).save(path)
+            return path
+
+        def done(result: Any) -> None:
+            if isinstance(result, BaseException):
+                self._say(self._tell(result).splitlines()[0])
+            else:
+                self._say(f"saved {result.name}")
+                print(f"saved {result}", file=sys.stderr, flush=True)
+                self._log("saved", path=str(result))
+            self.wake()
+
+        self._worker.submit(job, done)
+
+    def _toggle_full_screen(self) -> None:
+        self._full_screen_from = set_full_screen(self._canvas, self._full_screen_from)
+
+
+def free_name(folder: Path, title: str, shot: Shot) -> Path:
+    """A file's name after the scene and the time that no file has yet."""
+    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in title)[:60]
+    stem = f"{plain or 'picture'}-{shot.time:.2f}s"
+    if shot.view != "color":
+        stem += "-" + "".join(c if c.isalnum() else "_" for c in shot.view)
+    number = 1
+    while True:
+        path = folder / (f"{stem}.png" if number == 1 else f"{stem}-{number}.png")
+        if not path.exists():
+            return path
+        number += 1
+
+
+def _facts(order: Order) -> dict[str, Any]:
+    shot, steering = order.shot, order.shot.steering
+    return {
+        "time": shot.time,
+        "view": shot.view,
+        "parameters": dict(shot.parameters),
+        "steering": steering.settings if steering is not None else None,
+        "mouse": shot.mouse.pixels(order.pixels),
+        "pixels": order.pixels,
+        "share": order.share,
+    }
+
+
+def view(
+    obj: Any,
+    path: str,
+    name: str | None,
+    *,
+    size: tuple[int, int],
+    device: str,
+    time_s: float = 0.0,
+    params: Mapping[str, Value] | None = None,
+    seen_as: str = "color",
+    scale: float = 1.0,
+    paused: bool = False,
+) -> tuple[int, bool]:
+    """Show what was loaded until the window is closed.
+
+    Args:
+        obj: What ``distal.load(path, name)`` gave.
+        path: Where it came from, to load it again when it is saved.
+        name: Which object of the file.
+        size: The window's width and height in its own units.
+        device: What renders, as ``render`` takes it; "auto" is resolved already.
+        time_s: Seconds to begin at.
+        params: Values of parameters by name.
+        seen_as: The view to begin with.
+        scale: Pixels that are rendered for each of the window's, along a side.
+        paused: Whether the time stands at first.
+
+    Returns:
+        The exit code, 0 or 130, and whether everything has ended: what is still being compiled
+        cannot be stopped, and the process should end without waiting for it.
+
+    Raises:
+        CompileError, LoadError: It cannot be shown.
+        DeviceError: No window can be opened here, or the device is missing.
+        ValueError: There is no such view.
+    """
+    check_display()
+    known = loaded_from(obj)
+    origin = Origin(path, name, known.files if known is not None else ())
+    shown = viewable(obj, params, time_s)
+    if seen_as not in shown.views:
+        raise ValueError(f"there is no view '{seen_as:.40}'; views: {', '.join(shown.views)}")
+    canvas = open_canvas(size, f"{origin.title} - distal")
+    try:
+        surface, maker = open_surface(canvas, device)
+        session = Session(
+            shown, time=time_s, values=params, view=seen_as, paused=paused, now=time.monotonic()
+        )
+        loop = canvas._rc_canvas_group.get_loop()
+        application = Application(session, origin, maker, canvas, surface, loop, scale=scale)
+        interrupted = _run(application, canvas, loop)
+    finally:
+        canvas.close()
+    ended = application.stop(_PATIENCE_S)
+    return (130 if interrupted else 0), ended
+
+
+def _run(application: Application, canvas: Any, loop: Any) -> bool:
+    """Run until the window is closed; whether that was ctrl-C."""
+    interrupted = False
+
+    def interrupt(_signal: int, _frame: object) -> None:
+        nonlocal interrupted
+        if interrupted:  # asked twice: whatever it is that does not end
+            raise KeyboardInterrupt
+        interrupted = True
+        # Not closed here: this may be in the middle of drawing on it.
+        loop.call_soon_threadsafe(canvas.close)
+
+    def begin() -> None:
+        # The loop has set its own by now, which would tell of it on the terminal.
+        signal.signal(signal.SIGINT, interrupt)
+        application.start()
+
+    before = signal.getsignal(signal.SIGINT)
+    loop.call_soon(begin)
+    try:
+        loop.run()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    return interrupted

@@ -1,0 +1,108 @@
+"""Where things stand on the window, in its own units (not pixels), y down.
+
+What flows in: the window's size. What flows out: rectangles, for what draws them and for what asks
+what a pointer is on. Draws nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+MARGIN: Final = 10.0
+STATUS_HEIGHT: Final = 28.0
+ROW: Final = 22.0
+TABLE_WIDTH: Final = 380.0
+TABLE_TOP: Final = MARGIN + STATUS_HEIGHT + 8.0
+TABLE_PADDING: Final = 8.0
+LABEL_SHARE: Final = 0.4
+VALUE_SHARE: Final = 0.2
+BAR_HEIGHT: Final = 30.0
+_BAR_TIME_WIDTH: Final = 76.0
+_FIRST_SPAN_S: Final = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A place on the window."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def holds(self, x: float, y: float) -> bool:
+        """Whether a point is in it."""
+        return 0 <= x - self.x < self.width and 0 <= y - self.y < self.height
+
+    def share(self, x: float) -> float:
+        """How far a point is from its left, 0 to 1."""
+        return min(max((x - self.x) / max(self.width, 1.0), 0.0), 1.0)
+
+
+def time_bar(width: float, height: float) -> Rectangle:
+    """The strip along the bottom."""
+    return Rectangle(0.0, height - BAR_HEIGHT, width, BAR_HEIGHT)
+
+
+def time_track(width: float, height: float) -> Rectangle:
+    """The part of the strip that the time moves along."""
+    strip = time_bar(width, height)
+    left = MARGIN + _BAR_TIME_WIDTH
+    return Rectangle(left, strip.y, max(width - left - MARGIN, 1.0), strip.height)
+
+
+def span(time: float) -> float:
+    """How many seconds the strip stands for: ten, doubled until the time is on it."""
+    seconds = _FIRST_SPAN_S
+    while seconds < time:
+        seconds *= 2
+    return seconds
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """The rows of parameters: as many as the window holds, around the chosen one.
+
+    Attributes:
+        frame: The whole.
+        first: The first row that is shown.
+        count: How many are shown.
+    """
+
+    frame: Rectangle
+    first: int
+    count: int
+
+    @staticmethod
+    def of(width: float, height: float, rows: int, chosen: int) -> Table:
+        """The table of so many rows in a window of that size."""
+        room = height - TABLE_TOP - BAR_HEIGHT - MARGIN - 2 * TABLE_PADDING
+        count = max(min(rows, int(room // ROW)), min(rows, 1))
+        first = min(max(chosen - count // 2, 0), rows - count)
+        frame = Rectangle(
+            MARGIN,
+            TABLE_TOP,
+            max(min(TABLE_WIDTH, width - 2 * MARGIN), 1.0),
+            max(count, 1) * ROW + 2 * TABLE_PADDING,
+        )
+        return Table(frame, first, count)
+
+    def row(self, number: int) -> Rectangle:
+        """The place of one of all rows."""
+        inside = self.frame.width - 2 * TABLE_PADDING
+        top = self.frame.y + TABLE_PADDING + (number - self.first) * ROW
+        return Rectangle(self.frame.x + TABLE_PADDING, top, inside, ROW)
+
+    def track(self, number: int) -> Rectangle:
+        """The place of a row's bar."""
+        row = self.row(number)
+        left = row.x + row.width * LABEL_SHARE
+        return Rectangle(left, row.y, row.width * (1 - LABEL_SHARE - VALUE_SHARE), row.height)
+
+    def row_at(self, x: float, y: float) -> int | None:
+        """The row that a point is on."""
+        if not self.frame.holds(x, y):
+            return None
+        number = self.first + int((y - self.frame.y - TABLE_PADDING) // ROW)
+        return number if self.first <= number < self.first + self.count else None

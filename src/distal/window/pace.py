@@ -1,0 +1,54 @@
+"""How sharp a frame may be to come in time.
+
+What flows in: how long frames took. What flows out: the share of the window's width and height
+that the next one has. Reads no clock.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+# While something moves a frame should come within this; twenty in a second look fluid.
+BUDGET_S: Final = 0.05
+SHARES: Final = (1.0, 0.5, 0.25, 0.125)
+# A sharper share must fit with room to spare, or two would alternate.
+_ROOM: Final = 0.75
+
+
+class Pace:
+    """Learns what a pixel costs."""
+
+    def __init__(self) -> None:
+        self._seconds_per_pixel: float | None = None
+        self._share = SHARES[-1]
+
+    def learn(self, seconds: float, pixels: float) -> None:
+        """A frame of so many pixels took so long. A part of a frame says as much."""
+        if pixels < 1:
+            return
+        found = seconds / pixels
+        known = self._seconds_per_pixel
+        self._seconds_per_pixel = found if known is None else 0.5 * (found + known)
+
+    def forget(self) -> None:
+        """Another scene, or another view: what was learned means nothing."""
+        self._seconds_per_pixel, self._share = None, SHARES[-1]
+
+    def share(self, size: tuple[int, int], *, is_moving: bool) -> float:
+        """The next frame's part of the window's size.
+
+        A first frame is coarse: nobody knows how long a sharp one takes.
+        """
+        if self._seconds_per_pixel is None:
+            return SHARES[-1]
+        if not is_moving:
+            return SHARES[0]
+        whole = self._seconds_per_pixel * size[0] * size[1]
+        for share in SHARES:
+            room = BUDGET_S if share <= self._share else BUDGET_S * _ROOM
+            if whole * share * share <= room:
+                self._share = share
+                break
+        else:
+            self._share = SHARES[-1]
+        return self._share

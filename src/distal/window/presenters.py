@@ -1,0 +1,192 @@
+"""Makes frames: on the CPU as pixels, on a GPU as a texture that never leaves it.
+
+What flows in: what is shown, a ``Shot``, a size. What flows out: a ``Made``, display values either
+way. Runs in the worker's thread; knows no window.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.devices.base import Cancelled
+from distal.executor_hook import executor
+from distal.film.png import quantise
+from distal.window.session import Shot
+
+if TYPE_CHECKING:
+    from distal.film.picture import Picture
+    from distal.scene.viewable import Viewable
+
+# Display values as they are; a surface that encodes reads them decoded (``surface``).
+TEXTURE_FORMAT: Final = "rgba8unorm"
+_SMALLEST: Final = (8, 8)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Made:
+    """A frame.
+
+    Attributes:
+        pixels: uint8, (height, width, 4), the top row first; None where it is a texture.
+        texture: A texture of wgpu; None where it is pixels.
+        seconds: How long rendering it took, compiling left out.
+        share: How much of it was rendered: below 1 it was cancelled, and there is no picture.
+    """
+
+    pixels: NDArray[np.uint8] | None = None
+    texture: Any = None
+    seconds: float = 0.0
+    share: float = 1.0
+
+
+class Maker(Protocol):
+    """Makes frames on one device.
+
+    Attributes:
+        device: Its name, as ``render`` takes it.
+    """
+
+    device: str
+
+    def prepare(self, viewable: Viewable, shot: Shot) -> None:
+        """Compile what a shot needs, so that mistakes show before anything is replaced."""
+        ...
+
+    def make(
+        self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
+    ) -> Made:
+        """A frame of that width and height in pixels.
+
+        Raises:
+            CompileError: The scene code has mistakes.
+            DeviceError: The device was lost.
+        """
+        ...
+
+
+def picture(
+    viewable: Viewable, shot: Shot, size: tuple[int, int], device: str, **options: Any
+) -> Picture:
+    """What a shot shows, with all that a file has to tell about it."""
+    made: Picture = viewable.render(
+        view=shot.view,
+        steering=shot.steering,
+        size=size,
+        time=shot.time,
+        params=dict(shot.parameters),
+        mouse=shot.mouse.pixels(size),
+        index=shot.index,
+        device=device,
+        **options,
+    )
+    return made
+
+
+class PixelMaker:
+    """Makes pixels on any device that renders into memory."""
+
+    def __init__(self, device: str) -> None:
+        self.device = device
+
+    def prepare(self, viewable: Viewable, shot: Shot) -> None:
+        """Compile what a shot needs."""
+        picture(viewable, shot, _SMALLEST, self.device)
+
+    def make(
+        self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
+    ) -> Made:
+        """A frame; ended early, how far it came and what that took."""
+        done = 0.0
+        begin = time.perf_counter()
+
+        def progress(share: float) -> None:
+            nonlocal done, begin
+            if done == 0.0 and share == 0.0:
+                begin = time.perf_counter()
+            done = share
+
+        try:
+            made = picture(viewable, shot, size, self.device, cancel=cancel, progress=progress)
+        except Cancelled:
+            return Made(seconds=time.perf_counter() - begin, share=min(done, 0.999))
+        begin = time.perf_counter()
+        pixels = quantise(made.array)
+        quantised = time.perf_counter() - begin
+        return Made(pixels, seconds=made.stats["render_s"] + quantised)
+
+
+class TextureMaker:
+    """Draws into textures of a GPU, by its fragment path."""
+
+    def __init__(self, device: str, gpu: Any, adapter: str | None) -> None:
+        """``gpu`` is the device of wgpu that the executor draws with."""
+        self.device = device
+        self._gpu = gpu
+        self._adapter = adapter
+        self._ready: tuple[Viewable | None, set[str]] = (None, set())
+        self._textures: list[Any] = []
+        self._texel: Any = None
+
+    def prepare(self, viewable: Viewable, shot: Shot) -> None:
+        """Compile what a shot needs, by drawing a few pixels of it."""
+        known, views = self._ready
+        if known is viewable and shot.view in views:
+            return
+        self._draw(viewable, shot, self._texture(_SMALLEST), _SMALLEST)
+        self._ready = (viewable, {shot.view, *(views if known is viewable else ())})
+
+    def make(
+        self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
+    ) -> Made:
+        """A frame; a GPU ends what it has begun."""
+        self.prepare(viewable, shot)
+        # The window shows one while the other is drawn, and never asks for a third.
+        texture = self._textures.pop(0) if len(self._textures) > 1 else None
+        if texture is None or texture.size[:2] != size:
+            texture = self._texture(size)
+        self._textures.append(texture)
+        begin = time.perf_counter()
+        self._draw(viewable, shot, texture, size)
+        return Made(texture=texture, seconds=time.perf_counter() - begin)
+
+    def _draw(self, viewable: Viewable, shot: Shot, texture: Any, size: tuple[int, int]) -> None:
+        executor().draw(
+            viewable.image(shot.view, steered=shot.steering is not None, encoded=True),
+            texture.create_view(),
+            format=TEXTURE_FORMAT,
+            size=size,
+            time=shot.time,
+            params=dict(shot.parameters),
+            mouse=shot.mouse.pixels(size),
+            index=shot.index,
+            settings=viewable.settings(shot.steering, shot.view) if shot.steering else {},
+            adapter=self._adapter,
+        )
+        self._wait_for(texture)
+
+    def _wait_for(self, texture: Any) -> None:
+        """Until it is drawn: frames must not pile up in the driver, and figures must be true.
+
+        One texel is read; wgpu 0.32 for Python breaks when the queue itself is asked.
+        """
+        if self._texel is None:
+            self._texel = self._gpu.create_buffer(size=256, usage="COPY_DST|MAP_READ")
+        encoder = self._gpu.create_command_encoder()
+        place = {"buffer": self._texel, "offset": 0, "bytes_per_row": 256, "rows_per_image": 1}
+        encoder.copy_texture_to_buffer({"texture": texture}, place, (1, 1, 1))
+        self._gpu.queue.submit([encoder.finish()])
+        self._texel.map_async("READ").sync_wait()
+        self._texel.unmap()
+
+    def _texture(self, size: tuple[int, int]) -> Any:
+        return self._gpu.create_texture(
+            size=(*size, 1),
+            format=TEXTURE_FORMAT,
+            usage="RENDER_ATTACHMENT|TEXTURE_BINDING|COPY_SRC",
+        )

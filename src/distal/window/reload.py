@@ -1,0 +1,133 @@
+"""Notices that a scene's files were saved, and loads it again.
+
+What flows in: paths, and what is looked at. What flows out: whether files are other than they
+were, and have come to rest; a scene that is compiled and ready to take the old one's place.
+
+Files are asked for their times four times a second, which costs a few microseconds for each and
+works on every file system; notices of the operating system do not reach shared folders, and an
+editor that saves by renaming needs the folder watched as well.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from distal.diagnostics import CompileError
+from distal.loading import load, loaded_from
+from distal.scene.steering import STILL
+from distal.scene.viewable import Viewable, viewable
+from distal.window.session import Shot, valid_values
+
+if TYPE_CHECKING:
+    from distal.window.presenters import Maker
+
+PERIOD_S: Final = 0.25
+
+Signature: TypeAlias = "tuple[tuple[int, ...] | None, ...]"
+
+
+class Watch:
+    """Watches a set of files, and folders whose lists of names may change."""
+
+    def __init__(self, files: Iterable[Path]) -> None:
+        self._paths: tuple[Path, ...] = ()
+        self._known: Signature = ()
+        self._last: Signature = ()
+        self.watch(files)
+
+    def watch(self, files: Iterable[Path]) -> None:
+        """Watch these from now on.
+
+        A file that was watched before keeps its last known state: what was saved while the scene
+        was being loaded is not missed.
+        """
+        known = dict(zip(self._paths, self._known, strict=True))
+        self._paths = tuple(dict.fromkeys(files))
+        self._known = tuple(known[p] if p in known else _state(p) for p in self._paths)
+        self._last = self._known
+
+    def has_changed(self) -> bool:
+        """Whether something was saved since this was last true, and nothing in the last period.
+
+        A file that is still being written changes from one question to the next: it is waited for.
+        """
+        state = tuple(map(_state, self._paths))
+        at_rest, self._last = state == self._last, state
+        if not at_rest or state == self._known:
+            return False
+        self._known = state
+        return True
+
+
+def _state(path: Path) -> tuple[int, ...] | None:
+    """What changes when a file is saved, or replaced, or a folder gets another name; None: gone."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loaded:
+    """A scene that was loaded again, and can be shown.
+
+    Attributes:
+        viewable: The scene.
+        animated: Whether its picture depends on the time.
+        files: The files that took part.
+    """
+
+    viewable: Viewable
+    animated: bool
+    files: tuple[Path, ...]
+
+
+def load_again(path: str, name: str | None, shot: Shot, maker: Maker) -> Loaded:
+    """Load a scene and compile what is looked at.
+
+    Raises:
+        LoadError, CompileError: There is a mistake; whatever was loaded before still works.
+        DeviceError: The device was lost.
+    """
+    obj = load(path, name)
+    origin = loaded_from(obj)
+    assert origin is not None, "it was loaded just now"
+    if not hasattr(obj, "parameters"):  # a @func: viewable says so
+        viewable(obj)
+    values = valid_values(obj.parameters(), dict(shot.parameters))
+    shown = viewable(obj, values, shot.time)
+    view = shot.view if shot.view in shown.views else shown.views[0]
+    parameters = tuple(sorted(values.items()))
+    steering = (shot.steering or STILL) if shown.steers else None
+    maker.prepare(shown, replace(shot, parameters=parameters, view=view, steering=steering))
+    # Asked for here, so that the window's thread finds it computed.
+    _ = shown.elevation
+    return Loaded(shown, shown.animated, origin.files)
+
+
+def files_in(error: BaseException, scene: Path) -> list[Path]:
+    """What has to change before a mistake can be gone, besides the files that are known.
+
+    A module that fails is no part of any scene that was loaded; one that is missing is found by
+    its folder, whose list of names changes when it comes.
+    """
+    folder = scene.resolve().parent
+    names = [folder]
+    if isinstance(error, CompileError):
+        names += (Path(d.span.file) for d in error.diagnostics if d.span is not None)
+    cause: BaseException | None = error
+    while cause is not None:
+        if isinstance(cause, SyntaxError) and cause.filename:
+            names.append(Path(cause.filename))
+        trace = cause.__traceback__
+        while trace is not None:
+            names.append(Path(trace.tb_frame.f_code.co_filename))
+            trace = trace.tb_next
+        cause = cause.__cause__
+    near = (path for path in names if path.resolve().is_relative_to(folder))
+    return [path for path in dict.fromkeys(near) if path.exists()]

@@ -1,0 +1,112 @@
+"""Opens a native window, with a device of wgpu to draw on it; or says in a line why there is none.
+
+What flows in: a size, a device's name. What flows out: canvas, surface, maker. The only module
+that knows glfw.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import warnings
+from typing import Any, Final
+
+import glfw
+from rendercanvas.glfw import RenderCanvas  # type: ignore[import-untyped, unused-ignore]
+
+from distal.devices.adapters import chosen, opened, wgpu_module
+from distal.diagnostics import DeviceError
+from distal.window.presenters import Maker, PixelMaker, TextureMaker
+from distal.window.surface import Surface
+
+_NO_WINDOW: Final = "no window can be opened here"
+LARGEST_SIDE: Final = 8192
+
+
+def check_display() -> None:
+    """Refuse a machine without a display, before any work is done.
+
+    Raises:
+        DeviceError: There is no display.
+    """
+    if sys.platform.startswith("linux") and not (
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    ):
+        raise DeviceError(f"{_NO_WINDOW}: no display (DISPLAY is not set)")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        ready = glfw.init()
+    if not ready:
+        reason = str(said[-1].message) if said else "the display cannot be reached"
+        name = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+        raise DeviceError(f"{_NO_WINDOW}: {reason}" + (f" (display '{name}')" if name else ""))
+
+
+def open_canvas(size: tuple[int, int], title: str) -> Any:
+    """A window of that size in its own units."""
+    return RenderCanvas(
+        size=size, title=title, update_mode="ondemand", max_fps=60, present_method="screen"
+    )
+
+
+def open_surface(canvas: Any, device: str) -> tuple[Surface, Maker]:
+    """What draws on a canvas, and what makes frames for it.
+
+    Raises:
+        DeviceError: There is no adapter, or it cannot draw on this window.
+    """
+    if device.startswith("gpu"):
+        return _on_gpu(canvas, device)
+    return Surface(canvas, _any_device(canvas)), PixelMaker(device)
+
+
+def _on_gpu(canvas: Any, device: str) -> tuple[Surface, Maker]:
+    wish = device.partition(":")[2] or None
+    gpu = opened(chosen(wish))
+    name = f"gpu-fragment:{wish}" if wish else "gpu-fragment"
+    try:
+        return Surface(canvas, gpu.device), TextureMaker(name, gpu.device, wish)
+    except (RuntimeError, ValueError, wgpu_module().GPUError) as error:
+        raise DeviceError(
+            f"{_NO_WINDOW}: {gpu.adapter.name} cannot draw on it ({_first_line(error)});"
+            " another with --adapter, or --device cpu"
+        ) from error
+
+
+def _any_device(canvas: Any) -> Any:
+    """Any device that draws on a window: it only puts finished frames there."""
+    wgpu = wgpu_module()
+    # Mesa complains on stderr without one; any folder that exists will do, now that glfw has
+    # found its display.
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    try:
+        adapter = wgpu.gpu.request_adapter_sync(canvas=canvas)
+        if adapter is None:
+            raise RuntimeError("none was found")
+        return adapter.request_device_sync()
+    except (RuntimeError, wgpu.GPUError) as error:
+        raise DeviceError(
+            f"{_NO_WINDOW}: no graphics driver draws on it ({_first_line(error)}); in software:"
+            " apt-get install mesa-vulkan-drivers"
+        ) from error
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]
+
+
+def set_full_screen(canvas: Any, back_to: tuple[int, ...] | None) -> tuple[int, ...] | None:
+    """Fill the screen, or go back to the place and size from before; what to go back to then."""
+    window = canvas._window  # rendercanvas has no word for this
+    if back_to is not None:
+        glfw.set_window_monitor(window, None, *back_to, 0)  # type: ignore[arg-type, call-arg, unused-ignore]
+        return None
+    monitor = glfw.get_primary_monitor()
+    if not monitor:
+        return None
+    mode = glfw.get_video_mode(monitor)
+    place = (*glfw.get_window_pos(window), *glfw.get_window_size(window))
+    width, height = mode.size
+    glfw.set_window_monitor(window, monitor, 0, 0, width, height, mode.refresh_rate)
+    return place

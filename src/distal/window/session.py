@@ -1,0 +1,343 @@
+"""What a person has done with a window so far, and so what it has to show.
+
+What flows in: a ``Viewable``, actions of keys, the pointer, readings of a steady clock. What flows
+out: a ``Shot``: two that are equal look the same, so no frame is drawn twice. Knows no display, no
+device and no thread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from typing import TYPE_CHECKING, Final
+
+from distal.lang.parameter_values import Value
+from distal.lang.parameters import Parameter
+from distal.scene.steering import STILL, Steering
+from distal.window.clock import LATEST_S, Clock
+from distal.window.dials import Dial, dials
+from distal.window.gestures import Mouse, orbited, panned, zoomed
+from distal.window.keys import Action
+from distal.window.layout import Table, span, time_bar, time_track
+
+if TYPE_CHECKING:
+    from distal.scene.viewable import Viewable
+
+FRAMES_PER_S: Final = 60
+_STEP_S: Final = 0.25
+# How long after the last touch a picture counts as moving: a wheel's notches come in bursts.
+_SETTLING_S: Final = 0.25
+_LEFT, _RIGHT, _MIDDLE = 1, 2, 3
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """All that a frame depends on, but its size.
+
+    Attributes:
+        time: Seconds.
+        parameters: Name and value of each parameter that is not at its default.
+        view: How it is looked at.
+        steering: How the camera was moved; None where there is none.
+        mouse: What an ``@image`` knows of the pointer.
+    """
+
+    time: float
+    parameters: tuple[tuple[str, Value], ...]
+    view: str
+    steering: Steering | None
+    mouse: Mouse
+
+    @property
+    def index(self) -> int:
+        """The number of the frame: by time, so that a paused one can be made again."""
+        return round(self.time * FRAMES_PER_S)
+
+
+class Grab(Enum):
+    """What the pressed pointer holds."""
+
+    ORBIT = auto()
+    PAN = auto()
+    MOUSE = auto()
+    TIME = auto()
+    DIAL = auto()
+
+
+class Session:
+    """The state behind a window.
+
+    Attributes:
+        viewable: What is shown.
+        clock: Its time.
+        steering: How its camera was moved.
+        values: The parameters that a person moved, by name.
+        view: How it is looked at.
+        dials: The rows of its parameters.
+        chosen: The row that keys move.
+        size: The window's width and height in its own units.
+        shows_parameters: Whether the rows are seen.
+        shows_help: Whether the help is seen.
+        shows_overlay: Whether anything is drawn over the picture.
+    """
+
+    def __init__(
+        self,
+        viewable: Viewable,
+        *,
+        time: float = 0.0,
+        values: Mapping[str, Value] | None = None,
+        view: str = "color",
+        paused: bool = False,
+        now: float = 0.0,
+    ) -> None:
+        self.clock = Clock(time, running=False, now=now)
+        self.steering = STILL
+        self.mouse = Mouse()
+        self.values: dict[str, Value] = dict(values or {})
+        self.view = view
+        self.chosen = 0
+        self.size = (640.0, 480.0)
+        self.shows_parameters = self.shows_help = False
+        self.shows_overlay = True
+        self._begin = time
+        self._wants_time = not paused
+        self._grab: Grab | None = None
+        self._at = (0.0, 0.0)
+        self._span = span(time)
+        self._moving_until = float("-inf")
+        self.adopt(viewable, now)
+
+    def adopt(self, viewable: Viewable, now: float, *, animated: bool | None = None) -> None:
+        """Show something else under the same view, time, camera and parameters, if still valid.
+
+        ``animated`` is the viewable's own, where it is known: asking takes a while.
+        """
+        self.viewable = viewable
+        self.animated = viewable.animated if animated is None else animated
+        self.dials: list[Dial] = dials(viewable.parameters)
+        self.values = valid_values(viewable.parameters, self.values)
+        self.chosen = max(min(self.chosen, len(self.dials) - 1), 0)
+        if self.view not in viewable.views:
+            self.view = viewable.views[0]
+        if not viewable.steers:
+            self.steering = STILL
+        # What it held may be gone: the hand takes hold anew.
+        self._grab = None
+        self.clock.run(self._wants_time and self.animated, now)
+
+    @property
+    def playing(self) -> bool:
+        """Whether the picture changes by itself."""
+        return self.clock.running
+
+    @property
+    def time_span(self) -> float:
+        """How many seconds the strip along the bottom stands for."""
+        return self._span
+
+    def is_moving(self, now: float) -> bool:
+        """Whether a hand is at it: then frames are wanted soon rather than sharp."""
+        return self._grab is not None or now < self._moving_until
+
+    def settles_in(self, now: float) -> float:
+        """Seconds until the picture no longer counts as moving."""
+        return max(self._moving_until - now, 0.0)
+
+    def shot(self, now: float) -> Shot:
+        """What is to be seen now."""
+        time = self.clock.time(now)
+        if self._grab is not Grab.TIME:
+            self._span = span(time)
+        return Shot(
+            time=time,
+            parameters=tuple(sorted(self.values.items())),
+            view=self.view,
+            steering=self.steering if self.viewable.steers else None,
+            mouse=self.mouse,
+        )
+
+    def frame_begun(self) -> None:
+        """A frame knows of the press: it is fresh no more."""
+        if self.mouse.fresh:
+            self.mouse = replace(self.mouse, fresh=False)
+
+    def value(self, dial: Dial) -> Value:
+        """The value of a row's parameter."""
+        return self.values.get(dial.parameter.name, dial.parameter.default)
+
+    @property
+    def table(self) -> Table:
+        """Where the rows stand."""
+        return Table.of(*self.size, len(self.dials), self.chosen)
+
+    # Keys
+
+    def act(self, action: Action, now: float, *, shift: bool = False) -> None:
+        """Do what a key asks for; what concerns the window itself is not known here."""
+        match action:
+            case Action.PAUSE:
+                self._pause(now)
+            case Action.BACK | Action.FORTH:
+                self._step(1 if action is Action.FORTH else -1, now, shift)
+            case Action.BEGIN:
+                self._jump(self._begin, now)
+            case Action.SLOWER | Action.FASTER:
+                self.clock.change_speed(1 if action is Action.FASTER else -1, now)
+            case Action.NEXT_VIEW | Action.LAST_VIEW:
+                self._turn_views(1 if action is Action.NEXT_VIEW else -1)
+            case Action.PARAMETERS:
+                self.shows_parameters = not self.shows_parameters
+            case Action.UP | Action.DOWN:
+                self._choose(1 if action is Action.DOWN else -1)
+            case Action.RESET_PARAMETER:
+                self._reset_parameter(every=shift)
+            case Action.RESET_CAMERA:
+                self.steering, self.mouse = STILL, Mouse()
+            case Action.HELP:
+                self.shows_help = not self.shows_help
+            case Action.OVERLAY:
+                self.shows_overlay = not self.shows_overlay
+            case Action.SCREENSHOT | Action.FULL_SCREEN | Action.QUIT:
+                pass
+
+    def _pause(self, now: float) -> None:
+        if self.animated:
+            self._wants_time = not self.clock.running
+            self.clock.run(self._wants_time, now)
+
+    def _step(self, direction: int, now: float, finely: bool) -> None:
+        if self.shows_parameters and self.shows_overlay and self.dials:
+            dial = self.dials[self.chosen]
+            self._set(dial, dial.moved(self.value(dial), direction, finely=finely))
+            self._moving_until = now + _SETTLING_S
+        elif self.animated:
+            seconds = 1 / FRAMES_PER_S if finely else _STEP_S
+            self._jump(self.clock.time(now) + direction * seconds, now)
+
+    def _jump(self, time: float, now: float) -> None:
+        # Back to 0, or to an earlier time that was asked for on the command line.
+        self.clock.jump(min(max(time, min(self._begin, 0.0)), LATEST_S), now)
+        self._moving_until = now + _SETTLING_S
+
+    def _turn_views(self, direction: int) -> None:
+        views = self.viewable.views
+        at = views.index(self.view) if self.view in views else 0
+        self.view = views[(at + direction) % len(views)]
+
+    def _choose(self, direction: int) -> None:
+        if self.dials:
+            self.shows_parameters = True
+            self.chosen = (self.chosen + direction) % len(self.dials)
+
+    def _reset_parameter(self, *, every: bool) -> None:
+        if every:
+            self.values.clear()
+        elif self.dials and self.shows_parameters:
+            self.values.pop(self.dials[self.chosen].parameter.name, None)
+
+    def _set(self, dial: Dial, value: Value) -> None:
+        parameter = dial.parameter
+        checked = parameter.check(value)
+        if checked == parameter.default:
+            # Not moved any more: it follows the author's default when that is edited.
+            self.values.pop(parameter.name, None)
+        else:
+            self.values[parameter.name] = checked
+
+    # The pointer
+
+    def press(self, x: float, y: float, button: int, now: float, *, shift: bool = False) -> None:
+        """Take hold of what is under the pointer."""
+        self._at = (x, y)
+        self._grab = self._held(x, y, button, shift)
+        if self._grab is Grab.MOUSE:
+            place = self._place(x, y)
+            self.mouse = Mouse(place, place, down=True, fresh=True)
+        elif self._grab in (Grab.TIME, Grab.DIAL):
+            self.drag(x, y, now)
+
+    def is_free(self, x: float, y: float) -> bool:
+        """Whether the pointer is on the picture, and not on what is drawn over it."""
+        if not self.shows_overlay:
+            return True
+        on_bar = self.animated and time_bar(*self.size).holds(x, y)
+        return not on_bar and not (self.shows_parameters and self.table.frame.holds(x, y))
+
+    def _held(self, x: float, y: float, button: int, shift: bool) -> Grab | None:
+        if self.shows_overlay and button == _LEFT:
+            if self.animated and time_bar(*self.size).holds(x, y):
+                return Grab.TIME
+            if self.shows_parameters and self.table.frame.holds(x, y):
+                return self._held_in_table(x, y)
+        if not self.viewable.steers:
+            return Grab.MOUSE if button == _LEFT else None
+        if button in (_RIGHT, _MIDDLE) or (button == _LEFT and shift):
+            return Grab.PAN
+        return Grab.ORBIT if button == _LEFT else None
+
+    def _held_in_table(self, x: float, y: float) -> Grab | None:
+        table = self.table
+        row = table.row_at(x, y)
+        if row is None:
+            return None
+        self.chosen = row
+        # A row that scrolls away from under the pointer is chosen, but not moved.
+        stays = self.table.first == table.first
+        return Grab.DIAL if stays and table.track(row).holds(x, y) else None
+
+    def drag(self, x: float, y: float, now: float) -> None:
+        """Move what is held."""
+        dx, dy = x - self._at[0], y - self._at[1]
+        self._at = (x, y)
+        match self._grab:
+            case Grab.ORBIT:
+                elevation = self.viewable.elevation
+                self.steering = orbited(self.steering, dx, dy, self.size[1], elevation)
+            case Grab.PAN:
+                self.steering = panned(self.steering, dx, dy, self.size[1])
+            case Grab.MOUSE:
+                self.mouse = replace(self.mouse, at=self._place(x, y))
+            case Grab.TIME:
+                self._jump(time_track(*self.size).share(x) * self._span, now)
+            case Grab.DIAL:
+                dial = self.dials[self.chosen]
+                self._set(dial, dial.placed(self.value(dial), self.table.track(0).share(x)))
+            case None:
+                return
+        self._moving_until = now + _SETTLING_S
+
+    def release(self, now: float) -> None:
+        """Let go."""
+        if self._grab is Grab.MOUSE:
+            self.mouse = replace(self.mouse, down=False)
+        self._grab = None
+
+    def wheel(self, notches: float, now: float) -> None:
+        """Go nearer or farther; positive is away."""
+        if self.viewable.steers:
+            self.steering = zoomed(self.steering, notches)
+            self._moving_until = now + _SETTLING_S
+
+    def _place(self, x: float, y: float) -> tuple[float, float]:
+        width, height = self.size
+        return x / max(width, 1.0), 1 - y / max(height, 1.0)
+
+
+def valid_values(parameters: Sequence[Parameter], values: Mapping[str, Value]) -> dict[str, Value]:
+    """The values that parameters of these names still take."""
+    known = {parameter.name: parameter for parameter in parameters}
+    return {
+        name: value
+        for name, value in values.items()
+        if name in known and _is_valid(known[name], value)
+    }
+
+
+def _is_valid(parameter: Parameter, value: Value) -> bool:
+    try:
+        parameter.check(value)
+    except (TypeError, ValueError):
+        return False
+    return True
