@@ -1,0 +1,107 @@
+# make picture   sets up what it needs and renders the raymarcher to picture.png
+# make test      sets up what it needs and runs everything that CI runs
+# make bench     measures; make sweep runs thousands of random programs and draws every example
+#                on every target; make clean undoes set-up
+# make sweep-fields   holds every shape and operator against its claims at many more numbers
+# make versions  runs the tests on every other supported Python that is installed
+#
+# Needs Python 3.11 or newer (with venv) and make. Everything else goes into .venv. System packages
+# are installed only for the tests, only as root and only with apt-get; else the command is printed
+# and what needs them is skipped aloud.
+
+SHELL := /bin/sh
+VENV := .venv
+BIN := $(VENV)/bin
+# The first interpreter that is new enough; `make PYTHON=... test` overrides it.
+PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 python; do \
+	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo "$$p" && break; done)
+WORKERS ?= 2
+SWEEP ?= 5000
+SAMPLES ?= 40
+SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
+	chromium xvfb xdotool imagemagick
+
+.PHONY: picture test lint units system bench sweep sweep-fields versions clean
+.NOTPARALLEL:
+
+picture: $(VENV)/.setup-run
+	@$(BIN)/distal render example:raymarcher -o picture.png
+	@echo "The picture is $(CURDIR)/picture.png"
+
+test: system $(VENV)/.setup-test lint units
+
+lint: $(VENV)/.setup-test
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+# Generated files are proved fresh by tests beside the rest, so that one run names every fault.
+units: $(VENV)/.setup-test
+	$(BIN)/python -m pytest -n $(WORKERS) -rs
+
+bench: $(VENV)/.setup-test
+	@for f in benchmarks/bench_*.py; do echo "== $$f"; $(BIN)/python "$$f" || exit 1; done
+
+sweep: $(VENV)/.setup-test
+	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
+	DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs tests/pictures/test_targets.py
+
+sweep-fields: $(VENV)/.setup-test
+	DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
+
+# Python 3.11 is what `make test` uses; the others are tried where they are installed.
+versions: system
+	@for v in 3.12 3.13 3.14; do \
+		if ! "python$$v" -c 'import venv, ensurepip' >/dev/null 2>&1; then \
+			echo "== Python $$v: not installed, skipped"; continue; fi; \
+		echo "== Python $$v"; \
+		"python$$v" -m venv "$(VENV)-$$v" && \
+		"$(VENV)-$$v/bin/python" -m pip install --quiet --disable-pip-version-check -e '.[test]' && \
+		"$(VENV)-$$v/bin/python" -m pytest -n $(WORKERS) -rs || exit 1; \
+	done
+
+clean:
+	rm -rf $(VENV) $(VENV)-3.* build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+
+$(VENV)/.setup-run: $(VENV)/.setup-venv pyproject.toml
+	@begin=$$(date +%s); echo "Installing distal into $(VENV) ..."; \
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e . && \
+	echo "set-up: $$(($$(date +%s) - begin)) s"
+	@touch $@
+
+$(VENV)/.setup-test: $(VENV)/.setup-venv pyproject.toml
+	@begin=$$(date +%s); echo "Installing distal and its test tools into $(VENV) ..."; \
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]' && \
+	echo "set-up: $$(($$(date +%s) - begin)) s"
+	@touch $@ $(VENV)/.setup-run
+
+$(VENV)/.setup-venv:
+	@test -n "$(PYTHON)" || { echo "distal needs Python 3.11 or newer, and none was found." \
+		"Install one, or name it: make PYTHON=/path/to/python3.11" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "$(PYTHON) cannot make virtual" \
+		"environments. On Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
+	@touch $@
+
+# Drivers in software, the GLSL validator, a browser, a screen. Never fatal: the tests say what they skip and why.
+system:
+	@if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then \
+		echo "system packages: no apt-get here; the tests use what is installed" \
+			"(EGL, OpenGL, Vulkan, glslangValidator) and skip the rest aloud"; \
+		exit 0; \
+	fi; \
+	missing=""; \
+	for p in $(SYSTEM_PACKAGES); do \
+		dpkg-query -W -f '$${Status}' "$$p" 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; \
+	done; \
+	test -n "$$missing" || exit 0; \
+	if [ "$$(id -u)" -ne 0 ]; then \
+		echo "system packages: not root; tests that need them are skipped. To run them all:"; \
+		echo "    sudo apt-get install --no-install-recommends$$missing"; \
+		exit 0; \
+	fi; \
+	echo "system packages: installing$$missing"; \
+	{ apt-get update -qq && DEBIAN_FRONTEND=noninteractive \
+		apt-get install -y -qq --no-install-recommends $$missing >/dev/null; } || \
+		echo "system packages: apt-get failed; tests that need$$missing are skipped aloud"

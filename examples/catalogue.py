@@ -1,0 +1,69 @@
+"""Every closed solid of the library on one table, each as it is without any number given.
+
+The list is the library's own: what is added there lies here the next day. Their names are in the
+catalogue of the documentation, in the same order. All of them are one kernel; normals by
+differences halve its compilation.
+"""
+
+import inspect
+
+from distal import (
+    DistantLight,
+    HemisphereLight,
+    OrbitCamera,
+    Plane,
+    Scene,
+    Shape,
+    pattern,
+    plastic,
+)
+from distal.fields.noise_lattice import fraction, lattice_hash
+from distal.lang import Buffer, cos, func, ivec3, round, slider, vec3
+from distal.scene.library import PRIMITIVES
+from distal.scene.shapes import CLASSES
+
+turn = slider("Turn", 0.35, low=-3.15, high=3.15, help="The camera's way around.")
+
+ACROSS = 9
+SPACING = 2.1
+
+
+def stands_by_itself(name: str) -> bool:
+    """Whether a shape has an end and an inside, and needs no data."""
+    row, made = PRIMITIVES[name], CLASSES[name]
+    given = [p.default for p in inspect.signature(made).parameters.values()]
+    complete = not any(d is inspect.Parameter.empty or isinstance(d, Buffer) for d in given)
+    closed = row.bounds is not None and row.signed and not row.estimate
+    return issubclass(made, Shape) and complete and closed
+
+
+@func
+def own_color(p: vec3) -> vec3:
+    """A color for each place on the table."""
+    chance = fraction(lattice_hash(ivec3(round(p / SPACING)), 3))
+    return 0.52 + 0.38 * cos(6.2831853 * (chance + vec3(0.0, 0.36, 0.6)))
+
+
+names = [name for name in CLASSES if stands_by_itself(name)]
+down = -(-len(names) // ACROSS)
+width, depth = SPACING * (ACROSS - 1), SPACING * (down - 1)
+solids = [
+    CLASSES[name]().translate(
+        SPACING * (i % ACROSS) - width / 2, 0.0, SPACING * (i // ACROSS) - depth / 2
+    )
+    for i, name in enumerate(names)
+]
+shown = solids[0].union(*solids[1:]).paint(plastic(pattern(own_color), roughness=0.3))
+
+scene = Scene(
+    shown.named("shown") | Plane(y=-1.05).paint("#e9e2d4"),
+    lights=[
+        DistantLight((-0.7, 1.0, 0.3), intensity=0.85, color="#fff4e2", angle=0.12),
+        HemisphereLight(sky=(0.95, 0.97, 1.0), ground=(0.6, 0.52, 0.46), intensity=0.42),
+    ],
+    camera=OrbitCamera(44.0, azimuth=turn, elevation=0.9, target=(0.0, -0.5, 0.0), fov_deg=20.5),
+    background="#e9e2d4",
+    normals="tetrahedron",
+    ambient_occlusion=0.7,
+    bounces=0,
+)

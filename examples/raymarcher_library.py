@@ -1,0 +1,113 @@
+"""The picture of ``raymarcher_objects``, written as a shader that calls the library's functions.
+
+What a scene does by itself is spelled out here: the distance to its shapes, their materials, the
+lights, how far rays go, and how light becomes what a display shows.
+"""
+
+from distal.fields.claims import UNBOUNDED, Bounds
+from distal.fields.place import rotated_y, translated
+from distal.fields.smooth import cubic
+from distal.fields.solids_rings import torus
+from distal.fields.solids_round import sphere
+from distal.fields.solids_surfaces import plane
+from distal.lang import (
+    Frame,
+    atan,
+    clamp,
+    cos,
+    dot,
+    func,
+    image,
+    max,
+    min,
+    mix,
+    normalize,
+    sin,
+    slider,
+    vec3,
+    vec4,
+)
+from distal.render.ambient import hemisphere_light
+from distal.render.bounce import Look, seen_plain
+from distal.render.camera import look_at
+from distal.render.lights import LightSample, distant_light
+from distal.render.material import Surface, matte
+from distal.render.patterns import checker, linear_gradient
+from distal.render.settings import march_numbers
+from distal.render.tonemap import ACES, decode_srgb, display
+
+softness = slider("Softness", 0.05, high=0.2, help="How far sphere and torus melt.")
+
+SUN = vec3(-0.4, 0.8, -0.5)
+FOG = vec3(0.52, 0.455, 0.515)
+DARK = vec3(77.0, 87.0, 97.0) / 255.0
+LIGHT = vec3(242.0, 235.0, 217.0) / 255.0
+EVERYWHERE = vec3(UNBOUNDED)
+
+
+@func
+def blob(p: vec3, time: float) -> float:
+    """A sphere that bobs and a torus that orbits, melting where they meet."""
+    ball = sphere(translated(p, vec3(0.0, 0.2 * sin(1.5 * time), 0.0)), 0.55)
+    ring = torus(translated(rotated_y(p, 0.8 * time), vec3(1.0, 0.0, 0.0)), 0.32, 0.12)
+    return cubic(ball, ring, softness)
+
+
+@func
+def floor(p: vec3) -> float:
+    return plane(p, -0.5)
+
+
+@func
+def blob_color(p: vec3, time: float) -> vec3:
+    """A color that changes with time, a little darker below."""
+    phase = 0.6 * time
+    top = (vec3(0.6, 0.45, 0.4) + 0.4 * cos(vec3(phase, phase + 0.8, phase + 1.6))) ** 2.2
+    share = linear_gradient(p, vec3(0.0, -0.5, 0.0), vec3(0.0, 0.5, 0.0))
+    return mix(0.7 * top, top, share)
+
+
+@func
+def material(p: vec3, time: float) -> Surface:
+    """What is seen at a place of the surface."""
+    if floor(p) < blob(p, time):
+        return matte(mix(decode_srgb(DARK), decode_srgb(LIGHT), checker(p)))
+    return matte(blob_color(p, time))
+
+
+@func
+def sun(p: vec3) -> LightSample:
+    """A sun that shades a 32nd of the way to what hides it."""
+    return distant_light(p, SUN, 0.85, vec3(1.0), 2.0 * atan(1.0 / 32.0))
+
+
+@func
+def sky(direction: vec3) -> vec3:
+    """Warm below, blue above, and a glow around the sun."""
+    height = clamp(0.5 * direction.y + 0.5, 0.0, 1.0)
+    air = mix(vec3(0.87, 0.57, 0.34), vec3(0.17, 0.34, 0.69), height)
+    return air + vec3(1.0, 0.69, 0.32) * max(dot(direction, normalize(SUN)), 0.0) ** 64.0
+
+
+@image
+def picture(frame: Frame) -> vec4:
+    time = frame.time
+    angle = 0.4 * time
+    eye = vec3(3.0 * cos(angle), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(angle))
+    uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
+    ray = look_at(uv, eye, vec3(0.0), vec3(0.0, 1.0, 0.0), fov=2.0 * atan(1.0 / 1.6), mirror=True)
+    seen = seen_plain(
+        ray,
+        lambda p: min(blob(p, time), floor(p)),
+        lambda p: material(p, time),
+        lambda i, p: sun(p),
+        lambda n: hemisphere_light(n, vec3(0.5), vec3(0.25), 1.0),
+        sky,
+        Bounds(-EVERYWHERE, EVERYWHERE),
+        march_numbers(1.0, 0.001, 60.0, frame.resolution),
+        Look(0.4, FOG, 0.06),
+        steps=160,
+        light_count=1,
+        shadow_steps=64,
+    )
+    return display(vec4(seen.xyz, 1.0), 1.0, ACES)

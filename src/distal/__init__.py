@@ -1,0 +1,143 @@
+"""distal: 3D scenes written as ordinary Python, compiled to every target.
+
+The names here are loaded when first used, so that ``import distal`` is quick and the compile path
+needs the standard library only.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from distal.executor_hook import (
+    set_calculator_loader,
+    set_combiner_loader,
+    set_executor_loader,
+    set_presenter_loader,
+)
+from distal.shape_names import SHAPE_NAMES
+from distal.version import __version__
+
+if TYPE_CHECKING:
+    from distal.backends.base import Artifact as Artifact
+    from distal.compiler import compile as compile
+    from distal.diagnostics import CompileError as CompileError
+    from distal.diagnostics import LoadError as LoadError
+    from distal.export.registry import export as export
+    from distal.film.picture import Picture as Picture
+    from distal.lang.expressions import time as time
+    from distal.loading import gallery as gallery
+    from distal.loading import load as load
+    from distal.scene.backgrounds import Background as Background
+    from distal.scene.backgrounds import Environment as Environment
+    from distal.scene.backgrounds import GradientBackground as GradientBackground
+    from distal.scene.backgrounds import Sky as Sky
+    from distal.scene.cameras import Camera as Camera
+    from distal.scene.cameras import FisheyeCamera as FisheyeCamera
+    from distal.scene.cameras import OrbitCamera as OrbitCamera
+    from distal.scene.cameras import OrthographicCamera as OrthographicCamera
+    from distal.scene.cameras import PanoramaCamera as PanoramaCamera
+    from distal.scene.letters import SvgPath as SvgPath
+    from distal.scene.letters import Text as Text
+    from distal.scene.lights import AmbientLight as AmbientLight
+    from distal.scene.lights import DistantLight as DistantLight
+    from distal.scene.lights import HemisphereLight as HemisphereLight
+    from distal.scene.lights import PointLight as PointLight
+    from distal.scene.lights import SpotLight as SpotLight
+    from distal.scene.materials import Material as Material
+    from distal.scene.materials import emissive as emissive
+    from distal.scene.materials import glass as glass
+    from distal.scene.materials import glossy as glossy
+    from distal.scene.materials import matte as matte
+    from distal.scene.materials import metal as metal
+    from distal.scene.materials import mirror as mirror
+    from distal.scene.materials import plastic as plastic
+    from distal.scene.patterns import by_cell as by_cell
+    from distal.scene.patterns import checker as checker
+    from distal.scene.patterns import cube_map as cube_map
+    from distal.scene.patterns import gradient as gradient
+    from distal.scene.patterns import image_pattern as image_pattern
+    from distal.scene.patterns import noise as noise
+    from distal.scene.patterns import palette as palette
+    from distal.scene.patterns import pattern as pattern
+    from distal.scene.patterns import radial_gradient as radial_gradient
+    from distal.scene.patterns import stripes as stripes
+    from distal.scene.patterns import waves as waves
+    from distal.scene.scene import Scene as Scene
+    from distal.scene.shape import Shape as Shape
+    from distal.scene.shape import Shape2D as Shape2D
+    from distal.scene.shapes import *  # noqa: F403 (a stub lists them)
+
+_ROOMS = {
+    "distal.backends.base": ("Artifact",),
+    "distal.compiler": ("compile",),
+    "distal.diagnostics": ("CompileError", "LoadError"),
+    "distal.export": ("export",),
+    "distal.film.picture": ("Picture",),
+    "distal.lang.expressions": ("time",),
+    "distal.loading": ("gallery", "load"),
+    "distal.scene.backgrounds": ("Background", "Environment", "GradientBackground", "Sky"),
+    "distal.scene.cameras": (
+        *("Camera", "FisheyeCamera", "OrbitCamera", "OrthographicCamera", "PanoramaCamera"),
+    ),
+    "distal.scene.letters": ("SvgPath", "Text"),
+    "distal.scene.lights": (
+        *("AmbientLight", "DistantLight", "HemisphereLight", "PointLight", "SpotLight"),
+    ),
+    "distal.scene.materials": (
+        *("Material", "emissive", "glass", "glossy", "matte", "metal", "mirror", "plastic"),
+    ),
+    "distal.scene.patterns": (
+        *("by_cell", "checker", "cube_map", "gradient", "image_pattern", "noise", "palette"),
+        *("pattern", "radial_gradient", "stripes", "waves"),
+    ),
+    "distal.scene.scene": ("Scene",),
+    "distal.scene.shape": ("Shape", "Shape2D"),
+    "distal.scene.shapes": SHAPE_NAMES,
+}
+_HOMES = {name: room for room, names in _ROOMS.items() for name in names}
+
+# ``from distal import *`` leaves Python's own ``compile`` alone.
+__all__ = ["__version__", *(name for name in _HOMES if name != "compile")]
+
+
+def _executor() -> Any:
+    return importlib.import_module("distal.executor").PythonExecutor()
+
+
+def _calculator() -> Any:
+    return importlib.import_module("distal.constant_values").compute
+
+
+def _combiner() -> Any:
+    return importlib.import_module("distal.frontend.python_expressions").combine
+
+
+def _presenter() -> Any:
+    return importlib.import_module("distal.presenter").Presenter()
+
+
+set_executor_loader(_executor)
+set_calculator_loader(_calculator)
+set_combiner_loader(_combiner)
+set_presenter_loader(_presenter)
+
+
+def _unknown(name: str) -> str:
+    message = f"module 'distal' has no attribute '{name}'"
+    near = importlib.import_module("difflib").get_close_matches(name, _HOMES, 1)
+    return f"{message}; did you mean '{near[0]}'?" if near and name[0] != "_" else message
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(_unknown(name))
+    room = importlib.import_module(_HOMES[name])
+    # The room "export" is itself what is called: Python binds a room's name here when it loads one.
+    value = room if room.__name__ == f"{__name__}.{name}" else getattr(room, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

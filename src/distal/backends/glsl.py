@@ -1,0 +1,163 @@
+"""GLSL: WebGL 2 (ES 3.00), desktop 3.30, WebGL 1 (ES 1.00), glslCanvas, ISF and Shadertoy.
+
+In: a module that has been through the passes. Out: its fragment text, the vertex text where there
+is one, and the interface. The text of functions and of programs is written by
+``distal.backends.glsl_writer`` and ``distal.backends.glsl_stages``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from distal.backends.base import Artifact
+from distal.backends.glsl_isf import IsfHeader
+from distal.backends.glsl_resources import canvas_textures, shadertoy_channels
+from distal.backends.glsl_stages import DIALECTS, Declares, Program, fragment_lines, vertex_lines
+from distal.backends.glsl_uniforms import beyond_room
+from distal.backends.interface import interface
+from distal.backends.keywords import (
+    GLSL_CANVAS_NAMES,
+    GLSL_FUNCTIONS,
+    GLSL_KEYWORDS,
+    ISF_NAMES,
+    SHADERTOY_NAMES,
+)
+from distal.backends.module_names import ModuleNames, name_module, reachable
+from distal.backends.module_text import joined, per_frame_reads, without_frame
+from distal.backends.packing import Packing, pack
+from distal.ir.nodes import EntryKind, Module, Origin
+from distal.ir.target import FramePlace, Target
+from distal.ir.types import Type
+from distal.ir.walk import expressions_in
+
+_RESERVED: Final = GLSL_KEYWORDS | GLSL_FUNCTIONS
+
+TARGETS: Final = (
+    Target("glsl-es300", "glsl", FramePlace.VERTEX),
+    Target("glsl-330", "glsl", FramePlace.VERTEX),
+    *(
+        Target(
+            name,
+            "glsl100",
+            FramePlace.PIXEL,
+            unsigned=False,
+            dynamic_loops=False,
+            dynamic_index=False,
+            texel_fetch=False,
+        )
+        for name in ("glsl-es100", "glslcanvas", "isf")
+    ),
+    Target("shadertoy", "glsl", FramePlace.PIXEL),
+)
+
+_FIRST_NAMES: Final = {
+    "glsl-es300": frozenset({"fragment_color"}),
+    "glsl-330": frozenset({"fragment_color"}),
+    "glsl-es100": GLSL_CANVAS_NAMES,
+    "glslcanvas": GLSL_CANVAS_NAMES,
+    "isf": ISF_NAMES,
+    "shadertoy": SHADERTOY_NAMES,
+}
+_VERSIONS: Final = {
+    "glsl-es300": "300 es",
+    "glsl-330": "330",
+    "glsl-es100": "100",
+    "glslcanvas": "100",
+    "isf": "100",
+    "shadertoy": "300 es",
+}
+_RESOURCE_NAMES: Final = {"glslcanvas": canvas_textures, "shadertoy": shadertoy_channels}
+
+
+def emit(module: Module, target: Target) -> Artifact:
+    """Write the whole program.
+
+    Raises:
+        CompileError: The target cannot say what the author wrote.
+    """
+    program = _program(without_frame(module), target)
+    module = program.module
+    text, places = joined(fragment_lines(program))
+    # Not among the lines that are broken to a width: the comment's texts are data.
+    text = "".join(f"{line}\n" for line in program.header) + text
+    places = (*(None for _ in program.header), *places)
+    if target.frame is not FramePlace.VERTEX or module.kind is not EntryKind.IMAGE:
+        return Artifact(text, _interface(program, target), None, places)
+    vertex, vertex_places = joined(vertex_lines(program))
+    return Artifact(text, _interface(program, target), vertex, places, vertex_places)
+
+
+def _program(module: Module, target: Target) -> Program:
+    dialect = DIALECTS[target.name]
+    fixed = {
+        uniform.name: dialect.texts[uniform.name]
+        for uniform in module.uniforms
+        if uniform.origin is Origin.FRAME and uniform.name in dialect.texts
+    }
+    first = _FIRST_NAMES[target.name]
+    header: tuple[str, ...] = ()
+    assign = _RESOURCE_NAMES.get(target.name)
+    resources = assign(module.resources) if assign is not None else {}
+    if target.name == "isf" and module.kind is EntryKind.IMAGE:
+        isf = IsfHeader.of(module, _RESERVED | ISF_NAMES)
+        fixed |= isf.texts
+        first |= isf.names
+        header, resources = isf.lines, isf.resources
+    names = name_module(module, _RESERVED, GLSL_KEYWORDS, first, fixed, resources)
+    packing = None
+    if target.frame is FramePlace.VERTEX:
+        packing = pack(_sent(module))
+    own = dialect.numbers is Declares.TEXT
+    constants = beyond_room(module.uniforms) if own else frozenset()
+    vectors = _vectors(names, packing)
+    return Program(module, names, dialect, target.name, fixed, constants, packing, vectors, header)
+
+
+def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
+    """The per-frame values that the fragment stage reads."""
+    entry = module.function(module.entry)
+    functions = reachable(module, expressions_in(entry.body))
+    read = per_frame_reads((*functions, entry))
+    return tuple((name, value.type) for name, value in module.frame if name in read)
+
+
+def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
+    if packing is None:
+        return []
+    count = packing.float_vectors + packing.int_vectors
+    return [names.namer.name(f"packed_{i}") for i in range(count)]
+
+
+def _interface(program: Program, target: Target) -> dict[str, Any]:
+    module, names = program.module, program.names
+    result = interface(module, target, names)
+    if program.constants:
+        # Nothing sets them, though the text has them by name.
+        apart = [u for u in result["uniforms"] if u["name"] in program.constants]
+        result["uniforms"] = [u for u in result["uniforms"] if u not in apart]
+        result["constants"] = apart
+    for uniform in result["uniforms"]:
+        # The text makes a vector of what the place hands in: u_mouse of vec4(u_mouse, 0.0, 0.0).
+        spelled = uniform["uniform"].removeprefix("vec4(").removeprefix("vec3(")
+        uniform["uniform"] = spelled.partition(",")[0].partition(" ")[0]
+    result["version"] = _VERSIONS[target.name]
+    for buffer in result["buffers"]:
+        buffer["count"] = names.counts[buffer["name"]]
+        buffer["layout"] = "texture, one texel an element, row by row"
+    if module.kind is EntryKind.FUNCTION:
+        result["entry"] = names.functions[module.entry]
+        result["stages"] = {}
+        return result
+    result["entry"] = "mainImage" if target.name == "shadertoy" else "main"
+    result["stages"] = {"fragment": result["entry"]}
+    if program.packing is not None:
+        result["stages"]["vertex"] = "main"
+        result["vertices"] = 3  # drawn as triangles, without buffers
+    result["frame"] = {
+        "place": target.frame.value,
+        "values": [
+            {"name": names.frame[name], "type": str(value.type)} for name, value in module.frame
+        ],
+        "vectors": program.vectors,
+    }
+    return result

@@ -1,0 +1,49 @@
+"""Vector code for the CPU, as LLVM text: one lane per pixel.
+
+What flows in: a module after the passes and the shape of the machine's vectors. What flows out:
+LLVM text with the kernels of ``distal.backends.llvm.kernels``. Needs no LLVM: turning the text into
+machine code is a device's business.
+"""
+
+from __future__ import annotations
+
+from distal.backends.base import Artifact
+from distal.backends.llvm.lanes import Lanes
+from distal.backends.llvm.layout import description
+from distal.ir.nodes import Module
+from distal.ir.target import FramePlace, Target
+
+TARGET = Target(
+    name="llvm",
+    family="llvm",
+    frame=FramePlace.HOST,
+    integer_floor=True,
+    saturating_cast=True,
+    samples=False,
+    inline=True,
+    predicated=True,
+)
+TARGETS: tuple[Target, ...] = (TARGET,)
+
+
+def emit_for(module: Module, lanes: Lanes) -> Artifact:
+    """The LLVM text of a module for one shape of vectors."""
+    # A kernel found in the cache is run without any of this.
+    from distal.backends.llvm.kernels import kernels  # noqa: PLC0415
+    from distal.backends.llvm.program import Program  # noqa: PLC0415
+
+    program = Program(module, lanes)
+    frame_apart = kernels(program)
+    interface = description(module)
+    interface["target"] = TARGET.name
+    interface["frame_apart"] = frame_apart
+    return Artifact(program.text(module.entry), interface)
+
+
+def emit(module: Module, target: Target) -> Artifact:
+    """The LLVM text of a module, for vectors of eight floats, two in flight."""
+    assert target.family == TARGET.family
+    return emit_for(module, Lanes())
+
+
+__all__ = ["TARGET", "TARGETS", "Lanes", "emit", "emit_for"]

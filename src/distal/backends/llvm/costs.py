@@ -1,0 +1,123 @@
+"""How much work an expression or a block is, roughly in vector instructions.
+
+Decides whether code under a condition is worth a branch around it.
+"""
+
+from __future__ import annotations
+
+from distal.ir.nodes import (
+    Binary,
+    BinaryOp,
+    Builtin,
+    Call,
+    Compare,
+    Const,
+    Expr,
+    For,
+    Function,
+    Index,
+    Logical,
+    MatMul,
+    PerFrame,
+    Read,
+    Resource,
+    Sample,
+    Select,
+    Stmt,
+    Swizzle,
+    Texel,
+    Unary,
+    Uniform,
+    While,
+)
+from distal.ir.types import component_count, is_static, kind_of
+from distal.ir.walk import blocks, children, expressions, nodes_in
+
+_DIVISION = 8  # also of a square root: vector dividers take about eight multiplications' time
+_HEAVY = frozenset(("sqrt", "inversesqrt"))
+
+
+class Costs:
+    """Costs within one module; a call costs what its function costs, a loop counts as endless."""
+
+    LOOP = 1000
+    MANY_ROUNDS = 2**31
+
+    def __init__(self, functions: tuple[Function, ...]) -> None:
+        self._functions: dict[str, int] = {}
+        self._rounds: dict[str, int] = {}
+        for function in functions:
+            self._functions[function.name] = self.block(function.body)
+            self._rounds[function.name] = self.rounds(function.body)
+
+    def function(self, name: str) -> int:
+        """The cost of a function's body."""
+        return self._functions[name]
+
+    def rounds(self, block: tuple[Stmt, ...]) -> int:
+        """How often the innermost loop of a block may go round, calls included."""
+        most = 1
+        for stmt in block:
+            for e in nodes_in(*expressions(stmt)):
+                if isinstance(e, Call):
+                    most = max(most, self._rounds[e.function])
+            inside = max((self.rounds(b) for b in blocks(stmt)), default=1)
+            match stmt:
+                case For():
+                    own = constant_rounds(stmt)
+                    inside *= self.MANY_ROUNDS if own is None else own
+                case While():
+                    inside = self.MANY_ROUNDS
+            most = max(most, inside)
+        return min(most, self.MANY_ROUNDS)
+
+    def expression(self, *roots: Expr) -> int:
+        """The cost of expressions, what they share counted once."""
+        return sum(self._node(e) for e in nodes_in(*roots))
+
+    def block(self, block: tuple[Stmt, ...]) -> int:
+        """The cost of running every statement of a block once."""
+        total = 0
+        for stmt in block:
+            total += self.expression(*expressions(stmt))
+            total += sum(map(self.block, blocks(stmt)))
+            if isinstance(stmt, For | While):
+                total += self.LOOP
+        return total
+
+    def _node(self, e: Expr) -> int:
+        match e:
+            case Const() | Read() | Uniform() | PerFrame() | Resource() | Swizzle():
+                return 0
+            case Call(function):
+                return self._functions[function]
+            case Texel() | Sample():
+                return 30
+            case Binary(op) if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD):
+                return _DIVISION * _width(e)
+            case Builtin(name):
+                width = max(map(_width, children(e)))
+                if name == "length":
+                    return _DIVISION + width
+                return width * (_DIVISION if name in _HEAVY else 1)
+            case MatMul():
+                return 16
+            case Index(base):
+                return 1 if is_static(base.type) else 4
+            case Binary() | Unary() | Compare() | Logical() | Select():
+                return _width(e)
+            case _:
+                return 0
+
+
+def constant_rounds(stmt: For) -> int | None:
+    """How often a loop goes round, if that is known."""
+    match stmt.start, stmt.stop:
+        case Const(start), Const(stop):
+            return len(range(int(start), int(stop), stmt.step))
+        case _:
+            return None
+
+
+def _width(e: Expr) -> int:
+    return component_count(e.type) if kind_of(e.type) else 4

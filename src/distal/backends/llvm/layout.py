@@ -1,0 +1,127 @@
+"""Where a kernel finds uniforms, per-frame values and resources, and its arguments and results.
+
+What flows in: a module after the passes. What flows out: slot numbers, JSON-able, so that a stored
+kernel can be called without compiling its module again. A slot holds one scalar: a float of the
+precision, or an int in its low four bytes (bools are 0 or 1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from distal.backends.llvm.lanes import leaf_kinds
+from distal.ir.nodes import EntryKind, Module
+from distal.ir.types import Array, Buffer, Kind, Matrix, Scalar, Struct, Texture, Type, Vector
+
+# The exported functions; each takes a job.
+RENDER: Final = "distal_render"
+FRAME: Final = "distal_frame"
+BATCH: Final = "distal_batch"
+PIXELS: Final = "distal_pixels"
+
+# The job that a kernel is called with: eight-byte fields, in this order.
+JOB_FIELDS: Final = (
+    "counter",  # pointer: the next tile
+    "stop",  # pointer: not 0 when the work is to end
+    "uniforms",  # pointer
+    "frame",  # pointer
+    "resources",  # pointer: four eight-byte numbers each: data, width or count, height, depth
+    "output",  # pointer: pixels, or result leaves
+    "input",  # pointer: argument leaves, or pixels
+    "width",  # pixels across, or points in all
+    "height",  # pixels down
+    "tiles_across",
+    "tiles",  # how many in all
+    "stride",  # points from one leaf of arguments or results to the next
+)
+JOB_OFFSET: Final = {name: 8 * i for i, name in enumerate(JOB_FIELDS)}
+RESOURCE_BYTES: Final = 32
+
+TILE_WIDTH, TILE_HEIGHT = 64, 16  # pixels; a multiple of every block's
+TILE_BLOCKS = 64  # blocks of points in a tile of a batch
+
+
+def shape_of(type: Type) -> Any:
+    """A type as plain data, for calling a kernel: kind and size, fields, length."""
+    match type:
+        case Scalar(kind):
+            return {"kind": kind.value}
+        case Vector(kind, size):
+            return {"kind": kind.value, "size": size}
+        case Matrix(size):
+            return {"kind": Kind.FLOAT.value, "columns": size}
+        case Struct(name, fields, is_tuple):
+            parts = [[field_name, shape_of(t)] for field_name, t in fields]
+            return {"struct": name, "tuple": is_tuple, "fields": parts}
+        case Array(element, length):
+            return {"element": shape_of(element), "length": length}
+        case _:
+            raise AssertionError(f"{type} is not a value")
+
+
+def kinds_in(shape: Any) -> list[str]:
+    """The kinds of the leaves of a shape."""
+    if "struct" in shape:
+        return [k for _, part in shape["fields"] for k in kinds_in(part)]
+    if "element" in shape:
+        return kinds_in(shape["element"]) * int(shape["length"])
+    return [shape["kind"]] * (shape.get("size", 1) * shape.get("columns", 1) ** 2)
+
+
+@dataclass(slots=True)
+class Layout:
+    """Slots of everything a kernel reads."""
+
+    uniforms: dict[str, int] = field(default_factory=dict)
+    uniform_slots: int = 0
+    frame: dict[str, int] = field(default_factory=dict)
+    frame_slots: int = 0
+    resources: dict[str, int] = field(default_factory=dict)
+
+    @staticmethod
+    def of(module: Module) -> Layout:
+        """The layout of a module."""
+        layout = Layout()
+        for uniform in module.uniforms:
+            layout.uniforms[uniform.name] = layout.uniform_slots
+            layout.uniform_slots += len(leaf_kinds(uniform.type))
+        for name, value in module.frame:
+            layout.frame[name] = layout.frame_slots
+            layout.frame_slots += len(leaf_kinds(value.type))
+        layout.resources = {r.name: i for i, r in enumerate(module.resources)}
+        return layout
+
+
+def description(module: Module) -> dict[str, Any]:
+    """What a host needs to call the kernels of a module, as plain data."""
+    layout = Layout.of(module)
+    entry = module.function(module.entry)
+    image = module.kind is EntryKind.IMAGE
+    return {
+        "kind": module.kind.value,
+        "entry": module.entry,
+        "uniforms": [
+            [u.name, layout.uniforms[u.name], shape_of(u.type), _plain(u.default)]
+            for u in module.uniforms
+        ],
+        "uniform_slots": layout.uniform_slots,
+        "frame_slots": layout.frame_slots,
+        "resources": [_resource(r.name, r.type) for r in module.resources],
+        "params": [] if image else [[p.name, shape_of(p.type)] for p in entry.params],
+        "result": shape_of(entry.result),
+    }
+
+
+def _resource(name: str, type: Type) -> list[Any]:
+    match type:
+        case Buffer(element):
+            return [name, "buffer", shape_of(element)]
+        case Texture(texture):
+            return [name, texture.value, {"kind": Kind.FLOAT.value, "size": 4}]
+        case _:
+            raise AssertionError(f"{type} is not a resource")
+
+
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value

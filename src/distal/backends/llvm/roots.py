@@ -1,0 +1,142 @@
+"""Square roots and divisions, by estimates where the processor has good ones.
+
+What flows in and out: leaves. AVX-512 estimates 1/sqrt(x) to 14 bits in a third of the time that
+the vector divider takes for a root; one step of Newton's method makes 27 of them, an error of at
+most one unit in the last place (a root of a number below the normal ones keeps the estimate's 14
+bits), and whole results stay whole. The divider was the narrowest place
+of the first example: 64 lanes took 7.7 ms a picture with it and 5.9 ms without.
+"""
+
+from __future__ import annotations
+
+from distal.backends.llvm.arithmetic import Arithmetic
+from distal.backends.llvm.lanes import Leaf
+from distal.ir.nodes import CompareOp
+from distal.ir.types import Kind
+
+_RSQRT = "@llvm.x86.avx512.rsqrt14.ps.512"
+_FIXUP = "@llvm.x86.avx512.mask.fixupimm.ps.512"
+# What fixupimm does with a value by its class, four bits each: 1 takes the value itself instead of
+# the result. Classes: quiet and signalling NaN, zero, one, -infinity, infinity, negative, positive.
+_ZERO_AND_INFINITY = 0x00100100
+_INFINITIES = 0x00110000
+_SMALLEST, _LARGEST = 2.0**-100, 2.0**100
+
+
+def _estimates(arithmetic: Arithmetic, *leaves: Leaf) -> bool:
+    lanes = arithmetic.lanes
+    varying = not all(leaf.uniform for leaf in leaves)
+    return lanes.level == "avx512" and lanes.precision == 32 and varying
+
+
+def square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
+    """The square root; of 0, infinity and NaN themselves, NaN below 0."""
+    if not _estimates(arithmetic, x):
+        return arithmetic.intrinsic("sqrt", Kind.FLOAT, x)
+    value, vector = arithmetic.writer.value, arithmetic.lanes.vector(Kind.FLOAT)
+    names = []
+    for name in x.names:
+        y = _estimate(arithmetic, name)
+        root = value(f"fmul {vector} {name}, {y}")
+        half = value(f"fmul {vector} {y}, splat (float 0.5)")
+        rest = _fused(arithmetic, value(f"fneg {vector} {root}"), root, name)
+        better = _fused(arithmetic, rest, half, root)
+        # Of 0 and infinity the estimate is the other one, and their product NaN.
+        names.append(_except(arithmetic, better, name, _ZERO_AND_INFINITY))
+    return Leaf(Kind.FLOAT, tuple(names), False)
+
+
+def inverse_square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
+    """``1 / sqrt(x)``: infinite for 0, 0 for infinity."""
+    if not _estimates(arithmetic, x):
+        one = arithmetic.constant(1.0, Kind.FLOAT)
+        return arithmetic.divide(one, square_root(arithmetic, x))
+    value, vector = arithmetic.writer.value, arithmetic.lanes.vector(Kind.FLOAT)
+    names = []
+    for name in x.names:
+        y = _estimate(arithmetic, name)
+        root = value(f"fmul {vector} {name}, {y}")
+        half = value(f"fmul {vector} {y}, splat (float 0.5)")
+        inverse = value(f"fneg {vector} {root}")
+        rest = _fused(arithmetic, inverse, y, "splat (float 1.0)")
+        better = _fused(arithmetic, rest, half, y)
+        names.append(_unless_nan(arithmetic, better, y))
+    return Leaf(Kind.FLOAT, tuple(names), False)
+
+
+def quotient(arithmetic: Arithmetic, a: Leaf, b: Leaf) -> Leaf:
+    """``a / b``, by the reciprocal of a divisor that all lanes share.
+
+    The product with the rounded reciprocal is put right by what it leaves over (P. Markstein,
+    "Computation of Elementary Functions on the IBM RISC System/6000 Processor", 1990): the result
+    is the correctly rounded quotient, away from the ends of the range of floats.
+    """
+    if not (_estimates(arithmetic, a) and b.uniform):
+        return arithmetic.divide(a, b)
+    one = arithmetic.constant(1.0, Kind.FLOAT)
+    (divisor,) = b.names
+    reciprocal, correction = arithmetic.once(
+        ("reciprocal", divisor), lambda: _reciprocals(arithmetic, b, one)
+    )
+    value, vector = arithmetic.writer.value, arithmetic.lanes.vector(Kind.FLOAT)
+    names = []
+    inverses, corrections = arithmetic.vectors(reciprocal), arithmetic.vectors(correction)
+    negated = arithmetic.once(
+        ("negated", divisor), lambda: arithmetic.vectors(arithmetic.negate(b))
+    )
+    for c, name in enumerate(a.names):
+        first = value(f"fmul {vector} {name}, {inverses[c]}")
+        rest = _fused(arithmetic, negated[c], first, name)
+        better = _fused(arithmetic, rest, corrections[c], first)
+        # Of an infinite quotient, or by an infinite divisor, nothing is left over to put right.
+        if b.constant:
+            names.append(_except(arithmetic, better, first, _INFINITIES))
+        else:
+            names.append(_unless_nan(arithmetic, better, first))
+    return Leaf(Kind.FLOAT, tuple(names), False)
+
+
+def _reciprocals(arithmetic: Arithmetic, b: Leaf, one: Leaf) -> tuple[Leaf, Leaf]:
+    """``1 / b``, and the same again for the correction: 0 where ``b`` is near the range's ends."""
+    reciprocal = arithmetic.divide(one, b)
+    size = arithmetic.intrinsic("fabs", Kind.FLOAT, b)
+    above = arithmetic.compare(CompareOp.GT, size, arithmetic.constant(_SMALLEST, Kind.FLOAT))
+    below = arithmetic.compare(CompareOp.LT, size, arithmetic.constant(_LARGEST, Kind.FLOAT))
+    zero = arithmetic.constant(0.0, Kind.FLOAT)
+    return reciprocal, arithmetic.select(arithmetic.both(above, below), reciprocal, zero)
+
+
+def _estimate(arithmetic: Arithmetic, name: str) -> str:
+    vector = arithmetic.lanes.vector(Kind.FLOAT)
+    arithmetic.declarations.add(f"declare {vector} {_RSQRT}({vector}, {vector}, i16)")
+    return arithmetic.writer.value(
+        f"call {vector} {_RSQRT}({vector} {name}, {vector} zeroinitializer, i16 -1)"
+    )
+
+
+def _fused(arithmetic: Arithmetic, a: str, b: str, c: str) -> str:
+    """``a * b + c`` rounded once."""
+    vector = arithmetic.lanes.vector(Kind.FLOAT)
+    name = f"@llvm.fma.v{arithmetic.lanes.width}f32"
+    arithmetic.declarations.add(f"declare {vector} {name}({vector}, {vector}, {vector})")
+    return arithmetic.writer.value(
+        f"call {vector} {name}({vector} {a}, {vector} {b}, {vector} {c})"
+    )
+
+
+def _except(arithmetic: Arithmetic, value: str, own: str, classes: int) -> str:
+    """``value``, but ``own`` where that is of one of some classes of numbers."""
+    vector, whole = arithmetic.lanes.vector(Kind.FLOAT), arithmetic.lanes.vector(Kind.INT)
+    arithmetic.declarations.add(
+        f"declare {vector} {_FIXUP}({vector}, {vector}, {whole}, i32, i16, i32)"
+    )
+    return arithmetic.writer.value(
+        f"call {vector} {_FIXUP}({vector} {value}, {vector} {own}, {whole} splat (i32 {classes}), "
+        "i32 0, i16 -1, i32 4)"
+    )
+
+
+def _unless_nan(arithmetic: Arithmetic, value: str, otherwise: str) -> str:
+    vector, bools = arithmetic.lanes.vector(Kind.FLOAT), arithmetic.lanes.vector(Kind.BOOL)
+    nan = arithmetic.writer.value(f"fcmp uno {vector} {value}, {value}")
+    return arithmetic.writer.value(f"select {bools} {nan}, {vector} {otherwise}, {vector} {value}")

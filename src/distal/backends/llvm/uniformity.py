@@ -1,0 +1,136 @@
+"""Which locals of a function are the same in every lane.
+
+What flows in: a predicated function and which parameters vary. What flows out: the names of the
+locals that may differ between lanes; everything else is computed once, in scalar registers.
+
+A value varies when an operand does. A Var varies also when it is assigned where lanes may have
+parted since it was bound: under a condition that varies, or in a loop that they leave one by one.
+Assuming that nothing varies and adding what must is repeated until nothing is added.
+"""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from distal.ir.nodes import (
+    Assign,
+    Break,
+    Const,
+    Continue,
+    Expr,
+    For,
+    Function,
+    If,
+    Let,
+    PerFrame,
+    Read,
+    Resource,
+    Return,
+    Size,
+    Stmt,
+    Uniform,
+    Var,
+    While,
+)
+from distal.ir.walk import children, expressions, nodes_in, root_of, statements_in
+
+
+class Uniformity:
+    """The analysis of one function for one choice of varying parameters."""
+
+    def __init__(self, function: Function, varying: frozenset[str]) -> None:
+        self.function = function
+        self.varying = set(varying)
+        self.result_varies = False
+        self.divergent_loops: set[int] = set()  # ids of statements
+        self._depth: dict[str, int] = {}
+        self._memo: dict[Expr, bool] = {}
+        self._grew = True
+        while self._grew:
+            self._grew = False
+            self._memo.clear()
+            self._block(function.body, 0)
+
+    def varies(self, e: Expr) -> bool:
+        """Whether an expression may differ between lanes."""
+        known = self._memo.get(e)
+        if known is None:
+            match e:
+                case Read(name):
+                    known = name in self.varying
+                case Const() | Uniform() | PerFrame() | Resource() | Size():
+                    known = False
+                case _:
+                    known = any(self.varies(c) for c in children(e))
+            self._memo[e] = known
+        return known
+
+    def _vary(self, name: str) -> None:
+        if name not in self.varying:
+            self.varying.add(name)
+            self._memo.clear()
+            self._grew = True
+
+    def _block(self, block: tuple[Stmt, ...], depth: int) -> None:
+        for stmt in block:
+            self._statement(stmt, depth)
+
+    def _statement(self, stmt: Stmt, depth: int) -> None:
+        match stmt:
+            case Let(name, value) | Var(name, value):
+                self._depth[name] = depth
+                if self.varies(value):
+                    self._vary(name)
+            case Assign(target, value):
+                name = root_of(target).name
+                # A target varies of itself when an index in it does.
+                if depth > self._depth[name] or self.varies(value) or self.varies(target):
+                    self._vary(name)
+            case If(condition, then, otherwise):
+                inner = depth + self.varies(condition)
+                self._block(then, inner)
+                self._block(otherwise, inner)
+            case For(name, start, stop, _, body):
+                bounds = self.varies(start) or self.varies(stop)
+                if bounds:
+                    self._vary(name)
+                self._loop(stmt, body, depth, diverges=bounds)
+            case While(condition, body):
+                self._loop(stmt, body, depth, diverges=self.varies(condition))
+            case Return(value):
+                if depth or self.varies(value):
+                    self.result_varies = True
+            case Break() | Continue():
+                pass
+            case _:
+                assert_never(stmt)
+
+    def _loop(self, stmt: Stmt, body: tuple[Stmt, ...], depth: int, *, diverges: bool) -> None:
+        if diverges or self._exit_varies(body):
+            self.divergent_loops.add(id(stmt))
+        inner = depth + (id(stmt) in self.divergent_loops)
+        self._block(body, inner)
+        if self._exit_varies(body) and id(stmt) not in self.divergent_loops:
+            self.divergent_loops.add(id(stmt))
+            self._grew = True
+
+    def _exit_varies(self, body: tuple[Stmt, ...]) -> bool:
+        match body[-1:]:
+            case (If(condition, (Break(),), ()),):
+                return self.varies(condition)
+            case _:
+                return False
+
+
+def reads_in(block: tuple[Stmt, ...]) -> dict[str, int]:
+    """How often each local is read in a block; an assigned target itself is no read."""
+    counts: dict[str, int] = {}
+    for stmt in statements_in(block):
+        roots = expressions(stmt)
+        skip = root_of(stmt.target) if isinstance(stmt, Assign) else None
+        if isinstance(stmt, Assign) and stmt.target is skip:
+            roots = (stmt.value,)
+        for e in nodes_in(*roots):
+            if isinstance(e, Read):
+                counts[e.name] = counts.get(e.name, 0) + 1
+    return counts

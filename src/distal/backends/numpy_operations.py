@@ -1,0 +1,300 @@
+"""What operators, conversions and indexing mean, on NumPy arrays.
+
+What flows in and out: values. A scalar is an array (n,), a vector (size, n), a matrix (columns,
+rows, n), where the last axis counts lanes (points or pixels) and has length 1 for what is the same
+in all of them; a struct or array is a tuple of values. Nothing here knows of nodes other than
+operators, of control flow or of names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.ir.nodes import BinaryOp, CompareOp, UnaryOp
+from distal.ir.types import Array, Kind, Matrix, Scalar, Struct, Type, Vector
+
+Leaf: TypeAlias = NDArray[Any]
+Value: TypeAlias = "Leaf | tuple[Value, ...]"
+
+_INT_RANGE = (-(2.0**31), 2.0**31 - 1)
+_UINT_RANGE = (0.0, 2.0**32 - 1)
+
+
+def dtype_of(kind: Kind, precision: int) -> Any:
+    """The array type of a component."""
+    match kind:
+        case Kind.FLOAT:
+            return np.float32 if precision == 32 else np.float64
+        case Kind.INT:
+            return np.int32
+        case Kind.UINT:
+            return np.uint32
+        case Kind.BOOL:
+            return np.bool_
+        case _:
+            assert_never(kind)
+
+
+def each_leaf(change: Callable[..., Leaf], *values: Value) -> Value:
+    """Combine values of one type array by array, whatever they are made of."""
+    first = values[0]
+    if isinstance(first, tuple):
+        return tuple(each_leaf(change, *parts) for parts in zip(*values, strict=True))
+    return change(*values)
+
+
+def width(value: Value) -> int:
+    """The number of lanes a value tells apart: 1 or the lanes of the run."""
+    if isinstance(value, tuple):
+        return max(width(part) for part in value)
+    return int(value.shape[-1])
+
+
+def gather(value: Value, lanes: NDArray[np.intp]) -> Value:
+    """The value in some lanes."""
+    return each_leaf(lambda leaf: leaf if leaf.shape[-1] == 1 else leaf[..., lanes], value)
+
+
+def blank(value: Value) -> Value:
+    """Zeros of a value's type, for any number of lanes."""
+    return each_leaf(lambda leaf: np.zeros_like(leaf[..., :1]), value)
+
+
+def scatter(old: Value, lanes: NDArray[np.intp], new: Value, count: int) -> Value:
+    """The value of ``count`` lanes with some of them replaced."""
+
+    def replaced(before: Leaf, after: Leaf) -> Leaf:
+        whole = np.broadcast_to(before, (*before.shape[:-1], count)).copy()
+        whole[..., lanes] = after
+        return whole
+
+    return each_leaf(replaced, old, new)
+
+
+def choose(condition: Leaf, yes: Value, no: Value) -> Value:
+    """``yes`` where the condition holds, else ``no``."""
+
+    def chosen(a: Leaf, b: Leaf) -> Leaf:
+        return np.where(condition, a, b)
+
+    return each_leaf(chosen, yes, no)
+
+
+def unary(op: UnaryOp, operand: Leaf) -> Leaf:
+    """``op operand``."""
+    match op:
+        case UnaryOp.NEGATE:
+            return np.negative(operand)
+        case UnaryOp.NOT:
+            return np.logical_not(operand)
+        case UnaryOp.INVERT:
+            return np.invert(operand)
+        case _:
+            assert_never(op)
+
+
+def binary(op: BinaryOp, a: Leaf, b: Leaf) -> Leaf:
+    """``a op b``, component by component."""
+    match op:
+        case BinaryOp.ADD:
+            return a + b
+        case BinaryOp.SUB:
+            return a - b
+        case BinaryOp.MUL:
+            return a * b
+        case BinaryOp.DIV:
+            return a / b
+        case BinaryOp.FLOOR_DIV:
+            return _floor_quotient(a, b)
+        case BinaryOp.MOD:
+            return a - b * _floor_quotient(a, b) if _is_float(a) else _int_remainder(a, b)
+        case BinaryOp.AND:
+            return a & b
+        case BinaryOp.OR:
+            return a | b
+        case BinaryOp.XOR:
+            return a ^ b
+        case BinaryOp.SHL:
+            # Shifted as unsigned: what leaves on the left is lost, the sign included.
+            return (a.view(np.uint32) << (b.view(np.uint32) & np.uint32(31))).view(a.dtype)
+        case BinaryOp.SHR:
+            shifted: Leaf = a >> (b & b.dtype.type(31))
+            return shifted
+        case _:
+            assert_never(op)
+
+
+def _is_float(a: Leaf) -> bool:
+    return a.dtype.kind == "f"
+
+
+def _floor_quotient(a: Leaf, b: Leaf) -> Leaf:
+    if _is_float(a):
+        return np.floor(a / b)
+    # In 64 bits no quotient overflows; the way back wraps.
+    divisor = np.where(b == 0, 1, b).astype(np.int64)
+    return (a.astype(np.int64) // divisor).astype(a.dtype)
+
+
+def _int_remainder(a: Leaf, b: Leaf) -> Leaf:
+    divisor = np.where(b == 0, 1, b).astype(np.int64)
+    return (a.astype(np.int64) % divisor).astype(a.dtype)
+
+
+def compare(op: CompareOp, a: Leaf, b: Leaf) -> Leaf:
+    """``a op b``, component by component."""
+    result: Leaf
+    match op:
+        case CompareOp.EQ:
+            result = a == b
+        case CompareOp.NE:
+            result = a != b
+        case CompareOp.LT:
+            result = a < b
+        case CompareOp.LE:
+            result = a <= b
+        case CompareOp.GT:
+            result = a > b
+        case CompareOp.GE:
+            result = a >= b
+        case _:
+            assert_never(op)
+    return result
+
+
+def convert(a: Leaf, kind: Kind, precision: int) -> Leaf:
+    """The components converted to another kind."""
+    dtype = dtype_of(kind, precision)
+    match kind:
+        case Kind.BOOL:
+            return np.asarray(a != 0)
+        case Kind.INT if _is_float(a):
+            return _saturated(a, _INT_RANGE).astype(dtype)
+        case Kind.UINT if _is_float(a):
+            return _saturated(a, _UINT_RANGE).astype(dtype)
+        case Kind.FLOAT | Kind.INT | Kind.UINT:
+            return a.astype(dtype)
+        case _:
+            assert_never(kind)
+
+
+def _saturated(a: Leaf, limits: tuple[float, float]) -> Leaf:
+    """Toward zero, held in range; NaN gives 0. Every int is exact in 64 bit floats."""
+    wide = np.trunc(a.astype(np.float64))
+    return np.clip(np.where(np.isnan(wide), 0.0, wide), *limits).astype(np.int64)
+
+
+def matrix_product(a: Leaf, b: Leaf) -> Leaf:
+    """``a @ b`` of matrices and vectors, sums left to right."""
+    if a.ndim == 2:
+        return np.stack([_inner(a, column) for column in b])
+    if b.ndim == 2:
+        return _combined(a, b)
+    return np.stack([_combined(a, column) for column in b])
+
+
+def _combined(columns: Leaf, weights: Leaf) -> Leaf:
+    total: Leaf = columns[0] * weights[0]
+    for i in range(1, len(weights)):
+        total = total + columns[i] * weights[i]
+    return total
+
+
+def _inner(a: Leaf, b: Leaf) -> Leaf:
+    total: Leaf = a[0] * b[0]
+    for i in range(1, len(a)):
+        total = total + a[i] * b[i]
+    return total
+
+
+def splat(value: Leaf, type: Type) -> Leaf:
+    """A scalar in every component of a vector or matrix."""
+    match type:
+        case Vector(_, size):
+            return np.broadcast_to(value, (size, *value.shape))
+        case Matrix(size):
+            return np.broadcast_to(value, (size, size, *value.shape))
+        case _:
+            raise AssertionError(f"nothing is splatted to {type}")
+
+
+def compose(parts: list[Leaf], type: Type) -> Leaf:
+    """A vector from scalars and vectors, a matrix from columns."""
+    lanes = max(part.shape[-1] for part in parts)
+    if isinstance(type, Matrix):
+        return np.stack([np.broadcast_to(part, (type.size, lanes)) for part in parts])
+    rows = [np.atleast_2d(part) for part in parts]
+    return np.concatenate([np.broadcast_to(row, (len(row), lanes)) for row in rows])
+
+
+def pick(base: Value, index: Leaf) -> Value:
+    """``base[index]``, the index clamped and perhaps different in each lane."""
+    held = np.clip(index, 0, len(base) - 1)
+    if held.shape[-1] == 1:
+        return base[int(held[0])]
+    if isinstance(base, tuple):
+        return each_leaf(lambda *leaves: _pick_leaf(_stacked(leaves), held), *base)
+    return _pick_leaf(base, held)
+
+
+def _stacked(leaves: tuple[Leaf, ...]) -> Leaf:
+    return np.stack(np.broadcast_arrays(*leaves))
+
+
+def _pick_leaf(choices: Leaf, index: Leaf) -> Leaf:
+    lanes = index.shape[-1]
+    whole = np.broadcast_to(choices, (*choices.shape[:-1], lanes))
+    where = index.reshape((1,) * (choices.ndim - 1) + (lanes,))
+    picked: Leaf = np.take_along_axis(whole, where, axis=0)[0]
+    return picked
+
+
+def put(base: Value, index: Leaf, new: Value) -> Value:
+    """``base`` with ``base[index] = new``, the index clamped."""
+    held = np.clip(index, 0, len(base) - 1)
+    parts = tuple(choose(held == i, new, base[i]) for i in range(len(base)))
+    if isinstance(base, tuple):
+        return parts
+    lanes = max(width(part) for part in parts)
+    return np.stack([np.broadcast_to(part, (*part.shape[:-1], lanes)) for part in leaves(parts)])
+
+
+def leaves(parts: tuple[Value, ...]) -> list[Leaf]:
+    """Parts that are arrays, as what they are."""
+    return [part for part in parts if isinstance(part, np.ndarray)]
+
+
+def put_components(base: Leaf, positions: list[int], new: Leaf) -> Leaf:
+    """``base`` with some of its components replaced."""
+    lanes = max(base.shape[-1], new.shape[-1])
+    result = np.broadcast_to(base, (*base.shape[:-1], lanes)).copy()
+    result[positions] = new if len(positions) > 1 else np.atleast_2d(new)
+    return result
+
+
+def as_value(data: Any, type: Type, precision: int) -> Value:
+    """Python numbers, or nested sequences of them, as a value that is the same in all lanes.
+
+    Vectors are sequences of components, matrices sequences of columns, structs and arrays
+    sequences of their parts.
+    """
+    match type:
+        case Scalar(kind):
+            return np.array([data]).astype(dtype_of(kind, precision))
+        case Vector(kind):
+            return np.array([*data]).astype(dtype_of(kind, precision))[:, None]
+        case Matrix():
+            columns = [[*column] for column in data]
+            return np.array(columns).astype(dtype_of(Kind.FLOAT, precision))[:, :, None]
+        case Array(element):
+            return tuple(as_value(part, element, precision) for part in data)
+        case Struct(_, fields):
+            return tuple(
+                as_value(part, t, precision) for part, (_, t) in zip(data, fields, strict=True)
+            )
+        case _:
+            raise AssertionError(f"{type} has no value")

@@ -1,0 +1,143 @@
+"""The commands, each a few lines around the library's own functions.
+
+What flows in: parsed words. What flows out: the work of ``distal.load``, ``distal.compile`` and
+``render``. Heavy packages are imported only by the command that needs them: ``compile`` runs
+without numpy, llvmlite and wgpu. ``render``, ``check`` and ``probe`` have modules of their own.
+"""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import distal
+from distal.cli import check, export, probe, render, rerender, video, view
+from distal.cli.arguments import UsageError, read_scene
+from distal.cli.base import SceneArgument, application, load, reporting
+from distal.export.texts import with_header
+from distal.film.replacement import check_destination, replacement
+from distal.loading import EXAMPLE_PREFIX
+from distal.version import __version__
+
+# Importing them is what adds their commands.
+COMMANDS = (render, check, probe, export, video, rerender, view)
+
+__all__ = ["COMMANDS", "TargetName", "application"]
+
+
+class TargetName(StrEnum):
+    """What ``distal compile`` writes."""
+
+    IR = "ir"
+    LLVM = "llvm"
+    SHADERTOY = "shadertoy"
+    GLSLCANVAS = "glslcanvas"
+    ISF = "isf"
+    GLSL_ES300 = "glsl-es300"
+    GLSL_330 = "glsl-330"
+    GLSL_ES100 = "glsl-es100"
+    WGSL = "wgsl"
+    WGSL_COMPUTE = "wgsl-compute"
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"distal {__version__}")
+        raise typer.Exit
+
+
+@application.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version.", is_eager=True, callback=_show_version),
+    ] = False,
+) -> None:
+    """Scenes and shaders written as Python: render them, compile them."""
+
+
+@application.command()
+@reporting
+def compile(
+    scene: SceneArgument,
+    target: Annotated[
+        TargetName, typer.Option("--target", help="What to write.", show_default=False)
+    ],
+    after: Annotated[
+        str | None,
+        typer.Option(metavar="PASS", help="With --target ir: show the module after this pass."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="A file for the text; its interface is written beside it as .json, "
+            "a vertex stage as .vert.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Compile a scene to text: a shader, vector code, or any stage of the compiler."""
+    if after is not None and target is not TargetName.IR:
+        raise UsageError("--after belongs to --target ir")
+    if after is not None:
+        _check_pass(after)
+    if output is not None:
+        if output.suffix.lower() in (".json", ".vert"):
+            raise UsageError(f"'{output}' is where the interface or the vertex stage goes")
+        if output.resolve() == Path(read_scene(scene)[0]).resolve():
+            raise UsageError(f"'{output}' is the scene itself")
+        check_destination(output)
+    artifact = distal.compile(load(scene), target=target.value, after=after)
+    text = with_header(artifact, target.value, _file_name(scene))
+    if output is None:
+        print(text.rstrip("\n"))
+        return
+    files = {output.with_suffix(".json"): json.dumps(artifact.interface, indent=2)}
+    if artifact.vertex is not None:
+        files[output.with_suffix(".vert")] = artifact.vertex
+    files[output] = text
+    for path, text in files.items():
+        with replacement(path) as file:
+            file.write(text.rstrip("\n").encode() + b"\n")
+
+
+@application.command()
+@reporting
+def examples() -> None:
+    """List the gallery; render one as example:NAME."""
+    for name, path in sorted(distal.gallery().items()):
+        print(f"example:{name}\t{path}")
+
+
+@application.command()
+@reporting
+def doctor() -> None:
+    """Tell what this machine can do, and how to mend what is missing."""
+    from distal.cli.checkup import show
+    from distal.doctor import State, examine
+
+    findings = examine()
+    show(findings)
+    if any(finding.state is State.BROKEN for finding in findings):
+        raise typer.Exit(1)
+
+
+def _file_name(scene: str) -> str:
+    """The name of the author's file, as FILE[:NAME] or example:NAME tell it."""
+    path = read_scene(scene)[0]
+    if path.startswith(EXAMPLE_PREFIX):
+        return f"{path.removeprefix(EXAMPLE_PREFIX)}.py"
+    return Path(path).name
+
+
+def _check_pass(name: str) -> None:
+    from distal.passes.pipeline import PASS_NAMES
+
+    if name not in ("lower", *PASS_NAMES):
+        raise UsageError(f"there is no pass '{name}'; passes: lower, {', '.join(PASS_NAMES)}")

@@ -1,0 +1,112 @@
+"""What the words of the command line mean.
+
+What flows in: texts. What flows out: plain values, or ``UsageError`` with one clear message. Knows
+neither typer nor how anything is rendered.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+
+from distal.lang.parameter_values import LARGEST_FLOAT, Value
+from distal.lang.parameters import Parameter
+from distal.loading import EXAMPLE_PREFIX, split_source
+
+
+class UsageError(Exception):
+    """A command line that does not say what to do."""
+
+
+def read_scene(text: str) -> tuple[str, str | None]:
+    """FILE[:NAME] or example:NAME[:NAME] as the path that ``distal.load`` takes, and the name."""
+    path, name = split_source(text)
+    if path in ("", EXAMPLE_PREFIX):
+        raise UsageError(f"'{text}' names no {'example' if path else 'file'}")
+    return path, name
+
+
+def read_size(text: str, largest: int) -> tuple[int, int]:
+    """Width and height from WIDTHxHEIGHT, each from 1 to ``largest``."""
+    match = re.fullmatch(r"\s*([0-9]{1,9})\s*[xX]\s*([0-9]{1,9})\s*", text)
+    if match is None:
+        raise UsageError(f"a size is WIDTHxHEIGHT in pixels, like 640x480, not '{text:.40}'")
+    width, height = int(match[1]), int(match[2])
+    if not (1 <= width <= largest and 1 <= height <= largest):
+        raise UsageError(f"each side has 1 to {largest} pixels, not {width}x{height}")
+    return width, height
+
+
+def read_time(text: str) -> float:
+    """Finite seconds."""
+    try:
+        time = float(text)
+    except ValueError:
+        raise UsageError(f"a time is a number of seconds, not '{text:.40}'") from None
+    if not math.isfinite(time):
+        raise UsageError(f"a time is finite, not {time}")
+    if abs(time) > LARGEST_FLOAT:
+        raise UsageError(f"a time fits 32 bits, {time} does not")
+    return time
+
+
+def read_plane(text: str) -> tuple[tuple[float, float, float], float]:
+    """A plane's normal and its distance from the origin, from AXIS=OFFSET."""
+    axis, equals, offset = (part.strip() for part in text.partition("="))
+    normals = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    try:
+        distance = float(offset)
+    except ValueError:
+        distance = math.nan
+    if not equals or axis not in normals or not abs(distance) <= LARGEST_FLOAT:
+        raise UsageError(f"a slice is AXIS=OFFSET, like y=0.5, not '{text:.40}'")
+    return normals[axis], distance
+
+
+def read_pixel(text: str, size: tuple[int, int]) -> tuple[int, int]:
+    """Column and row of a pixel from X,Y; both count from 0, rows from the top."""
+    match = re.fullmatch(r"\s*([0-9]{1,9})\s*,\s*([0-9]{1,9})\s*", text)
+    if match is None:
+        raise UsageError(f"a pixel is X,Y from the upper left, like 320,240, not '{text:.40}'")
+    x, y = int(match[1]), int(match[2])
+    if x >= size[0] or y >= size[1]:
+        width, height = size
+        raise UsageError(f"a picture of {width}x{height} ends at {width - 1},{height - 1}")
+    return x, y
+
+
+def read_assignments(texts: Iterable[str], parameters: Sequence[Parameter]) -> dict[str, Value]:
+    """The values of ``name=value`` texts, each checked against its parameter.
+
+    Raises:
+        UsageError: With the list of parameters, since the author of a command line may not know
+            the scene.
+    """
+    known = {parameter.name: parameter for parameter in parameters}
+    values: dict[str, Value] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip()
+        if not equals or not name:
+            raise UsageError(f"--set takes name=value, not '{text:.60}'\n{_listing(parameters)}")
+        if name not in known:
+            close = get_close_matches(name, known, 1)
+            meant = f"; did you mean '{close[0]}'?" if close else ""
+            raise UsageError(f"there is no parameter '{name:.60}'{meant}\n{_listing(parameters)}")
+        if name in values:
+            raise UsageError(f"--set gives '{name}' twice")
+        try:
+            values[name] = known[name].parse(value)
+        except ValueError as error:
+            raise UsageError(f"--set {name}: {error}\n{_listing(parameters)}") from None
+    return values
+
+
+def _listing(parameters: Sequence[Parameter]) -> str:
+    if not parameters:
+        return "this scene has no parameters"
+    width = max(len(p.name) for p in parameters)
+    rows = (f"  {p.name.ljust(width)}  {p.describe()}" for p in parameters)
+    return "\n".join(("parameters:", *rows))

@@ -1,0 +1,166 @@
+"""What the commands share: the application they belong to, arguments, and how mistakes are told.
+
+What flows in: words of the command line. What flows out: a loaded scene; an author's mistake as its
+message and exit code. Knows no command.
+"""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Callable
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
+
+import typer
+
+import distal
+from distal.cli.arguments import UsageError, read_scene
+from distal.diagnostics import CompileError, DeviceError, LoadError
+from distal.film.replacement import SaveError
+
+if TYPE_CHECKING:
+    from distal.loading import SceneCode
+
+Arguments = ParamSpec("Arguments")
+
+# By the name under which Python knows it: what rendering needs besides this command itself.
+CORE_PACKAGES: Final = {"numpy": "numpy", "llvmlite": "llvmlite", "PIL": "pillow", "rich": "rich"}
+
+application = typer.Typer(
+    name="distal",
+    help="Scenes and shaders written as Python: render them, compile them.",
+    no_args_is_help=True,
+    add_completion=False,
+    # A traceback is a fault of ours; it is shown as Python shows it, with nothing hidden.
+    pretty_exceptions_enable=False,
+)
+
+
+# By the name under which Python knows it: a package of an extra, and that extra.
+EXTRA_PACKAGES: Final = {
+    "wgpu": "gpu",
+    "rendercanvas": "gpu",
+    "glfw": "gpu",
+    "av": "video",
+    "OpenEXR": "exr",
+    "anywidget": "notebook",
+}
+
+
+class Device(StrEnum):
+    """What renders."""
+
+    AUTO = "auto"
+    CPU = "cpu"
+    GPU = "gpu"
+    GPU_FRAGMENT = "gpu-fragment"
+    REFERENCE = "reference"
+
+
+def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
+    """Turn an author's mistake into its message and exit code; anything else is our fault."""
+
+    @functools.wraps(command)
+    def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
+        try:
+            command(*args, **kwargs)
+        except UsageError as error:
+            print(f"error: {error}", file=sys.stderr)
+            raise typer.Exit(2) from None
+        except CompileError as error:
+            print(error, file=sys.stderr)
+            raise typer.Exit(1) from None
+        except (LoadError, SaveError, DeviceError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except ModuleNotFoundError as error:
+            mend = _mend(error.name or "")
+            if mend is None:
+                raise
+            print(f"error: {mend}", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except MemoryError as error:
+            print(f"error: not enough memory: {error}".rstrip(": "), file=sys.stderr)
+            raise typer.Exit(1) from None
+        except KeyboardInterrupt:
+            raise typer.Exit(130) from None
+
+    return run
+
+
+def _mend(package: str) -> str | None:
+    """What is missing and how to get it; None for what is not ours to tell."""
+    if package in CORE_PACKAGES:
+        name = CORE_PACKAGES[package]
+        return f"{name} is missing: pip install {name}"
+    if package in EXTRA_PACKAGES:
+        return f"{package} is missing: pip install 'distal[{EXTRA_PACKAGES[package]}]'"
+    return None
+
+
+SceneArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="FILE[:NAME]", help="A scene's file, or example:NAME.", show_default=False
+    ),
+]
+
+SizeOption = Annotated[str, typer.Option("--size", help="Width and height in pixels.")]
+TimeOption = Annotated[str, typer.Option("--time", help="Seconds.")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
+]
+
+DeviceOption = Annotated[
+    Device, typer.Option("--device", help="What renders; auto: a GPU, else the CPU.")
+]
+AdapterOption = Annotated[
+    str | None,
+    typer.Option(
+        "--adapter", metavar="NAME", help="Which GPU: its number in distal doctor, or its name."
+    ),
+]
+
+
+def chosen_device(device: Device, adapter: str | None) -> str:
+    """The device's name, as ``render`` takes it; where "auto" ends on the CPU, says why.
+
+    Raises:
+        UsageError: The options do not go together.
+        DeviceError: There is no such adapter.
+    """
+    if device in (Device.CPU, Device.REFERENCE):
+        if adapter is not None:
+            raise UsageError(f"--adapter is for a GPU, and --device is {device.value}")
+        if device is Device.CPU:
+            check_processor()
+        return device.value
+    if adapter is not None:
+        return f"{Device.GPU if device is Device.AUTO else device}:{adapter}"
+    if device is Device.AUTO:
+        from distal.devices.adapters import resolve
+
+        found = resolve(device.value)
+        if found.device == Device.CPU:
+            print(f"rendering on the CPU: {found.reason}", file=sys.stderr)
+            check_processor()
+            return Device.CPU.value
+    return device.value
+
+
+def load(scene: str) -> SceneCode:
+    """The object that FILE[:NAME] means."""
+    path, name = read_scene(scene)
+    return distal.load(path, name)
+
+
+def check_processor() -> None:
+    """Refuse a processor that cannot run what the CPU device makes."""
+    from distal.devices.features import chosen_level
+
+    try:
+        chosen_level()
+    except ValueError as error:  # a processor too old, or a wish in DISTAL_CPU it cannot grant
+        raise UsageError(str(error)) from None

@@ -1,0 +1,181 @@
+"""``distal check``: what a scene's shapes claim, where slope comes from, whether it all holds.
+
+What flows in: parsed words. What flows out: a tree of shapes and findings with their lines, or the
+same as JSON for editors; exit code 1 when a claim was found violated.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from distal.cli.arguments import read_assignments, read_time
+from distal.cli.base import (
+    SceneArgument,
+    SetOption,
+    TimeOption,
+    application,
+    check_processor,
+    load,
+    reporting,
+)
+from distal.diagnostics import LoadError
+
+if TYPE_CHECKING:
+    from distal.scene.checkup import Checkup, Finding, ShapeRow
+
+# A tree is shown so deep; what is below a shared shape only once.
+DEEPEST = 12
+MOST_ROWS = 60
+
+
+@application.command()
+@reporting
+def check(
+    scene: SceneArgument,
+    at: TimeOption = "0",
+    assignments: SetOption = None,
+    seed: Annotated[int, typer.Option(min=0, help="What random points start from.")] = 0,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Plain values for editors, on one line.")
+    ] = False,
+) -> None:
+    """Tell what shapes promise, where slope comes from, and which promises do not hold."""
+    from distal.scene.checkup import check as look_over
+    from distal.scene.field import Field
+    from distal.scene.scene import Scene
+
+    seconds = read_time(at)
+    check_processor()
+    obj: Any = load(scene)
+    if not isinstance(obj, Field | Scene):
+        message = f"'{obj.name}' is no scene and no shape; claims are checked of these"
+        raise LoadError(message)
+    values = read_assignments(assignments or (), obj.parameters())
+    shape = obj.shape if isinstance(obj, Scene) else obj
+    checkup = look_over(shape, values, seconds, seed)
+    if as_json:
+        print(json.dumps({**checkup.as_json(), "name": obj.name}))
+    else:
+        print("\n".join(told(checkup)))
+    if not checkup.holds:
+        raise typer.Exit(1)
+
+
+def told(checkup: Checkup) -> Iterator[str]:
+    """A checkup as people read it."""
+    yield from _tree(checkup)
+    yield ""
+    yield from _slope(checkup)
+    yield from _measurements(checkup)
+    # Where the slope of the whole comes from was said above.
+    said = [f for f in checkup.findings if f.code != "slope-raised" or not _is_in(f, checkup)]
+    for finding, more in _gathered(said):
+        yield ""
+        yield str(finding)
+        if more:
+            yield f"   = and {more} more like it from this line"
+
+
+def _tree(checkup: Checkup) -> Iterator[str]:
+    rows = list(_rows(checkup))
+    shown = rows[:MOST_ROWS]
+    widths = [max(len(row[column]) for row in shown) for column in range(3)]
+    for row in shown:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=False))
+        yield "  ".join((*cells, row[3])).rstrip()
+    if len(rows) > MOST_ROWS:
+        yield f"… and {len(rows) - MOST_ROWS} more; --json lists all"
+
+
+def _rows(checkup: Checkup) -> Iterator[tuple[str, str, str, str]]:
+    """A row for each shape: name, slope, claims, box and line."""
+    seen: set[int] = set()
+    stack = [(0, 0)]
+    while stack:
+        i, depth = stack.pop()
+        row = checkup.shapes[i]
+        if i in seen or depth > DEEPEST:
+            continue
+        seen.add(i)
+        stack.extend((c, depth + 1) for c in reversed(row.children))
+        yield (
+            "  " * depth + row.node.name,
+            f"slope {row.promised.slope:.3g}" + (" (estimate)" if row.node.estimate else ""),
+            _claims(row),
+            f"{_box(row)}  {_line(row)}".rstrip(),
+        )
+
+
+def _claims(row: ShapeRow) -> str:
+    from distal.scene.checkup import claims_told
+
+    claims = claims_told(row.node)
+    if len(claims) == 3:
+        return "exact"
+    return ", ".join(claims) or "-"
+
+
+def _box(row: ShapeRow) -> str:
+    n = 2 if row.node.flat else 3
+    low, high = row.promised.low[:n], row.promised.high[:n]
+    if not any(map(math.isfinite, (*low, *high))):
+        return "no box"
+    return f"box {_corner(low)} to {_corner(high)}"
+
+
+def _corner(corner: Sequence[float]) -> str:
+    return f"({', '.join(f'{c:.3g}' for c in corner)})"
+
+
+def _line(row: ShapeRow) -> str:
+    place = row.node.place
+    return "" if place is None else f"{place.file}:{place.line}"
+
+
+def _slope(checkup: Checkup) -> Iterator[str]:
+    """Where the slope of the whole comes from: which shape raised it, by how much, and where."""
+    from distal.scene.checkup import described
+
+    whole = checkup.shapes[0]
+    yield f"slope of '{whole.node.name}': {whole.promised.slope:.3g}"
+    for i in reversed(checkup.slope_from):
+        row = checkup.shapes[i]
+        where = f" at {_line(row)}" if row.node.place else ""
+        if row.children:
+            yield (
+                f"  {described(row.node)} raises the slope from {row.raised:.3g} "
+                f"to {row.promised.slope:.3g}{where}"
+            )
+        else:
+            yield f"  {described(row.node)} has the slope {row.promised.slope:.3g}{where}"
+
+
+def _measurements(checkup: Checkup) -> Iterator[str]:
+    measured = [row for row in checkup.shapes if row.measured is not None]
+    count, all_of_them = len(measured), len(checkup.shapes)
+    whole = checkup.shapes[0].measured
+    assert whole is not None
+    yield (
+        f"measured at {whole.points} points: |gradient| {whole.median:.3g} in the middle, "
+        f"99 % within {whole.most_of_99:.3g}, at most {whole.steepest:.3g}"
+    )
+    yield f"between two points the value changes by at most {whole.largest_change:.3g} per unit"
+    if count < all_of_them:
+        yield f"{count} of {all_of_them} shapes were measured"
+
+
+def _is_in(finding: Finding, checkup: Checkup) -> bool:
+    return finding.shape in checkup.slope_from
+
+
+def _gathered(findings: Sequence[Finding]) -> list[tuple[Finding, int]]:
+    """Findings, each with how many more of its kind come from the same line."""
+    groups: dict[Any, list[Finding]] = {}
+    for finding in findings:
+        groups.setdefault((finding.severity, finding.code, finding.told.span), []).append(finding)
+    return [(group[0], len(group) - 1) for group in groups.values()]

@@ -1,0 +1,159 @@
+"""``distal export``: a scene as a page, or as a shader for another place.
+
+What flows in: parsed words. What flows out: a file, and a line that says what it is made of. What
+a page or a text holds is the library's matter; here stands only what goes with which.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from distal.cli.arguments import UsageError, read_assignments, read_scene, read_size, read_time
+from distal.cli.base import (
+    SceneArgument,
+    SetOption,
+    TimeOption,
+    application,
+    check_processor,
+    load,
+    reporting,
+)
+
+
+@application.command()
+@reporting
+def export(
+    scene: SceneArgument,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The file: .html a page, .glsl Shadertoy, .fs ISF, .frag WebGL 2, .wgsl WebGPU.",
+            show_default=False,
+        ),
+    ],
+    target: Annotated[
+        str | None,
+        typer.Option(
+            help="What to write, where the suffix does not say it: html, shadertoy, glslcanvas, "
+            "isf, glsl-es300, glsl-330, glsl-es100, wgsl, wgsl-compute.",
+            show_default=False,
+        ),
+    ] = None,
+    assignments: SetOption = None,
+    at: TimeOption = "0",
+    view: Annotated[
+        str | None, typer.Option(help="What is shown first; color without it.", show_default=False)
+    ] = None,
+    size: Annotated[
+        str | None,
+        typer.Option(help="Of a page: the picture's width and height.", show_default=False),
+    ] = None,
+    duration: Annotated[
+        str | None,
+        typer.Option(metavar="S", help="Of a page: when the time begins anew.", show_default=False),
+    ] = None,
+    title: Annotated[
+        str | None, typer.Option(help="Of a page: what it is called.", show_default=False)
+    ] = None,
+    views: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME",
+            help="Of a page: the views to include; all without it.",
+            show_default=False,
+        ),
+    ] = None,
+    embed: Annotated[
+        bool, typer.Option("--embed", help="A fragment for other pages: the canvas alone.")
+    ] = False,
+    no_panel: Annotated[bool, typer.Option("--no-panel", help="A page without controls.")] = False,
+    no_poster: Annotated[
+        bool, typer.Option("--no-poster", help="A page without a still picture.")
+    ] = False,
+) -> None:
+    """Write a scene as a page that shows it by itself, or as a shader for another place."""
+    options = {
+        "--size": ("size", _size(size)),
+        "--duration": ("duration", _duration(duration)),
+        "--title": ("title", title),
+        "--views": ("views", None if views is None else _views(views)),
+        "--embed": ("embed", embed or None),
+        "--no-panel": ("panel", False if no_panel else None),
+        "--no-poster": ("poster", False if no_poster else None),
+    }
+    given = {option: told for option, told in options.items() if told[1] is not None}
+    seconds = read_time(at)
+    _check(scene, output, target, given)
+    _write(
+        load(scene),
+        output,
+        target,
+        assignments or [],
+        {"view": view or "color", "time": seconds, **dict(given.values())},
+    )
+
+
+def _check(scene: str, output: Path, target: str | None, given: dict[str, Any]) -> None:
+    """Refuse what does not go together, before any work is spent on it."""
+    from distal.export.registry import KINDS, kind_of
+    from distal.film.replacement import check_destination
+
+    try:
+        name = kind_of(output, target)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+    for option, (key, _) in given.items():
+        if key not in KINDS[name].options:
+            raise UsageError(f"{option} is for pages, and {output} is a text ({name})")
+    if output.resolve() == Path(read_scene(scene)[0]).resolve():
+        raise UsageError(f"'{output}' is the scene itself")
+    check_destination(output)
+    if name == "html" and "--no-poster" not in given:
+        check_processor()
+
+
+def _write(
+    obj: Any, output: Path, target: str | None, assignments: list[str], options: dict[str, Any]
+) -> None:
+    from distal.export.registry import export as written
+    from distal.scene.viewable import viewable
+
+    seen = viewable(obj)
+    values = read_assignments(assignments, seen.parameters)
+    for name in (options["view"], *options.get("views", ())):
+        try:
+            seen.image(name)
+        except ValueError as error:
+            raise UsageError(str(error)) from None
+    made = written(obj, output, target=target, params=values, **options)
+    for view, reason in made.omitted.items():
+        print(f"warning: the view '{view}' is left out: {reason}", file=sys.stderr)
+    print(made)
+
+
+def _size(text: str | None) -> tuple[int, int] | None:
+    from distal.uniform_values import LARGEST_SIDE_PX
+
+    return None if text is None else read_size(text, LARGEST_SIDE_PX)
+
+
+def _duration(text: str | None) -> float | None:
+    if text is None:
+        return None
+    seconds = read_time(text)
+    if seconds <= 0.0:
+        raise UsageError(f"a duration is more than 0 seconds, not {text}")
+    return seconds
+
+
+def _views(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise UsageError(f"--views takes names with commas between, not '{text:.60}'")
+    return names

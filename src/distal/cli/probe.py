@@ -1,0 +1,124 @@
+"""``distal probe``: what one pixel of a scene saw.
+
+What flows in: parsed words. What flows out: ray, march, shape and material in words, with the
+author's line; or the same as JSON for editors.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from distal.cli.arguments import read_assignments, read_pixel, read_size, read_time
+from distal.cli.base import (
+    SceneArgument,
+    SetOption,
+    SizeOption,
+    TimeOption,
+    application,
+    check_processor,
+    load,
+    reporting,
+)
+from distal.cli.render import staged
+from distal.diagnostics import LoadError, excerpt
+
+if TYPE_CHECKING:
+    from distal.scene.probe import Probed
+
+
+@application.command()
+@reporting
+def probe(
+    scene: SceneArgument,
+    pixel: Annotated[
+        str,
+        typer.Option(
+            "--at", metavar="X,Y", help="Column and row from the upper left.", show_default=False
+        ),
+    ],
+    size: SizeOption = "640x480",
+    at: TimeOption = "0",
+    assignments: SetOption = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Plain values for editors, on one line.")
+    ] = False,
+) -> None:
+    """Tell what one pixel saw: its ray, the march, the shape and its material."""
+    from distal.lang.functions import Func
+    from distal.scene.probe import probe as look
+    from distal.uniform_values import LARGEST_SIDE_PX
+
+    width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
+    place = read_pixel(pixel, width_height)
+    check_processor()
+    obj: Any = load(scene)
+    if isinstance(obj, Func):
+        raise LoadError(f"'{obj.name}' is no scene and no shape; pixels are probed of these")
+    values = read_assignments(assignments or (), obj.parameters())
+    found = look(staged(obj, values, seconds), place, width_height, values, seconds)
+    if as_json:
+        print(json.dumps({**found.as_json(), "time": seconds}))
+    else:
+        print("\n".join(told(found, seconds)))
+
+
+def told(found: Probed, seconds: float) -> Iterator[str]:
+    """What a pixel saw, as people read it."""
+    (x, y), (width, height), seen = found.pixel, found.size, found.seen
+    yield f"pixel     {x},{y} of {width}x{height} at {seconds:g} s"
+    yield f"ray       from {_point(seen.origin)} along {_point(seen.direction)}"
+    yield f"steps     {seen.steps}"
+    if not found.hit:
+        yield f"nothing   the ray {found.ended}"
+        return
+    inside = ", from inside" if seen.side < 0.0 else ""
+    yield f"hit       at {_point(seen.p)}, {seen.t:.4g} along the ray{inside}"
+    yield f"normal    {_point(seen.normal)}"
+    yield f"gradient  {seen.steepness:.4g} of at most {found.slope:.4g}"
+    yield from _shape(found)
+    yield from _material(found)
+
+
+def _shape(found: Probed) -> Iterator[str]:
+    from distal.scene.checkup import claims_told, described
+
+    leaf = found.path[-1]
+    claims = ", ".join(claims_told(leaf)) or "no claims beside its slope"
+    yield f"shape     {described(leaf)}: {claims}"
+    if len(found.path) > 1:
+        yield f"part of   {' > '.join(node.name for node in found.path[:-1])}"
+    if leaf.place is not None:
+        yield from excerpt(leaf.place)
+
+
+def _material(found: Probed) -> Iterator[str]:
+    surface, call = found.seen.surface, found.material.call
+    color = tuple(surface.color)
+    told = [f"{call.what}: color {_point(color)} {_hex(color)}"]
+    told += [
+        f"{name} {value:.3g}"
+        for name in ("diffuse", "specular", "transmission", "roughness", "metal")
+        if (value := getattr(surface, name)) > 0.0
+    ]
+    if any(c > 0.0 for c in surface.emission):
+        told.append(f"emission {_point(surface.emission)}")
+    yield f"material  {', '.join(told)}"
+    if call.place is not None and call.place != found.path[-1].place:
+        yield from excerpt(call.place)
+
+
+def _point(p: Iterable[float]) -> str:
+    return f"({', '.join(f'{c:.4g}' for c in p)})"
+
+
+def _hex(color: Iterable[float]) -> str:
+    """Linear light as an author writes it."""
+    from distal.lang import vec3
+    from distal.render.tonemap import encode_srgb
+
+    encoded = (min(max(c, 0.0), 1.0) for c in encode_srgb(vec3(*color)))
+    return "#" + "".join(f"{round(255.0 * c):02x}" for c in encoded)

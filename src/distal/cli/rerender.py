@@ -1,0 +1,131 @@
+"""``distal rerender``: a saved picture, rendered again from what its file says.
+
+What flows in: parsed words. What flows out: a picture's file, or how the two differ.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from distal.cli.arguments import UsageError, read_size
+from distal.cli.base import (
+    AdapterOption,
+    Device,
+    application,
+    check_processor,
+    chosen_device,
+    reporting,
+)
+
+
+@application.command()
+@reporting
+def rerender(
+    picture: Annotated[
+        Path,
+        typer.Argument(metavar="PICTURE", help="A PNG or EXR by distal.", show_default=False),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The new file; PICTURE.rerendered.png beside it without.",
+            show_default=False,
+        ),
+    ] = None,
+    size: Annotated[
+        str | None, typer.Option("--size", help="Another size.", show_default=False)
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option(min=1, max=65536, help="Another number of rays for each pixel.")
+    ] = None,
+    bits: Annotated[
+        int | None, typer.Option(help="Of each channel; as it was without.", show_default=False)
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE[:NAME]", help="The scene, where it stands now.", show_default=False
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Render a scene that has changed as it is now.")
+    ] = False,
+    check: Annotated[
+        bool,
+        typer.Option(
+            "--check", help="Tell how the two differ; exit code 1 if they do. No file without -o."
+        ),
+    ] = False,
+    device: Annotated[
+        Device | None,
+        typer.Option("--device", help="What renders; what did then without.", show_default=False),
+    ] = None,
+    adapter: AdapterOption = None,
+    threads: Annotated[
+        int | None,
+        typer.Option(min=1, max=1024, help="CPU threads; one per core if not given."),
+    ] = None,
+) -> None:
+    """Render a saved picture again, from what its file says about itself."""
+    from distal import rerender as room
+    from distal.cli.report import ProgressBar, say
+    from distal.film.metadata import ReadError
+    from distal.film.picture import check_savable
+    from distal.uniform_values import LARGEST_SIDE_PX
+
+    if check and (size is not None or samples is not None):
+        raise UsageError("--check compares with the picture as it was: no --size, no --samples")
+    if adapter is not None and device is None:
+        raise UsageError("--adapter goes with --device")
+    width_height = None if size is None else read_size(size, LARGEST_SIDE_PX)
+    try:
+        plan = room.planned(picture, source=source, force=force)
+        target = output or (None if check else room.default_output(picture))
+        if target is not None:
+            bits = bits or _kept_bits(plan.record.format, plan.record.bits, target)
+            check_savable(target, bits)
+        if device is None and plan.record.provenance.device == Device.CPU:
+            check_processor()
+        chosen = None if device is None else chosen_device(device, adapter)
+        for note in plan.notes:
+            say(f"note: {note}")
+        with ProgressBar() as progress:
+            made = room.rerender(
+                plan,
+                size=width_height,
+                samples=samples,
+                device=chosen,
+                threads=threads,
+                progress=progress,
+            )
+        if target is not None:
+            made.save(target, bits)
+            say(f"{target}: {made.width}x{made.height}, {plan.source}")
+        if check:
+            found = room.difference(plan, made)
+            print(_told(picture, found))
+            if not found.is_none:
+                raise typer.Exit(1)
+    except (ReadError, room.RerenderError) as error:
+        say(f"error: {error}")
+        raise typer.Exit(1) from None
+
+
+def _kept_bits(kind: str, bits: int, target: Path) -> int | None:
+    """The bits of then where the new file is of the same kind."""
+    return bits if target.suffix.lower() == f".{kind}" else None
+
+
+def _told(picture: Path, found: object) -> str:
+    from distal.rerender import Difference
+
+    assert isinstance(found, Difference)
+    if found.is_none:
+        return f"{picture}: identical"
+    largest, percent = found.largest, 100.0 * found.share
+    return f"{picture}: {percent:.3g} % of the pixels differ, by up to {largest:.3g}"

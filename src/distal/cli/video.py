@@ -1,0 +1,124 @@
+"""``distal video``: a scene that moves, as a video or as numbered pictures.
+
+What flows in: parsed words. What flows out: the file, and one line about it. When work is broken
+off, the line says how it goes on.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from distal.cli.arguments import UsageError, read_assignments, read_size
+from distal.cli.base import (
+    AdapterOption,
+    Device,
+    DeviceOption,
+    SceneArgument,
+    SetOption,
+    SizeOption,
+    application,
+    chosen_device,
+    load,
+    reporting,
+)
+
+if TYPE_CHECKING:
+    from distal.sequence import Made
+
+
+@application.command()
+@reporting
+def video(
+    scene: SceneArgument,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Ends in .mp4, .webm, .gif, .apng or .webp; or like frames/%05d.png.",
+            show_default=False,
+        ),
+    ],
+    duration: Annotated[
+        str, typer.Option(help="Seconds; the period of what loops.", show_default=False)
+    ],
+    fps: Annotated[str, typer.Option(help="Frames a second: 30, 29.97, 30000/1001.")] = "30",
+    size: SizeOption = "640x480",
+    start: Annotated[str, typer.Option(help="Time of the first frame in seconds.")] = "0",
+    samples: Annotated[int, typer.Option(min=1, max=65536, help="Rays for each pixel.")] = 1,
+    loop: Annotated[
+        bool,
+        typer.Option("--loop", help="Play gif, apng and webp again and again; say if it jumps."),
+    ] = False,
+    quality: Annotated[
+        str | None,
+        typer.Option(
+            help="low, medium, high, lossless, or 0 to 100; of mp4, webm and webp.",
+            show_default="high",
+        ),
+    ] = None,
+    assignments: SetOption = None,
+    view: Annotated[str, typer.Option(help="What to show, as in distal render.")] = "color",
+    device: DeviceOption = Device.CPU,
+    adapter: AdapterOption = None,
+    threads: Annotated[
+        int | None,
+        typer.Option(min=1, max=1024, help="CPU threads; one per core if not given."),
+    ] = None,
+    keep_frames: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Write every frame there as PNG besides."),
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Render all again after work was broken off.")
+    ] = False,
+) -> None:
+    """Render a scene that moves to a video or to numbered pictures."""
+    from distal.cli.report import FrameBar, say
+    from distal.film.video import kind_of
+    from distal.uniform_values import LARGEST_SIDE_PX
+
+    width_height = read_size(size, LARGEST_SIDE_PX)
+    kind = kind_of(output)
+    if quality is not None and not kind.lossy and quality != "lossless":
+        raise UsageError(f"--quality is for mp4, webm and webp; {kind.name} keeps what it can")
+    device_name = chosen_device(device, adapter)
+    obj: Any = load(scene)
+    if not hasattr(obj, "parameters"):
+        raise UsageError(f"'{scene}' is no scene, no shape and no @image")
+    values = read_assignments(assignments or (), obj.parameters())
+    with FrameBar() as bar:
+        made = _made(
+            obj,
+            output,
+            duration=duration,
+            fps=fps,
+            size=width_height,
+            start=start,
+            params=values,
+            view=view,
+            samples=samples,
+            loop=loop,
+            quality=quality or "high",
+            device=device_name,
+            threads=threads,
+            keep_frames=keep_frames,
+            fresh=fresh,
+            progress=bar,
+            tell=bar.say,
+        )
+    say(str(made))
+
+
+def _made(obj: Any, output: Path, **wishes: Any) -> Made:
+    """The video; a wish without sense is a mistake of the command line."""
+    from distal.film.video import WishError
+    from distal.sequence import video as make
+
+    try:
+        return make(obj, output, **wishes)
+    except WishError as error:
+        raise UsageError(str(error)) from None

@@ -1,0 +1,81 @@
+"""``distal view``: a native window that shows a scene live and follows its file.
+
+What flows in: parsed words. What flows out: a window, and an exit code when it is closed.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Annotated
+
+import typer
+
+from distal.cli.arguments import UsageError, read_assignments, read_scene, read_size, read_time
+from distal.cli.base import (
+    AdapterOption,
+    Device,
+    DeviceOption,
+    SceneArgument,
+    SetOption,
+    SizeOption,
+    TimeOption,
+    application,
+    chosen_device,
+    load,
+    reporting,
+)
+from distal.diagnostics import LoadError
+
+
+@application.command()
+@reporting
+def view(
+    scene: SceneArgument,
+    size: SizeOption = "800x600",
+    device: DeviceOption = Device.AUTO,
+    adapter: AdapterOption = None,
+    assignments: SetOption = None,
+    at: TimeOption = "0",
+    seen_as: Annotated[
+        str, typer.Option("--view", help="How it is looked at first; V goes through all.")
+    ] = "color",
+    scale: Annotated[
+        float,
+        typer.Option(min=0.05, max=4.0, help="Rendered pixels for each of the window's, a side."),
+    ] = 1.0,
+    paused: Annotated[bool, typer.Option("--paused", help="Begin with the time standing.")] = False,
+) -> None:
+    """Show a scene in a window; saving its file shows it anew. H in the window tells the keys."""
+    from distal.window.app import view as show
+    from distal.window.screen import LARGEST_SIDE, check_display
+
+    width_height, seconds = read_size(size, LARGEST_SIDE), read_time(at)
+    check_display()
+    path, name = read_scene(scene)
+    obj = load(scene)
+    if not hasattr(obj, "parameters"):
+        raise LoadError(f"'{obj.name}' is a @func; only a scene, a shape or an @image is a picture")
+    values = read_assignments(assignments or (), obj.parameters())
+    try:
+        code, ended = show(
+            obj,
+            path,
+            name,
+            size=width_height,
+            device=chosen_device(device, adapter),
+            time_s=seconds,
+            params=values,
+            seen_as=seen_as,
+            scale=scale,
+            paused=paused,
+        )
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+    if not ended:
+        # A compiler is still at work in a thread that cannot be stopped: Python, shutting down
+        # under it, could crash.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+    raise typer.Exit(code)

@@ -1,0 +1,1 @@
+"""Where compiled scenes run. ``base.Kernel`` is what each device gives back."""

@@ -1,0 +1,347 @@
+"""The GPUs of this machine, and one open device for each that is used.
+
+What flows in: a person's wish, such as "auto", a number or part of a name. What flows out: an
+adapter's row, and an open ``Gpu``. wgpu is imported only when somebody asks. Knows no kernels.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import importlib
+import importlib.util
+import json
+import logging
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from distal.diagnostics import DeviceError
+
+_ANSWER_TIMEOUT_S: Final = 30  # a driver may compile shaders of its own at its first start
+_KINDS: Final = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
+_SOFTWARE: Final = ("llvmpipe", "softpipe", "lavapipe", "swiftshader", "basic render driver")
+_LIMITS: Final = (
+    "max-buffer-size",
+    "max-storage-buffer-binding-size",
+    "max-uniform-buffer-binding-size",
+    "max-texture-dimension-2d",
+    "max-texture-dimension-3d",
+    "max-storage-buffers-per-shader-stage",
+    "max-sampled-textures-per-shader-stage",
+    "max-samplers-per-shader-stage",
+    "max-bindings-per-bind-group",
+)
+_NO_WGPU: Final = "wgpu is not installed: pip install 'distal[gpu]'"
+NO_ADAPTER: Final = (
+    "no GPU adapter: install the GPU's driver, or in software: apt-get install"
+    " mesa-vulkan-drivers; or --device cpu"
+)
+_QUESTION: Final = """
+import json, wgpu
+print(json.dumps([dict(a.info) for a in wgpu.gpu.enumerate_adapters_sync()], default=str))
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Adapter:
+    """A way to reach a GPU.
+
+    Attributes:
+        number: Its place in the list that the driver layer gives; what ``--adapter`` takes.
+        name: The GPU's own name.
+        kind: DiscreteGPU, IntegratedGPU, VirtualGPU, CPU or Unknown.
+        backend: Vulkan, Metal, D3D12 or OpenGL.
+        driver: What the driver says of itself.
+    """
+
+    number: int
+    name: str
+    kind: str
+    backend: str
+    driver: str = ""
+
+    @staticmethod
+    def of(number: int, info: dict[str, Any]) -> Adapter:
+        """The row of what wgpu says of an adapter."""
+        told = {key: str(info.get(key) or "") for key in ("device", "adapter_type", "backend_type")}
+        name = told["device"] or str(info.get("vendor") or "") or "a GPU without a name"
+        driver = str(info.get("description") or "")
+        return Adapter(number, name, told["adapter_type"], told["backend_type"], driver)
+
+    @property
+    def is_software(self) -> bool:
+        """Whether the processor does the work."""
+        return self.kind == "CPU" or any(word in self.name.lower() for word in _SOFTWARE)
+
+    @property
+    def rank(self) -> tuple[int, int, int]:
+        """The smaller, the better: hardware first, discrete first, OpenGL last."""
+        kind = "CPU" if self.is_software else self.kind
+        place = _KINDS.index(kind) if kind in _KINDS else _KINDS.index("Unknown")
+        return place, int(self.backend.startswith("OpenGL")), self.number
+
+    def __str__(self) -> str:
+        return f"{self.number}: {self.name} ({self.backend})"
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """What a wish comes to.
+
+    Attributes:
+        device: "gpu", "gpu-fragment", "cpu" or "reference".
+        adapter: The adapter's name; None for the best one, or for a device without.
+        reason: Why it is this one, in words.
+    """
+
+    device: str
+    adapter: str | None
+    reason: str
+
+
+# Asking
+
+
+def resolve(device: str) -> Resolved:
+    """The device that a name means: "auto" becomes a GPU in hardware, or else the CPU."""
+    if device != "auto":
+        name, _, wish = device.partition(":")
+        return Resolved(name, wish or None, "as asked for")
+    if importlib.util.find_spec("wgpu") is None:
+        return Resolved("cpu", None, "wgpu is not installed")
+    found, complaint = asked_apart()
+    best = _best_hardware(found)
+    if best is not None:
+        return Resolved("gpu", best.name, f"{best.name} ({best.backend})")
+    if complaint:
+        return Resolved("cpu", None, f"no GPU: {complaint}")
+    if found:
+        names = " and ".join(sorted({row.name.partition(" (")[0] for row in found}))
+        return Resolved("cpu", None, f"no GPU: only {names}, in software")
+    return Resolved("cpu", None, "no GPU: no driver offers one")
+
+
+def hardware() -> Adapter | None:
+    """The best adapter that is no software, or None; asks as ``resolve("auto")`` does."""
+    if importlib.util.find_spec("wgpu") is None:
+        return None
+    return _best_hardware(asked_apart()[0])
+
+
+def _best_hardware(found: Sequence[Adapter]) -> Adapter | None:
+    return min((a for a in found if not a.is_software), key=lambda a: a.rank, default=None)
+
+
+@functools.cache
+def asked_apart() -> tuple[list[Adapter], str]:
+    """The adapters, asked once in a process of its own; and a complaint, or "".
+
+    Nobody who leaves the choice to us asked for a GPU, so a driver that hangs or crashes when it
+    is asked must not take the picture along. That costs 0.4 s once a process; with an adapter named
+    we ask in this process.
+    """
+    try:
+        answer = subprocess.run(
+            [sys.executable, "-c", _QUESTION],
+            capture_output=True,
+            text=True,
+            timeout=_ANSWER_TIMEOUT_S,
+            stdin=subprocess.DEVNULL,
+            env={"XDG_RUNTIME_DIR": tempfile.gettempdir(), **os.environ},
+        )
+    except subprocess.TimeoutExpired:
+        return [], f"the driver did not answer within {_ANSWER_TIMEOUT_S} s"
+    except OSError as error:
+        return [], f"the drivers cannot be asked: {error}"
+    if answer.returncode < 0:
+        return [], f"the driver crashed when it was asked (signal {-answer.returncode})"
+    if answer.returncode > 0:
+        last = answer.stderr.strip().splitlines()[-1:] or [f"exit code {answer.returncode}"]
+        return [], last[0]
+    try:
+        rows = json.loads(answer.stdout.strip().splitlines()[-1])
+    except (ValueError, IndexError):
+        return [], "the drivers gave no answer"
+    return [Adapter.of(i, info) for i, info in enumerate(rows)], ""
+
+
+def adapters() -> list[Adapter]:
+    """The adapters, asked in this process.
+
+    Raises:
+        DeviceError: wgpu is not installed.
+    """
+    return [Adapter.of(i, dict(handle.info)) for i, handle in enumerate(_handles())]
+
+
+def chosen(wish: str | None = None) -> Adapter:
+    """The adapter of a number or of a part of its name; the best when None or "".
+
+    Raises:
+        DeviceError: There is none, or none like that; the message lists those there are.
+    """
+    found = adapters()
+    if not found:
+        raise DeviceError(NO_ADAPTER)
+    wanted = (wish or "").strip().lower()
+    if wanted.isdecimal():
+        fitting = [a for a in found if a.number == int(wanted)]
+    else:
+        fitting = [a for a in found if wanted in a.name.lower()]
+    if not fitting:
+        known = "; ".join(map(str, found))
+        raise DeviceError(f"there is no adapter '{wish}'; adapters: {known}")
+    return min(fitting, key=lambda a: a.rank)
+
+
+@functools.cache
+def _handles() -> list[Any]:
+    wgpu = wgpu_module()
+    try:
+        with _quiet_mesa():
+            return list(wgpu.gpu.enumerate_adapters_sync())
+    except RuntimeError:  # so says wgpu where no driver is installed
+        return []
+
+
+def wgpu_module() -> Any:
+    """The package, its warnings kept from the terminal.
+
+    Raises:
+        DeviceError: It is not installed, or cannot be loaded.
+    """
+    try:
+        module = importlib.import_module("wgpu")
+    except ModuleNotFoundError as error:
+        if error.name != "wgpu":
+            raise
+        raise DeviceError(_NO_WGPU) from None
+    except OSError as error:
+        raise DeviceError(f"wgpu cannot be loaded: {error}; or --device cpu") from error
+    # Without a handler Python prints them; whoever has set up logging still gets them. The logger
+    # is of wgpu's own class, so wgpu has to make it.
+    logger = logging.getLogger("wgpu")
+    if not logger.handlers:
+        logger.addHandler(logging.NullHandler())
+    return module
+
+
+@contextlib.contextmanager
+def _quiet_mesa() -> Iterator[None]:
+    """Any folder in XDG_RUNTIME_DIR silences Mesa; put back, since windows look there."""
+    if "XDG_RUNTIME_DIR" in os.environ:
+        yield
+        return
+    os.environ["XDG_RUNTIME_DIR"] = tempfile.gettempdir()
+    try:
+        yield
+    finally:
+        os.environ.pop("XDG_RUNTIME_DIR", None)
+
+
+# Opening
+
+
+class Gpu:
+    """An open device.
+
+    Attributes:
+        adapter: Which GPU.
+        device: wgpu's device.
+        lock: Held while commands are given: a window and a video may share the device.
+        is_lost: Whether it is gone; kernels then open a new one.
+        filters_floats: Whether it filters textures of 32-bit floats.
+    """
+
+    def __init__(self, adapter: Adapter, handle: Any) -> None:
+        wgpu = wgpu_module()
+        self.adapter = adapter
+        self.lock = threading.RLock()
+        self.is_lost = False
+        self.filters_floats = "float32-filterable" in handle.features
+        limits = {name: handle.limits[name] for name in _LIMITS if name in handle.limits}
+        try:
+            with _quiet_mesa():
+                self.device = handle.request_device_sync(
+                    required_features=["float32-filterable"] if self.filters_floats else [],
+                    required_limits=limits,
+                )
+        except (RuntimeError, wgpu.GPUError) as error:
+            raise DeviceError(f"{adapter.name} cannot be used: {_short(error)}") from error
+
+    def limit(self, name: str) -> int:
+        """One of the device's limits."""
+        return int(self.device.limits[name])
+
+    @contextlib.contextmanager
+    def commands(self, doing: str = "rendering") -> Iterator[Any]:
+        """The device, alone; its errors become a ``DeviceError``.
+
+        Raises:
+            DeviceError: The GPU was lost, has not the memory, or refuses what it was told.
+        """
+        wgpu = wgpu_module()
+        with self.lock:
+            if self.is_lost:
+                raise DeviceError(self._lost(doing))
+            try:
+                yield self.device
+            except wgpu.GPUOutOfMemoryError as error:
+                raise DeviceError(
+                    f"{self.adapter.name} has not enough memory; a smaller picture, or --device cpu"
+                ) from error
+            except (wgpu.GPUError, RuntimeError) as error:
+                if _tells_of_loss(error):
+                    self.drop()
+                    raise DeviceError(self._lost(doing)) from error
+                raise DeviceError(f"{self.adapter.name} refuses: {_short(error)}") from error
+
+    def _lost(self, doing: str) -> str:
+        return (
+            f"the GPU was lost while {doing} ({self.adapter.name}): its driver was reset or"
+            " updated, or the work took too long; try again, or --device cpu"
+        )
+
+    def drop(self) -> None:
+        """Never give this device out again."""
+        self.is_lost = True
+        with _OPENING:
+            for number, gpu in list(_OPEN.items()):
+                if gpu is self:
+                    del _OPEN[number]
+
+
+_OPEN: dict[int, Gpu] = {}
+_OPENING = threading.RLock()
+
+
+def opened(adapter: Adapter) -> Gpu:
+    """The process's one device of an adapter.
+
+    Raises:
+        DeviceError: It cannot be opened.
+    """
+    with _OPENING:
+        gpu = _OPEN.get(adapter.number)
+        if gpu is None:
+            gpu = _OPEN[adapter.number] = Gpu(adapter, _handles()[adapter.number])
+        return gpu
+
+
+def _tells_of_loss(error: BaseException) -> bool:
+    text = str(error).lower()
+    return "device is lost" in text or "device lost" in text or "devicelost" in text
+
+
+def _short(error: BaseException) -> str:
+    """What wgpu says, on one line."""
+    lines = (line.strip(" :") for line in str(error).splitlines())
+    return ": ".join(
+        line for line in lines if line and line not in ("Validation Error", "Caused by")
+    )

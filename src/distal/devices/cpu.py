@@ -1,0 +1,336 @@
+"""The CPU device: vector code on every processor, compiled once and kept.
+
+What flows in: a module fresh from the front end, then numbers. What flows out: pictures, and values
+at points. With a kernel in the cache no pass runs and nothing is compiled.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import json
+import os
+import struct
+import time
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.backends.llvm import TARGET, emit_for
+from distal.backends.llvm.layout import (
+    BATCH,
+    FRAME,
+    JOB_FIELDS,
+    PIXELS,
+    RENDER,
+    RESOURCE_BYTES,
+    TILE_BLOCKS,
+    TILE_HEIGHT,
+    TILE_WIDTH,
+    kinds_in,
+)
+from distal.devices import cpu_memory, threads
+from distal.devices.base import Cancel, Progress, Values
+from distal.devices.cache import Cache, default_folder
+from distal.devices.executable import Executable
+from distal.devices.features import Level, chosen_level
+from distal.devices.jit import compile_object, compiler_fingerprint
+from distal.devices.pool import PICTURES
+from distal.devices.resources import load
+from distal.ir.nodes import Module
+from distal.ir.printer import print_identity
+from distal.ir.target import Target
+from distal.ir.types import Buffer, Texture, Type
+from distal.version import __version__
+
+RunPasses = Callable[[Module, Target, int], Module]
+
+_LARGEST_SIDE: Final = 32768  # pixels; a picture's bytes stay countable in 64 bits anywhere
+
+
+def prepare(
+    module: Module,
+    passes: RunPasses | None = None,
+    precision: int = 32,
+    features: str | None = None,
+    cache: Cache | None = None,
+) -> CpuKernel:
+    """Compile a module, or find it compiled.
+
+    Args:
+        module: As the front end made it, before any pass.
+        passes: Shapes it for a target and a precision; ``compiler.run_passes`` when None.
+        precision: Bits of a float, 32 or 64.
+        features: A CPU feature level by name; the best this processor has when None.
+        cache: Where kernels are kept; the user's folder when None.
+
+    Raises:
+        CompileError: The scene says what the CPU cannot do.
+        ValueError: No such feature level here.
+    """
+    started = time.perf_counter()
+    level = chosen_level(features)
+    cache = Cache(default_folder()) if cache is None else cache
+    key = _key(module, level, precision)
+    kernel = _loaded(cache.load(key))
+    hit = kernel is not None
+    if kernel is None:
+        passes = passes or importlib.import_module("distal.compiler").run_passes
+        artifact = emit_for(passes(module, TARGET, precision), level.lanes(precision))
+        kernel = compile_object(artifact.text, level), artifact.interface
+        cache.store(key, _stored(*kernel))
+    code, interface = kernel
+    lanes = level.lanes(precision)
+    stats = {
+        "device": "cpu",
+        "level": level.name,
+        "lanes": lanes.count,
+        "precision": precision,
+        "cache_hit": hit,
+        "compile_s": time.perf_counter() - started,
+    }
+    types = {r.name: r.type for r in module.resources}
+    return CpuKernel(Executable(code), interface, precision, lanes.count, stats, types)
+
+
+# Kernels as files
+
+
+def _key(module: Module, level: Level, precision: int) -> str:
+    """Names everything that machine code depends on, but not how the passes go about it."""
+    told = (
+        print_identity(module),
+        __version__,
+        _sources(),
+        level,
+        precision,
+        compiler_fingerprint(),
+    )
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
+@cache
+def _sources() -> str:
+    """A fingerprint of the compiler itself, so that a change of it never meets its old kernels."""
+    rows: list[tuple[str, int, int]] = []
+    root = Path(__file__).parent.parent
+    for folder in ("ir", "passes", "backends/llvm", "devices", "lang/prelude"):
+        for folder_path, _, names in os.walk(root / folder):
+            for name in names:
+                if name.endswith(".py"):
+                    info = os.stat(os.path.join(folder_path, name))
+                    rows.append((name, info.st_size, info.st_mtime_ns))
+    return hashlib.sha256(repr(sorted(rows)).encode()).hexdigest()
+
+
+def _stored(code: bytes, interface: dict[str, Any]) -> bytes:
+    header = json.dumps(interface).encode()
+    return struct.pack("<I", len(header)) + header + code
+
+
+def _loaded(data: bytes | None) -> tuple[bytes, dict[str, Any]] | None:
+    if data is None:
+        return None
+    (size,) = struct.unpack_from("<I", data)
+    return data[4 + size :], json.loads(data[4 : 4 + size])
+
+
+# Kernels as functions
+
+
+class CpuKernel:
+    """A compiled module in memory; see ``distal.devices.base.Kernel``."""
+
+    def __init__(
+        self,
+        executable: Executable,
+        interface: dict[str, Any],
+        precision: int,
+        lanes: int,
+        stats: dict[str, Any],
+        resource_types: dict[str, Type],
+    ) -> None:
+        self.stats = stats
+        self._resource_types = resource_types
+        self._executable = executable
+        self._interface = interface
+        self._precision = precision
+        self._lanes = lanes
+        self._image = interface["kind"] == "image"
+        self._uniforms = cpu_memory.UniformSlots(
+            interface["uniforms"], interface["uniform_slots"], precision
+        )
+        main = RENDER if self._image else PIXELS if PIXELS in executable else BATCH
+        self._pixelwise = main == PIXELS
+        self._main = executable.function(main)
+        self._frame = executable.function(FRAME) if FRAME in executable else None
+
+    def render(
+        self,
+        width: int,
+        height: int,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """The picture; see ``Kernel.render``."""
+        assert self._image, "a function has no picture"
+        if not (0 < width <= _LARGEST_SIDE and 0 < height <= _LARGEST_SIDE):
+            raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
+        picture = PICTURES.take((height, width, 4))
+        across, down = -(-width // TILE_WIDTH), -(-height // TILE_HEIGHT)
+        job = _Job(self, uniforms, resources, picture)
+        job.set(output=picture.ctypes.data, width=width, height=height)
+        job.set(tiles_across=across, tiles=across * down)
+        self._run(job, across * down, threads, progress, cancel)
+        return picture
+
+    def evaluate(
+        self,
+        args: Sequence[Values],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Values:
+        """Values at points; see ``Kernel.evaluate``."""
+        assert not self._image, "an image has no points"
+        points = cpu_memory.shared_length(args)
+        if self._pixelwise and points:
+            rows = np.asarray(args[0], np.float32)
+            return self._mapped(rows, uniforms, resources, threads, progress, cancel)
+        stride = -(-points // self._lanes) * self._lanes
+        shapes = [shape for _, shape in self._interface["params"]]
+        source = cpu_memory.pack_points(shapes, args, points, stride, self._precision)
+        shape = self._interface["result"]
+        runs = max(1, len(kinds_in(shape)))
+        target = np.empty(runs * stride, cpu_memory.float_type(self._precision))
+        tiles = -(-stride // (TILE_BLOCKS * self._lanes))
+        job = _Job(self, uniforms, resources, source, target)
+        job.set(input=source.ctypes.data, output=target.ctypes.data, width=stride)
+        job.set(tiles=tiles, stride=stride)
+        if stride:
+            self._run(job, tiles, threads, progress, cancel)
+        return cpu_memory.unpack_points(shape, target, points, stride)
+
+    def map_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """A picture of a picture; see ``Kernel.map_pixels``."""
+        values = self.evaluate(
+            [pixels.reshape(-1, 4)], uniforms, resources, threads=threads, cancel=cancel
+        )
+        return np.asarray(values, np.float32).reshape(pixels.shape)
+
+    def _mapped(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        count: int | None,
+        progress: Progress | None,
+        cancel: Cancel | None,
+    ) -> NDArray[np.float32]:
+        """Rows of four floats from rows of four floats, as they lie in memory."""
+        short = self._lanes - len(pixels)
+        if short > 0:  # a block is the least there is
+            pixels = np.pad(pixels, ((0, short), (0, 0)), mode="edge")
+        source, target = np.ascontiguousarray(pixels), PICTURES.take(pixels.shape)
+        tiles = -(-len(pixels) // (TILE_BLOCKS * self._lanes))
+        job = _Job(self, uniforms, resources, source, target)
+        job.set(input=source.ctypes.data, output=target.ctypes.data)
+        job.set(width=len(pixels), tiles=tiles)
+        self._run(job, tiles, count, progress, cancel)
+        return target[:-short] if short > 0 else target
+
+    def _run(
+        self,
+        job: _Job,
+        pieces: int,
+        count: int | None,
+        progress: Progress | None,
+        cancel: Cancel | None,
+    ) -> None:
+        started = time.perf_counter()
+        if self._frame is not None:
+            self._run_frame(job, cancel)
+        work = threads.Work(job.counter, job.stop, pieces)
+        used = threads.run(work, lambda: self._main(job.address()), count, progress, cancel)
+        self.stats["threads"] = used
+        self.stats["render_s"] = time.perf_counter() - started
+
+    def _run_frame(self, job: _Job, cancel: Cancel | None) -> None:
+        """The per-frame part: at once, or watched in a thread when it may be long or large."""
+        frame = self._frame
+        assert frame is not None
+        if self._interface["frame_apart"]:
+            work = threads.Work(job.counter, job.stop, 1)
+            threads.run(work, lambda: frame(job.address()), 1, None, cancel)
+        else:
+            frame(job.address())
+
+
+class _Job:
+    """The memory of one run, alive as long as a thread may touch it."""
+
+    def __init__(
+        self,
+        kernel: CpuKernel,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *held: NDArray[Any],
+    ) -> None:
+        self._held = held
+        interface, precision = kernel._interface, kernel._precision
+        self.words = np.zeros(len(JOB_FIELDS), np.int64)
+        self.counter = np.zeros(1, np.int32)
+        self.stop = np.zeros(1, np.int32)
+        self._uniforms = kernel._uniforms.packed(uniforms)
+        self._frame = np.zeros(max(1, interface["frame_slots"]), cpu_memory.float_type(precision))
+        rows = interface["resources"]
+        self._resources = np.zeros((max(1, len(rows)), RESOURCE_BYTES // 8), np.int64)
+        self._data = []
+        for i, row in enumerate(rows):
+            array = _array(resources[row[0]], kernel._resource_types[row[0]])
+            slots, sizes = cpu_memory.pack_resource(row, array, precision)
+            self._data.append(slots)
+            self._resources[i] = (slots.ctypes.data, *sizes)
+        self.set(
+            counter=self.counter.ctypes.data,
+            stop=self.stop.ctypes.data,
+            uniforms=self._uniforms.ctypes.data,
+            frame=self._frame.ctypes.data,
+            resources=self._resources.ctypes.data,
+        )
+
+    def address(self) -> int:
+        """What a kernel is called with."""
+        return int(self.words.ctypes.data)
+
+    def set(self, **fields: int) -> None:
+        """Fill in fields of the job."""
+        for name, value in fields.items():
+            self.words[JOB_FIELDS.index(name)] = value
+
+
+def _array(source: Any, type: Type) -> NDArray[Any]:
+    """A resource's array; what is one already has its texels in the order of their indices."""
+    if isinstance(source, np.ndarray):
+        return source
+    assert isinstance(type, Texture | Buffer)
+    return load(source, type)

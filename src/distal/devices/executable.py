@@ -1,0 +1,39 @@
+"""Objects put into memory and called.
+
+What flows in: an object file. What flows out: functions that ctypes calls without Python's lock.
+LLVM's own loader does the work, as it knows every system's rules for executable memory.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+
+from distal.devices.jit import llvm_binding, machine_here
+
+
+class Executable:
+    """An object file in memory that may be run; the memory is given back with the object."""
+
+    def __init__(self, code: bytes) -> None:
+        llvm = llvm_binding()
+        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine_here())
+        self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        self._engine.finalize_object()
+
+    def function(self, name: str) -> Callable[[int], None]:
+        """An exported function that takes one pointer; it keeps the object in memory."""
+        function = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(self._address(name))
+
+        def call(pointer: int) -> None:
+            assert self._engine is not None
+            function(pointer)
+
+        return call
+
+    def __contains__(self, name: str) -> bool:
+        return self._address(name) != 0
+
+    def _address(self, name: str) -> int:
+        address: int = self._engine.get_function_address(name)
+        return address

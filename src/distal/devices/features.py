@@ -1,0 +1,148 @@
+"""What the processor can do, and the vector shape that suits it.
+
+What flows in: the operating system's list of features, or a level by name. What flows out: a
+``Level``: what LLVM is told, and how many lanes a kernel has. Needs no LLVM, so that a stored
+kernel is found without loading it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import os
+import platform
+import sys
+from dataclasses import dataclass
+from functools import cache
+from typing import Final
+
+from distal.backends.llvm.lanes import Lanes
+
+FEATURES_VARIABLE: Final = "DISTAL_CPU"
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """One feature level.
+
+    Attributes:
+        name: How the command line and ``DISTAL_CPU`` spell it.
+        architecture: ``x86_64`` or ``aarch64``.
+        cpu: What LLVM compiles for. The level's own name rather than the machine's: kernels in the
+            cache serve every processor of the level, and LLVM knows all these names.
+        width: Floats in one register.
+        chunks: Registers of each value in flight; measured with the raymarcher.
+        block_width: Pixels across in a block.
+        needs: Features in the spelling of Linux's ``/proc/cpuinfo``.
+    """
+
+    name: str
+    architecture: str
+    cpu: str
+    width: int
+    chunks: int
+    block_width: int
+    needs: tuple[str, ...]
+
+    def lanes(self, precision: int) -> Lanes:
+        """The vector shape for a float of 32 or 64 bits: the same registers hold half as many."""
+        if precision == 64:
+            return Lanes(self.width // 2, self.chunks, 64, self.block_width // 2, self.name)
+        return Lanes(self.width, self.chunks, 32, self.block_width, self.name)
+
+
+LEVELS: Final = (
+    Level("avx512", "x86_64", "x86-64-v4", 16, 4, 8,
+          ("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl", "avx2", "fma", "bmi2")),
+    Level("avx2", "x86_64", "x86-64-v3", 8, 4, 8, ("avx2", "fma", "bmi1", "bmi2", "f16c", "movbe")),
+    Level("sse4.2", "x86_64", "x86-64-v2", 4, 8, 8, ("sse4_2", "ssse3", "popcnt")),
+    Level("neon", "aarch64", "generic", 4, 4, 4, ("asimd",)),
+)  # fmt: skip
+
+
+def level_named(name: str) -> Level:
+    """The level of that name.
+
+    Raises:
+        ValueError: There is none.
+    """
+    for level in LEVELS:
+        if level.name == name:
+            return level
+    names = ", ".join(level.name for level in LEVELS)
+    raise ValueError(f"there is no CPU feature level '{name}'; levels: {names}")
+
+
+def machine() -> str:
+    """This machine's architecture: ``x86_64``, ``aarch64`` or another."""
+    name = platform.machine().lower()
+    return {"amd64": "x86_64", "arm64": "aarch64"}.get(name, name)
+
+
+@cache
+def host_features() -> frozenset[str]:
+    """The processor's features in Linux's spelling; empty where they cannot be told."""
+    if machine() == "aarch64":
+        return frozenset({"asimd"})
+    if sys.platform.startswith("linux"):
+        return _from_cpuinfo()
+    if sys.platform == "darwin":
+        return _from_sysctl()
+    return frozenset()
+
+
+def _from_cpuinfo() -> frozenset[str]:
+    try:
+        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
+            text = file.read(16384)  # the first processor's paragraph
+    except OSError:
+        return frozenset()
+    for line in text.splitlines():
+        key, _, value = line.partition(":")
+        if key.strip() == "flags":
+            return frozenset(value.split())
+    return frozenset()
+
+
+def _from_sysctl() -> frozenset[str]:
+    library = ctypes.CDLL(ctypes.util.find_library("c"))
+    found: set[str] = set()
+    for key in (b"machdep.cpu.features", b"machdep.cpu.leaf7_features"):
+        size = ctypes.c_size_t(4096)
+        buffer = ctypes.create_string_buffer(size.value)
+        if library.sysctlbyname(key, buffer, ctypes.byref(size), None, 0) == 0:
+            found.update(word.lower().decode() for word in buffer.value.split())
+    renamed = {"sse4.2": "sse4_2", "avx1.0": "avx"}
+    return frozenset(renamed.get(word, word) for word in found)
+
+
+@cache
+def host_levels() -> tuple[Level, ...]:
+    """The levels this processor can run, the best first."""
+    features = host_features()
+    here = machine()
+    return tuple(
+        level for level in LEVELS
+        if level.architecture == here and features.issuperset(level.needs)
+    )  # fmt: skip
+
+
+def chosen_level(name: str | None = None) -> Level:
+    """The level to compile for: the named one, else ``DISTAL_CPU``'s, else the best.
+
+    Raises:
+        ValueError: No such level, or this processor cannot run it.
+    """
+    wanted = name or os.environ.get(FEATURES_VARIABLE) or None
+    possible = host_levels()
+    if wanted is not None:
+        level = level_named(wanted)
+        if level not in possible:
+            raise ValueError(f"this processor cannot run the feature level '{wanted}'")
+        return level
+    if not possible:
+        raise ValueError(
+            f"the CPU device needs an x86-64 processor with SSE 4.2 or a 64-bit ARM one, "
+            f"not {machine()}"
+        )
+    return possible[0]

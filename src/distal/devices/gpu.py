@@ -1,0 +1,408 @@
+"""The GPU device: a module as WGSL, computed or drawn by wgpu.
+
+What flows in: a module fresh from the front end, then numbers. What flows out: pictures, values at
+points, or a picture drawn into somebody's texture. Large pictures go part by part, sized by
+measured time. A lost GPU is a ``DeviceError``; the next run opens it anew.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.backends import emit, get_target
+from distal.backends.base import Artifact
+from distal.backends.llvm.layout import kinds_in, shape_of
+from distal.backends.wgsl_functions import leaf_count
+from distal.compiler import run_passes
+from distal.devices import cpu_memory
+from distal.devices.adapters import Gpu, chosen, opened, wgpu_module
+from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test
+from distal.devices.gpu_program import LARGEST_DISPATCH, Program
+from distal.devices.pool import PICTURES
+from distal.devices.tiles import Pace, Tile, tiles
+from distal.ir.nodes import EntryKind, Module
+from distal.ir.target import Target
+from distal.ir.types import VEC4
+
+RunPasses = Callable[[Module, Target, int], Module]
+
+_PIXEL_BYTES: Final = 16
+_FORMAT: Final = "rgba32float"
+_ROW_BYTES: Final = 256  # WebGPU's alignment of a texture's rows in a buffer
+_LARGEST_PART: Final = 2**26  # bytes, of a part's output and again of what is read back
+
+
+def prepare(
+    module: Module,
+    passes: RunPasses | None = None,
+    precision: int = 32,
+    path: str = "compute",
+    adapter: str | None = None,
+) -> GpuKernel:
+    """Compile a module for a GPU.
+
+    Args:
+        module: As the front end made it, before any pass.
+        passes: Shapes it for a target and a precision; ``compiler.run_passes`` when None.
+        precision: Bits of a float; a GPU has 32.
+        path: "compute", or "fragment": images are drawn; functions are computed all the same.
+        adapter: A number or a part of a name; the best when None.
+
+    Raises:
+        CompileError: The scene says what WGSL cannot.
+        DeviceError: There is no such GPU, or it refuses the program.
+    """
+    if path not in ("compute", "fragment"):
+        raise ValueError(f"a GPU's path is compute or fragment, not '{path}'")
+    if precision != 32:
+        raise DeviceError(f"a GPU computes with 32 bits, not {precision}: --device cpu")
+    started = time.perf_counter()
+    row = chosen(adapter)
+    is_image = module.kind is EntryKind.IMAGE
+    name = "wgsl" if path == "fragment" and is_image else "wgsl-compute"
+    target = get_target(name)
+    shaped = (passes or run_passes)(module, target, precision)
+    artifact = emit(shaped, target)
+    kernel = GpuKernel(shaped, artifact, lambda: opened(row))
+    kernel.stats |= {
+        "device": "gpu",
+        "path": "compute" if name == "wgsl-compute" else "fragment",
+        "adapter": row.name,
+        "backend": row.backend,
+        "precision": precision,
+        "cache_hit": False,
+        "compile_s": time.perf_counter() - started,
+    }
+    return kernel
+
+
+class GpuKernel:
+    """A compiled module on a GPU; see ``distal.devices.base.Kernel``.
+
+    Attributes:
+        stats: Besides: ``adapter``, ``backend``, ``path``; after a run ``tiles``.
+        pace: How large parts are.
+    """
+
+    def __init__(self, module: Module, artifact: Artifact, open_gpu: Callable[[], Gpu]) -> None:
+        self.stats: dict[str, Any] = {"threads": 1}
+        self._artifact = artifact
+        self._open = open_gpu
+        self._types = {r.name: r.type for r in module.resources}
+        self._is_image = module.kind is EntryKind.IMAGE
+        entry = module.function(module.entry)
+        self._params = [] if self._is_image else [p.type for p in entry.params]
+        self._result = entry.result
+        leaves = max(sum(map(leaf_count, self._params)), leaf_count(self._result))
+        self._point_bytes = _PIXEL_BYTES if self._is_image else 4 * max(1, leaves)
+        self._lock = threading.RLock()
+        self._program: Program | None = None
+        self._ready()
+
+    @property
+    def program(self) -> Program:
+        """The text on an open device: a new one where the last was lost."""
+        return self._ready()
+
+    def _ready(self) -> Program:
+        if self._program is None or self._program.gpu.is_lost:
+            gpu = self._open()
+            with gpu.commands("compiling"):
+                self._program = Program(gpu, self._artifact, self._types)
+            most = min(
+                gpu.limit("max-storage-buffer-binding-size"),
+                gpu.limit("max-buffer-size"),
+                _LARGEST_PART,
+            )
+            self.pace = Pace(most // self._point_bytes)
+            self._memory: dict[str, Any] = {}
+        return self._program
+
+    def render(
+        self,
+        width: int,
+        height: int,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """The picture; see ``Kernel.render``. ``threads`` means nothing here.
+
+        Raises:
+            Cancelled: ``cancel`` said so.
+            DeviceError: The GPU was lost, or has not the memory.
+        """
+        assert self._is_image, "a function has no picture"
+        wanted = cancel_test(cancel)
+        with self._lock:
+            program, started = self._ready(), time.perf_counter()
+            picture = PICTURES.take((height, width, 4))
+            with program.gpu.commands() as device:
+                program.load(resources)
+            run = self._draw_part if "fragment" in program.interface["stages"] else self._part
+            done = parts = 0
+            for tile in tiles(width, height, self.pace):
+                if wanted():
+                    raise Cancelled
+                begin = time.perf_counter()
+                with program.gpu.commands() as device:
+                    place = (tile.x, tile.y, tile.width, tile.height)
+                    program.set_uniforms(uniforms, place)
+                    encoder = device.create_command_encoder()
+                    if parts == 0:
+                        program.encode_frame(encoder)
+                    run(program, encoder, tile, picture)
+                self.pace.measured(tile, time.perf_counter() - begin)
+                done, parts = done + tile.pixels, parts + 1
+                if progress is not None:
+                    progress(done / (width * height))
+            if wanted():
+                raise Cancelled
+            self.stats["tiles"] = parts
+            self.stats["render_s"] = time.perf_counter() - started
+            return picture
+
+    def _part(
+        self, program: Program, encoder: Any, tile: Tile, picture: NDArray[np.float32]
+    ) -> None:
+        """Compute a part of a picture and read it back."""
+        size = tile.pixels * _PIXEL_BYTES
+        output = self._output(program, size)
+        across, down = program.interface["workgroup"]
+        groups = (-(-tile.width // across), -(-tile.height // down))
+        binding = program.interface["output"]["binding"]
+        # The whole buffer is bound: a bind group then serves parts of any size.
+        program.encode_compute(encoder, groups, {binding: (output, output.size)})
+        rows = self._read(program, encoder, output, size)
+        part = picture[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width]
+        part[...] = np.frombuffer(rows, np.float32).reshape(part.shape)
+        self._memory["staging"].unmap()
+
+    def _draw_part(
+        self, program: Program, encoder: Any, tile: Tile, picture: NDArray[np.float32]
+    ) -> None:
+        """Draw a part of a picture and read it back."""
+        texture, view = self._texture(program, tile)
+        program.encode_draw(encoder, view, _FORMAT, tile.width, tile.height)
+        stride = -(-tile.width * _PIXEL_BYTES // _ROW_BYTES) * _ROW_BYTES
+        size = stride * tile.height
+        staging = self._staging(program, size)
+        encoder.copy_texture_to_buffer(
+            {"texture": texture},
+            {"buffer": staging, "bytes_per_row": stride, "rows_per_image": tile.height},
+            (tile.width, tile.height, 1),
+        )
+        rows = np.frombuffer(self._mapped(program, encoder, staging, size), np.float32)
+        part = picture[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width]
+        whole = rows.reshape(tile.height, stride // _PIXEL_BYTES, 4)
+        part[...] = whole[:, : tile.width]
+        staging.unmap()
+
+    # Memory, kept between runs
+
+    def _output(self, program: Program, size: int) -> Any:
+        usage = wgpu_module().BufferUsage
+        return self._buffer(program, "output", size, usage.STORAGE | usage.COPY_SRC)
+
+    def _staging(self, program: Program, size: int) -> Any:
+        usage = wgpu_module().BufferUsage
+        return self._buffer(program, "staging", size, usage.COPY_DST | usage.MAP_READ)
+
+    def _buffer(self, program: Program, name: str, size: int, usage: int) -> Any:
+        """A buffer of at least that size; grown by half again, so that few are made."""
+        buffer = self._memory.get(name)
+        if buffer is None or buffer.size < size:
+            room = size if buffer is None else max(size, buffer.size * 3 // 2)
+            room = min(
+                max(room, 16), max(size, program.gpu.limit("max-storage-buffer-binding-size"))
+            )
+            self._memory.pop(name, None)
+            buffer = program.gpu.device.create_buffer(size=-(-room // 16) * 16, usage=usage)
+            self._memory[name] = buffer
+        return buffer
+
+    def _texture(self, program: Program, tile: Tile) -> tuple[Any, Any]:
+        known = self._memory.get("texture")
+        if known is None or known[2] < tile.width or known[3] < tile.height:
+            width, height = tile.width, tile.height
+            if known is not None:
+                width, height = max(width, known[2]), max(height, known[3])
+            usage = wgpu_module().TextureUsage
+            self._memory.pop("texture", None)
+            texture = program.gpu.device.create_texture(
+                size=(width, height, 1),
+                format=_FORMAT,
+                usage=usage.RENDER_ATTACHMENT | usage.COPY_SRC,
+            )
+            known = self._memory["texture"] = texture, texture.create_view(), width, height
+        return known[0], known[1]
+
+    def _read(self, program: Program, encoder: Any, output: Any, size: int) -> Any:
+        staging = self._staging(program, size)
+        encoder.copy_buffer_to_buffer(output, 0, staging, 0, size)
+        return self._mapped(program, encoder, staging, size)
+
+    def _mapped(self, program: Program, encoder: Any, staging: Any, size: int) -> Any:
+        """Submit, wait, and see the bytes; whoever calls unmaps."""
+        program.gpu.device.queue.submit([encoder.finish()])
+        staging.map_async(wgpu_module().MapMode.READ, 0, size).sync_wait()
+        return staging.read_mapped(0, size, copy=False)
+
+    # Functions
+
+    def evaluate(
+        self,
+        args: Sequence[Values],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Values:
+        """Values at points; see ``Kernel.evaluate``."""
+        assert not self._is_image, "an image has no points"
+        points = cpu_memory.shared_length(args)
+        if self._params == [VEC4] and self._result is VEC4:
+            pixels = np.ascontiguousarray(args[0], np.float32).reshape(points, 4)
+            return self._mapped_pixels(pixels, uniforms, resources, progress, cancel)
+        stages = self._artifact.interface["stages"]
+        if "compute" not in stages:
+            raise DeviceError("this function's values do not fit a GPU's buffers: --device cpu")
+        shapes, shape = [shape_of(t) for t in self._params], shape_of(self._result)
+        # cpu_memory's runs of slots for 32 bits are the words that the text reads and writes.
+        source = cpu_memory.pack_points(shapes, args, points, points, 32).reshape(-1, points)
+        leaves = len(kinds_in(shape))
+        target = np.empty((max(1, leaves), points), np.float32)
+
+        def run(first: int, last: int) -> None:
+            given = np.ascontiguousarray(source[:, first:last]) if shapes else None
+            words = self._call(given, (last - first) * leaves * 4, last - first)
+            target[:, first:last] = words.reshape(leaves, last - first)
+
+        self._in_parts(points, run, uniforms, resources, progress, cancel)
+        return cpu_memory.unpack_points(shape, target.reshape(-1), points, points)
+
+    def map_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """A picture of a picture; see ``Kernel.map_pixels``."""
+        flat = np.ascontiguousarray(pixels, np.float32).reshape(-1, 4)
+        return self._mapped_pixels(flat, uniforms, resources, None, cancel).reshape(pixels.shape)
+
+    def _mapped_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        progress: Progress | None,
+        cancel: Cancel | None,
+    ) -> NDArray[np.float32]:
+        assert self._params == [VEC4], "pixels are mapped by a function from vec4 to vec4"
+        target = PICTURES.take(pixels.shape)
+
+        def run(first: int, last: int) -> None:
+            words = self._call(pixels[first:last], (last - first) * _PIXEL_BYTES, last - first)
+            target[first:last] = words.reshape(-1, 4)
+
+        self._in_parts(len(pixels), run, uniforms, resources, progress, cancel)
+        return target
+
+    def _in_parts(
+        self,
+        count: int,
+        run: Callable[[int, int], None],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        progress: Progress | None,
+        cancel: Cancel | None,
+    ) -> None:
+        """Some points after the other, sized by measured time like a picture's parts."""
+        wanted = cancel_test(cancel)
+        with self._lock:
+            program, started = self._ready(), time.perf_counter()
+            with program.gpu.commands():
+                program.load(resources)
+                program.set_uniforms(uniforms)
+            first = 0
+            budget = self.pace.start(count)
+            while first < count:
+                if wanted():
+                    raise Cancelled
+                last, begin = min(first + budget, count), time.perf_counter()
+                with program.gpu.commands():
+                    run(first, last)
+                self.pace.measured(Tile(0, 0, last - first, 1), time.perf_counter() - begin)
+                first, budget = last, self.pace.next()
+                if progress is not None:
+                    progress(first / count)
+            self.stats["render_s"] = time.perf_counter() - started
+
+    def _call(self, given: NDArray[Any] | None, size: int, count: int) -> NDArray[np.float32]:
+        """Call the function for some points; a copy of the words it wrote."""
+        program = self._ready()
+        usage, interface = wgpu_module().BufferUsage, program.interface
+        output = self._output(program, size)
+        extra = {interface["output"]["binding"]: (output, size)}
+        if given is not None and "input" in interface:
+            source = self._buffer(program, "input", given.nbytes, usage.STORAGE | usage.COPY_DST)
+            program.gpu.device.queue.write_buffer(source, 0, given)
+            extra[interface["input"]["binding"]] = source, given.nbytes
+        groups = -(-count // interface["workgroup"][0])
+        across = min(groups, LARGEST_DISPATCH)
+        encoder = program.gpu.device.create_command_encoder()
+        program.encode_frame(encoder)
+        program.encode_compute(encoder, (across, -(-groups // across)), extra)
+        words = np.frombuffer(self._read(program, encoder, output, size), np.float32).copy()
+        self._memory["staging"].unmap()
+        return words
+
+    # Windows
+
+    def draw(
+        self,
+        view: Any,
+        format: str,
+        width: int,
+        height: int,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+    ) -> None:
+        """Draw the picture into a texture view of this device, and wait for nothing.
+
+        Args:
+            view: Of a texture of at least that size, which can be rendered to.
+            format: The texture's format.
+            width: Pixels across.
+            height: Pixels down.
+            uniforms: As for ``render``.
+            resources: As for ``render``.
+
+        Raises:
+            DeviceError: The GPU was lost.
+        """
+        with self._lock:
+            program = self._ready()
+            assert "fragment" in program.interface["stages"], "only the fragment path draws"
+            with program.gpu.commands("drawing") as device:
+                program.load(resources)
+                program.set_uniforms(uniforms)
+                encoder = device.create_command_encoder()
+                program.encode_frame(encoder)
+                program.encode_draw(encoder, view, format, width, height)
+                device.queue.submit([encoder.finish()])

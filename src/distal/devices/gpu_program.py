@@ -1,0 +1,232 @@
+"""A WGSL text as pipelines on an open device, with what they read and write.
+
+What flows in: an artifact, values by name. What flows out: commands in an encoder. What to bind
+where is read from the artifact's interface. Pipelines, buffers and bind groups are kept from one
+run to the next. Knows neither pictures nor time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from distal.backends.base import Artifact
+from distal.backends.messages import map_message
+from distal.devices.adapters import Gpu, wgpu_module
+from distal.devices.base import DeviceError
+from distal.devices.gpu_memory import Resources, UniformBytes, view_dimension
+from distal.ir.types import Type
+
+_SHARED, _READ = 0, 1  # groups: the program's own buffers; the author's textures and buffers
+_PLACE: Final = re.compile(r"┌─ (.+:\d+)")
+_SAID: Final = re.compile(r"\berror: (.+)")
+LARGEST_DISPATCH: Final = 65535  # workgroups along one axis that every GPU allows
+
+
+class Program:
+    """One text on one device; whoever calls holds the device (``Gpu.commands``).
+
+    Attributes:
+        gpu: The device.
+        interface: What the text says of itself.
+        made: How many pipelines were made.
+        resources: The author's textures and buffers.
+    """
+
+    def __init__(self, gpu: Gpu, artifact: Artifact, types: Mapping[str, Type]) -> None:
+        self.gpu = gpu
+        self.interface = artifact.interface
+        self.made = 0
+        self._artifact = artifact
+        self._device = device = gpu.device
+        self._usage = usage = wgpu_module().BufferUsage
+        self._stages = wgpu_module().ShaderStage
+        self._uniform_bytes = UniformBytes(self.interface)
+        size = self.interface["uniform_buffer"]["size"]
+        if size > gpu.limit("max-uniform-buffer-binding-size"):
+            raise DeviceError(
+                f"{gpu.adapter.name} has no room for {size} bytes of parameters; or --device cpu"
+            )
+        self._uniforms = device.create_buffer(size=size, usage=usage.UNIFORM | usage.COPY_DST)
+        self._written: bytes = b""
+        self._frame_buffer = None
+        if frame := self.interface.get("frame"):
+            self._frame_buffer = device.create_buffer(
+                size=frame["size"], usage=usage.UNIFORM | usage.STORAGE
+            )
+        self.resources = Resources(gpu, self.interface, types)
+        self._bound: dict[int, Any] = {}
+        self._layouts: dict[tuple[str, int], Any] = {}
+        self._pipelines: dict[tuple[str, str], Any] = {}
+        self._groups: dict[tuple[str, int], tuple[tuple[Any, ...], Any]] = {}
+        self._module = self._compiled()
+
+    def _compiled(self) -> Any:
+        wgpu = wgpu_module()
+        try:
+            return self._device.create_shader_module(code=self._artifact.text)
+        except wgpu.GPUValidationError as error:
+            if "device is lost" in str(error).lower():
+                raise
+            raise DeviceError(self._refused(error)) from error
+
+    def _refused(self, error: BaseException) -> str:
+        """What is said of our text, on one line, with the author's place where it is known."""
+        told = map_message(self._artifact, str(error))
+        place, said = _PLACE.search(told), _SAID.search(told)
+        where = f" at {place[1]}" if place else ""
+        what = said[1] if said else " ".join(told.split())
+        return f"{self.gpu.adapter.name} refuses the program{where}: {what}; or --device cpu"
+
+    # Pipelines
+
+    def compute(self, entry: str) -> Any:
+        """The pipeline of an entry point."""
+        return self._pipeline(entry, "")
+
+    def fragment(self, format: str) -> Any:
+        """The pipeline that draws into textures of a format."""
+        return self._pipeline("fragment_main", format)
+
+    def _pipeline(self, entry: str, format: str) -> Any:
+        pipeline = self._pipelines.get((entry, format))
+        if pipeline is None:
+            wgpu = wgpu_module()
+            try:
+                pipeline = self._made(entry, format)
+            except (wgpu.GPUValidationError, wgpu.GPUPipelineError) as error:
+                if "device is lost" in str(error).lower():
+                    raise
+                raise DeviceError(self._refused(error)) from error
+            self._pipelines[entry, format] = pipeline
+            self.made += 1
+        return pipeline
+
+    def _made(self, entry: str, format: str) -> Any:
+        sort = "frame" if entry == "frame_main" else "draw" if format else "compute"
+        layouts = [self._layout(sort, group) for group in (_SHARED, _READ)]
+        layout = self._device.create_pipeline_layout(bind_group_layouts=layouts)
+        if not format:
+            stage = {"module": self._module, "entry_point": entry}
+            return self._device.create_compute_pipeline(layout=layout, compute=stage)
+        fragment = {"module": self._module, "entry_point": entry, "targets": [{"format": format}]}
+        return self._device.create_render_pipeline(
+            layout=layout,
+            vertex={"module": self._module, "entry_point": "vertex_main"},
+            fragment=fragment,
+        )
+
+    # Bindings
+
+    def _kinds(self, sort: str, group: int) -> dict[int, dict[str, Any]]:
+        """Binding to what a layout says of it, used by the text or not."""
+        interface = self.interface
+        kinds: dict[int, dict[str, Any]] = {}
+        if group == _READ:
+            for texture in interface["textures"]:
+                sampled = {"view_dimension": view_dimension(texture)}
+                kinds[texture["binding"]] = {"texture": sampled}
+                kinds[texture["sampler_binding"]] = {"sampler": {}}
+            for buffer in interface["buffers"]:
+                kinds[buffer["binding"]] = {"buffer": {"type": "read-only-storage"}}
+            return kinds
+        kinds[interface["uniform_buffer"]["binding"]] = {"buffer": {"type": "uniform"}}
+        if frame := interface.get("frame"):
+            # Written by one entry point and read by the others: two bindings of one buffer.
+            if sort == "frame":
+                kinds[frame["storage"]["binding"]] = {"buffer": {"type": "storage"}}
+            else:
+                kinds[frame["uniform"]["binding"]] = {"buffer": {"type": "uniform"}}
+        if sort == "compute":
+            kinds[interface["output"]["binding"]] = {"buffer": {"type": "storage"}}
+            if given := interface.get("input"):
+                kinds[given["binding"]] = {"buffer": {"type": "read-only-storage"}}
+        return kinds
+
+    def _layout(self, sort: str, group: int) -> Any:
+        layout = self._layouts.get((sort, group))
+        if layout is None:
+            stages = self._stages
+            seen = stages.FRAGMENT | stages.VERTEX if sort == "draw" else stages.COMPUTE
+            kinds = self._kinds(sort, group)
+            entries = [{"binding": b, "visibility": seen, **kind} for b, kind in kinds.items()]
+            layout = self._device.create_bind_group_layout(entries=entries)
+            self._layouts[sort, group] = layout
+        return layout
+
+    def _group(self, sort: str, group: int, extra: Mapping[int, tuple[Any, int]]) -> Any:
+        """A bind group; the last one while it binds the same things."""
+        interface, things = self.interface, dict(self._bound)
+        if group == _SHARED:
+            things = {interface["uniform_buffer"]["binding"]: self._uniforms}
+            if frame := interface.get("frame"):
+                for place in ("storage", "uniform"):
+                    things[frame[place]["binding"]] = self._frame_buffer
+            things |= {b: buffer for b, (buffer, _) in extra.items()}
+        kinds = self._kinds(sort, group)
+        used = tuple((b, things[b], extra[b][1] if b in extra else 0) for b in kinds)
+        known = self._groups.get((sort, group))
+        if known is not None and known[0] == used:
+            return known[1]
+        entries = []
+        for binding, thing, size in used:
+            if "buffer" in kinds[binding]:
+                thing = {"buffer": thing, "offset": 0, "size": size or thing.size}
+            entries.append({"binding": binding, "resource": thing})
+        made = self._device.create_bind_group(layout=self._layout(sort, group), entries=entries)
+        self._groups[sort, group] = used, made
+        return made
+
+    # Runs
+
+    def load(self, sources: Mapping[str, Any]) -> None:
+        """Upload textures and buffers that have changed."""
+        self._bound, is_new = self.resources.bindings(self._device, sources)
+        if is_new:
+            self._groups.clear()
+
+    def set_uniforms(self, values: Mapping[str, Any], tile: Sequence[int] = (0, 0, 0, 0)) -> None:
+        """Write the uniforms; what is submitted from now on reads them."""
+        told = self._uniform_bytes.packed(values, tile).tobytes()
+        if told != self._written:
+            self._device.queue.write_buffer(self._uniforms, 0, told)
+            self._written = told
+
+    def encode_frame(self, encoder: Any) -> None:
+        """The values that are the same in all pixels."""
+        if self._frame_buffer is not None:
+            self._dispatch(encoder, "frame_main", "frame", {}, (1, 1))
+
+    def encode_compute(
+        self, encoder: Any, groups: tuple[int, int], extra: Mapping[int, tuple[Any, int]]
+    ) -> None:
+        """The main entry point; ``extra``: binding to buffer and size, of its output and input."""
+        entry = self.interface["stages"]["compute"]
+        self._dispatch(encoder, entry, "compute", extra, groups)
+
+    def _dispatch(
+        self,
+        encoder: Any,
+        entry: str,
+        sort: str,
+        extra: Mapping[int, tuple[Any, int]],
+        groups: tuple[int, int],
+    ) -> None:
+        step = encoder.begin_compute_pass()
+        step.set_pipeline(self.compute(entry))
+        for group in (_SHARED, _READ):
+            step.set_bind_group(group, self._group(sort, group, extra))
+        step.dispatch_workgroups(*groups)
+        step.end()
+
+    def encode_draw(self, encoder: Any, view: Any, format: str, width: int, height: int) -> None:
+        """The fragment entry point, into the upper left part of a view."""
+        clear = {"view": view, "load_op": "clear", "store_op": "store"}
+        step = encoder.begin_render_pass(color_attachments=[clear])
+        step.set_pipeline(self.fragment(format))
+        for group in (_SHARED, _READ):
+            step.set_bind_group(group, self._group("draw", group, {}))
+        step.set_scissor_rect(0, 0, width, height)
+        step.draw(3)
+        step.end()

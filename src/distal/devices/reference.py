@@ -1,0 +1,200 @@
+"""The reference device: the NumPy backend as a kernel. Slow, and right by definition.
+
+What flows in: a lowered module, then plain arrays. What flows out: pictures and results. Nothing
+is compiled, so a kernel is ready at once; threads are not used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.backends import get_target
+from distal.backends import numpy as reference
+from distal.backends.numpy_operations import Value
+from distal.compiler import run_passes
+from distal.devices.base import Cancel, Cancelled, Progress, Values, cancel_test
+from distal.devices.resources import load
+from distal.ir.nodes import Module
+from distal.ir.target import Target
+from distal.ir.types import (
+    Array,
+    Buffer,
+    FunctionType,
+    Matrix,
+    Scalar,
+    Struct,
+    Texture,
+    Type,
+    Vector,
+)
+
+RunPasses: TypeAlias = Callable[[Module, Target, int], Module]
+
+
+def prepare(
+    module: Module, passes: RunPasses | None = None, precision: int = 32
+) -> ReferenceKernel:
+    """The kernel of a module as the front end made it; ``passes`` as for the CPU device."""
+    shaped = (passes or run_passes)(module, get_target("numpy"), precision)
+    return ReferenceKernel(shaped, precision)
+
+
+class ReferenceKernel:
+    """Runs one module.
+
+    Attributes:
+        stats: What ``--stats`` tells.
+    """
+
+    def __init__(self, module: Module, precision: int) -> None:
+        self._module = module
+        self._precision = precision
+        self.stats: dict[str, Any] = {"cache_hit": False, "lanes": 1, "threads": 1}
+
+    def render(
+        self,
+        width: int,
+        height: int,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """The picture: float32 (height, width, 4), top row first.
+
+        Raises:
+            Cancelled: ``cancel`` asked for it.
+        """
+        return reference.render(
+            self._module,
+            width,
+            height,
+            uniforms,
+            self._arrays(resources),
+            self._precision,
+            _poll(cancel),
+            progress,
+        )
+
+    def evaluate(
+        self,
+        args: Sequence[Values],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Values:
+        """The function's value for every row of the arguments.
+
+        Arrays have one row for each point (or a single row for all): scalars (n,), vectors
+        (n, size), matrices (n, rows, columns), arrays (n, length, ...); structs are tuples.
+        """
+        entry = self._module.function(self._module.entry)
+        values = [to_lanes(arg, param.type) for arg, param in zip(args, entry.params, strict=True)]
+        result = reference.evaluate(
+            self._module,
+            values,
+            uniforms,
+            self._arrays(resources),
+            self._precision,
+            _poll(cancel),
+        )
+        points = max((len(leaf) for arg in args for leaf in _leaves(arg)), default=1)
+        return from_lanes(result, entry.result, points)
+
+    def map_pixels(
+        self,
+        pixels: NDArray[np.float32],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """A picture of a picture; see ``Kernel.map_pixels``."""
+        values = self.evaluate([pixels.reshape(-1, 4)], uniforms, resources, cancel=cancel)
+        return np.asarray(values, np.float32).reshape(pixels.shape)
+
+    def _arrays(self, resources: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
+        """The arrays of the resources; what is an array already is one in the texels' order."""
+        arrays = {}
+        for declaration in self._module.resources:
+            source, type = resources[declaration.name], declaration.type
+            assert isinstance(type, Texture | Buffer)
+            arrays[declaration.name] = (
+                source if isinstance(source, np.ndarray) else load(source, type)
+            )
+        return arrays
+
+
+def _leaves(arg: Values) -> list[NDArray[Any]]:
+    if isinstance(arg, tuple):
+        return [leaf for part in arg for leaf in _leaves(part)]
+    return [np.asarray(arg)]
+
+
+def _poll(cancel: Cancel | None) -> Callable[[], None]:
+    wanted = cancel_test(cancel)
+
+    def poll() -> None:
+        if wanted():
+            raise Cancelled
+
+    return poll
+
+
+def to_lanes(data: Values, type: Type) -> Value:
+    """Rows of points as the reference's values, whose last axis counts the points."""
+    match type:
+        case Scalar() | Vector() | Matrix():
+            # Components last become components first; a matrix's rows its columns' components.
+            return np.asarray(data).T
+        case Array(element, length):
+            # An array of structs comes as a tuple of their fields' arrays, like a single one.
+            return tuple(to_lanes(_item(data, i), element) for i in range(length))
+        case Struct(_, fields):
+            return tuple(to_lanes(v, t) for v, (_, t) in zip(data, fields, strict=True))
+        case Texture() | Buffer() | FunctionType():
+            raise AssertionError(f"{type} is no argument")
+        case _:
+            assert_never(type)
+
+
+def _item(data: Values, position: int) -> Values:
+    """One element of the array that every row holds."""
+    if isinstance(data, tuple):
+        return tuple(_item(part, position) for part in data)
+    return data[:, position]
+
+
+def _stacked(parts: Sequence[Values]) -> Values:
+    """The array that every row holds, from its elements."""
+    if isinstance(parts[0], tuple):
+        return tuple(_stacked(fields) for fields in zip(*parts, strict=True))
+    return np.stack([np.asarray(part) for part in parts], axis=1)
+
+
+def from_lanes(value: Value, type: Type, points: int) -> Values:
+    """The reference's values as rows of points."""
+    match type:
+        case Scalar() | Vector() | Matrix():
+            assert isinstance(value, np.ndarray)
+            whole = np.broadcast_to(value, (*value.shape[:-1], points))
+            return np.ascontiguousarray(whole.T)
+        case Array(element):
+            return _stacked([from_lanes(part, element, points) for part in value])
+        case Struct(_, fields):
+            parts = zip(value, fields, strict=True)
+            return tuple(from_lanes(part, t, points) for part, (_, t) in parts)
+        case Texture() | Buffer() | FunctionType():
+            raise AssertionError(f"{type} is no result")
+        case _:
+            assert_never(type)

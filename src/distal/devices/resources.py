@@ -1,0 +1,112 @@
+"""The data of textures and buffers, from what the author declared to arrays for a device.
+
+What flows in: a declared resource and its type: a file's path, an array, nested lists. What flows
+out: texels as float32 (height, width, 4), depth or face first for volumes and cubes, in the order
+of their indices; buffers as (n,) or (n, size). Values of pictures are taken as they stand in the
+file, 0 to 1. It knows no device.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import LoadError
+from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
+
+_COMPONENT: dict[Kind, Any] = {Kind.FLOAT: np.float32, Kind.INT: np.int32, Kind.UINT: np.uint32}
+
+
+def load(source: Any, type: Texture | Buffer) -> NDArray[Any]:
+    """The array of a resource.
+
+    Raises:
+        LoadError: A file cannot be read, or the data has not the shape of such a resource.
+    """
+    if isinstance(type, Buffer):
+        return _buffer(source.data, type)
+    return texels(source.data, type.shape)
+
+
+def texels(data: Any, shape: TextureShape) -> NDArray[np.float32]:
+    """The texels of a texture; texel (0, 0) of a picture is its lower left one."""
+    match shape:
+        case TextureShape.FLAT:
+            return np.ascontiguousarray(_picture(data)[::-1])
+        case TextureShape.VOLUME:
+            return _with_channels(_numbers(data), 3)
+        case TextureShape.CUBE:
+            # A cube's faces are seen from inside, top row first, as OpenGL has them.
+            faces = [_picture(face) for face in _parts(data)]
+            if {face.shape for face in faces} != {faces[0].shape} or len(faces) != 6:
+                raise LoadError("a TextureCube takes six pictures of one size")
+            if faces[0].shape[0] != faces[0].shape[1]:
+                raise LoadError("the pictures of a TextureCube are square")
+            return np.stack(faces)
+        case _:
+            assert_never(shape)
+
+
+def _parts(data: Any) -> list[Any]:
+    if isinstance(data, str | Path):
+        raise LoadError("a TextureCube takes six pictures: +x, -x, +y, -y, +z, -z")
+    parts = list(data)
+    if not parts:
+        raise LoadError("a TextureCube takes six pictures, not none")
+    return parts
+
+
+def _picture(data: Any) -> NDArray[np.float32]:
+    """A picture, top row first, (height, width, 4)."""
+    if not isinstance(data, str | Path):
+        return _with_channels(_numbers(data), 2)
+    from PIL import Image, UnidentifiedImageError  # noqa: PLC0415 (only a file's data needs it)
+
+    try:
+        with Image.open(data) as picture:
+            return _with_channels(np.asarray(picture.convert("RGBA")), 2)
+    except (OSError, UnidentifiedImageError) as error:
+        raise LoadError(f"the texture '{data}' cannot be read: {error}") from error
+
+
+def _numbers(data: Any) -> NDArray[Any]:
+    if isinstance(data, str | Path):
+        raise LoadError(f"a Texture3D takes an array, not the file '{data}'")
+    try:
+        array = np.asarray(data)
+    except ValueError as error:
+        raise LoadError("a texture's rows have one length") from error
+    if array.dtype.kind not in "fiub":
+        raise LoadError("a texture takes numbers")
+    return array
+
+
+def _with_channels(array: NDArray[Any], axes: int) -> NDArray[np.float32]:
+    """RGBA from grey, RGB or RGBA; bytes become 0 to 1."""
+    if array.ndim == axes:
+        array = np.repeat(array[..., None], 3, axis=-1)
+    if array.ndim != axes + 1 or array.shape[-1] not in (3, 4) or array.size == 0:
+        names = ("height, width", "depth, height, width")[axes - 2]
+        raise LoadError(f"a texture is ({names}), with 3 or 4 channels; not {array.shape}")
+    scale = np.float32(255.0 if array.dtype == np.uint8 else 1.0)
+    values = array.astype(np.float32) / scale
+    if values.shape[-1] == 3:
+        opaque = np.ones((*values.shape[:-1], 1), np.float32)
+        values = np.concatenate([values, opaque], axis=-1)
+    return np.ascontiguousarray(values)
+
+
+def _buffer(data: Any, type: Buffer) -> NDArray[Any]:
+    kind = kind_of(type.element)
+    assert kind is not None
+    if not hasattr(data, "dtype"):
+        data = [tuple(e) if component_count(type.element) > 1 else e for e in data]
+    array = np.asarray(data)
+    if kind in (Kind.INT, Kind.UINT):
+        limits = np.iinfo(_COMPONENT[kind])
+        if array.min() < limits.min or array.max() > limits.max:
+            raise LoadError(f"a value of the buffer does not fit {kind.value}")
+    return np.ascontiguousarray(array, _COMPONENT[kind])

@@ -1,0 +1,108 @@
+"""How a large picture is cut into parts, each of a length that no driver takes for a hanging one.
+
+What flows in: a picture's size and the time that each part took. What flows out: the next part.
+Drivers reset a GPU that works on one submission for more than about two seconds (Windows) or five
+to ten (Linux), and a window on the same GPU stands still meanwhile. So parts are sized by measured
+time. Knows no GPU.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+TARGET_S: Final = 0.05  # a part's length: 20 answers a second to cancel, and little waiting
+WHOLE_S: Final = 0.1  # a picture that is expected to take no longer is one part
+FIRST_PIXELS: Final = 64 * 64  # at 50 µs a pixel, a slow scene in software, 0.2 s
+_GROWTH: Final = 8  # from one part to the next: the first pixels may be the easy ones
+_ROW: Final = 8  # sides of workgroups
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """A part of a picture in pixels, its corner counted from the top left."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    @property
+    def pixels(self) -> int:
+        """How many there are."""
+        return self.width * self.height
+
+
+class Pace:
+    """How fast one kernel is, and how large its next part may be.
+
+    Attributes:
+        most: The most pixels of a part, whatever the time says: what fits a binding; 8 or more.
+        first: The pixels of the very first part.
+    """
+
+    def __init__(self, most: int, first: int = FIRST_PIXELS) -> None:
+        self.most = most
+        self.first = first
+        self._picture_rate = 0.0  # pixels per second of the last picture
+        self._part_rate = 0.0  # of the last part
+        self._pixels, self._seconds = 0, 0.0  # of this picture up to now
+        self._budget = 1
+        self._is_warm = False  # the driver has compiled the program
+
+    def start(self, pixels: int) -> int:
+        """The budget of a picture's first part, in pixels."""
+        self._pixels, self._seconds = 0, 0.0
+        rate = self._part_rate = self._picture_rate
+        if rate <= 0.0:
+            budget = self.first
+        elif pixels <= rate * WHOLE_S:
+            budget = pixels
+        else:
+            budget = int(rate * TARGET_S)
+        self._budget = max(1, min(budget, self.most))
+        return self._budget
+
+    def measured(self, tile: Tile, seconds: float) -> None:
+        """Take in what a part took."""
+        if not self._is_warm:  # drivers compile at the first use: that time tells nothing
+            self._is_warm = True
+            return
+        self._pixels += tile.pixels
+        self._seconds += max(seconds, 1e-6)
+        self._picture_rate = self._pixels / self._seconds
+        # Of two neighbours the slower one tells what the next part may take.
+        rate = tile.pixels / max(seconds, 1e-6)
+        slower = min(rate, self._part_rate or rate)
+        self._part_rate = rate
+        grown = min(int(slower * TARGET_S), tile.pixels * _GROWTH)
+        self._budget = max(1, min(grown, self.most))
+
+    def next(self) -> int:
+        """The budget of the next part, in pixels."""
+        return self._budget
+
+
+def tiles(width: int, height: int, pace: Pace) -> Iterator[Tile]:
+    """The parts of a picture, top row first, each sized when it is asked for.
+
+    The caller tells the pace what each took before it asks for the next one.
+    """
+    y, budget = 0, pace.start(width * height)
+    while y < height:
+        rows = min(budget // width, height - y)
+        if rows == height - y or rows >= _ROW:
+            rows -= rows % _ROW if rows < height - y else 0
+            yield Tile(0, y, width, rows)
+            budget = pace.next()
+        else:  # a row of workgroups is too much: pieces of one
+            rows, x = min(_ROW, height - y), 0
+            while x < width:
+                across = max(1, budget // rows)
+                across = across if across < _ROW else across - across % _ROW
+                across = min(across, width - x)
+                yield Tile(x, y, across, rows)
+                budget = pace.next()
+                x += across
+        y += rows

@@ -1,0 +1,99 @@
+"""Source spans, and the errors a scene author sees.
+
+What flows in: a message, a place in the author's source and, when known, a hint. What flows
+out: an exception whose text shows the author's line with a caret. This is the only module that
+draws a caret; everything above reports by making a ``Diagnostic`` and raising ``CompileError``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A range of the author's source.
+
+    Attributes:
+        file: The name the author knows the file by.
+        line: First line, counted from 1.
+        col: First column, counted from 0 in characters.
+        end_col: One past the last column on the first line.
+        text: The whole first line, without its newline.
+        end_line: Last line of the range; equal to ``line`` for most.
+    """
+
+    file: str
+    line: int
+    col: int
+    end_col: int
+    text: str
+    end_line: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One mistake: what is wrong (no full stop), where, and what to write instead if known."""
+
+    message: str
+    span: Span | None
+    hint: str | None = None
+
+    def __str__(self) -> str:
+        return self.told("error")
+
+    def told(self, kind: str) -> str:
+        """The text, with what is to be thought of it in front: "error", "warning", "note"."""
+        lines = [f"{kind}: {self.message}"]
+        if self.span is not None:
+            lines += excerpt(self.span)
+        if self.hint:
+            gutter = " " if self.span is None else " " * len(_line_number(self.span))
+            lines.append(f"{gutter} = hint: {self.hint}")
+        return "\n".join(lines)
+
+
+def excerpt(span: Span) -> list[str]:
+    """The place in the author's file, and the line with carets below."""
+    number = _line_number(span)
+    gutter = " " * len(number)
+    # Tabs stay tabs under a tab, so that the caret stands where the editor shows the mistake.
+    lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
+    carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
+    return [
+        f"{gutter}--> {span.file}:{span.line}:{span.col + 1}",
+        f"{gutter} |",
+        f"{number} | {span.text}",
+        f"{gutter} | {lead}{carets}",
+    ]
+
+
+def _line_number(span: Span) -> str:
+    return f"{span.line:>2}"
+
+
+class CompileError(Exception):
+    """One or more mistakes in the author's scene code, all of them shown.
+
+    Attributes:
+        diagnostics: At least one, in the order of the source.
+    """
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics = tuple(diagnostics)
+        assert self.diagnostics, "a compile error needs a diagnostic"
+        super().__init__("\n\n".join(map(str, self.diagnostics)))
+
+    @classmethod
+    def at(cls, message: str, span: Span | None, hint: str | None = None) -> CompileError:
+        """Make an error of a single mistake."""
+        return cls([Diagnostic(message, span, hint)])
+
+
+class LoadError(Exception):
+    """A scene file that cannot be found, read or run, or holds nothing to compile."""
+
+
+class DeviceError(Exception):
+    """A device that is missing, was lost or cannot do the work: why, and what would mend it."""

@@ -1,0 +1,172 @@
+"""A scene as a page: one file that asks for nothing, or a fragment for other people's pages.
+
+What flows in: something to be seen. What flows out: HTML with the player, the programs and a poster
+inside. The page's own policy forbids it every request. Knows nothing of how the player draws.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from distal.export.payload import COLOR, payload
+from distal.export.poster import poster as poster_bytes
+from distal.export.registry import Exported
+from distal.film.replacement import replacement
+from distal.scene.viewable import Viewable
+from distal.uniform_values import checked_size, checked_time
+from distal.version import __version__
+
+PLAYER: Final = Path(__file__).with_name("player.js")
+NO_SCRIPT: Final = "This picture moves and turns where JavaScript is allowed."
+
+# The colors are those of the player's own sheet, so that nothing flashes before it stands.
+_STYLE: Final = (
+    ":root{color-scheme:dark light}"
+    "html,body{height:100%;margin:0}"
+    "body{background:light-dark(#f4f4f2,#151517);color:light-dark(#222,#ddd);"
+    "font:14px/1.5 system-ui,sans-serif}"
+    ".distal{display:block;position:relative;height:100vh;height:100dvh}"
+    ".distal>img{display:block;width:100%;height:100%;object-fit:contain}"
+    ".distal>p,noscript{position:absolute;inset:auto 0 1em;text-align:center}"
+)
+# A circle with a ring around it, so that no browser asks for /favicon.ico.
+_ICON: Final = (
+    "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E"
+    "%3Ccircle cx='8' cy='8' r='6.5' fill='none' stroke='%23888'/%3E"
+    "%3Ccircle cx='8' cy='8' r='4' fill='%23e8833a'/%3E%3C/svg%3E"
+)
+
+
+def write(
+    seen: Viewable,
+    path: Path,
+    target: str = "html",
+    *,
+    size: tuple[int, int] = (640, 480),
+    time: float = 0.0,
+    duration: float | None = None,
+    params: Mapping[str, Any] | None = None,
+    title: str | None = None,
+    embed: bool = False,
+    panel: bool = True,
+    poster: bool = True,
+    view: str = COLOR,
+    views: Sequence[str] | None = None,
+    device: str = "cpu",
+) -> Exported:
+    """Write the page; the options are those of ``distal.export``."""
+    size, time = checked_size(size), checked_time(time)
+    if duration is not None and not checked_time(duration) > 0.0:
+        raise ValueError(f"a duration is more than 0 seconds, not {duration}")
+    for name in (view, *(views or ())):
+        seen.image(name)  # there must be such a view
+    player = player_script()
+    omitted: dict[str, str] = {}
+    told = payload(
+        seen,
+        size=size,
+        params=params,
+        time=time,
+        duration=duration,
+        title=title,
+        embed=embed,
+        panel=panel and not embed,
+        view=view,
+        views=views,
+        omit=lambda name, error: omitted.update({name: error.diagnostics[0].message}),
+    )
+    shown = b""
+    if poster:
+        shown = poster_bytes(seen, size=size, time=time, params=params, view=view, device=device)
+    stage = _stage(told, shown)
+    text = _fragment(stage, told, player) if embed else _document(stage, told, player)
+    with replacement(path) as file:
+        file.write(text.encode("utf-8"))
+    parts = {
+        "player": len(player.encode()),
+        "shaders": len(json.dumps(told["programs"])),
+        "textures": len(json.dumps(told["resources"])) if told["resources"] else 0,
+        "poster": len(base64.b64encode(shown)),
+    }
+    return Exported(path, parts, (), omitted)
+
+
+def player_script() -> str:
+    """The player, in a form that no script element ends early."""
+    text = PLAYER.read_text(encoding="utf-8").strip()
+    # Inside strings and patterns a backslash before / or ! changes nothing.
+    return text.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+
+
+def json_text(value: Any) -> str:
+    """JSON that can stand in a script element: no text in it can end the element."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False)
+    # A lone surrogate is no text in UTF-8; as an escape it survives.
+    text = "".join(c if not "\ud800" <= c <= "\udfff" else f"\\u{ord(c):04x}" for c in text)
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _escaped(text: str) -> str:
+    return html.escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
+
+
+def _stage(told: Mapping[str, Any], poster: bytes) -> str:
+    """The element that the player takes over, and what it is told."""
+    width, height = told["size"]
+    description = _escaped(told["description"])
+    shown = ""
+    if poster:
+        data = base64.b64encode(poster).decode("ascii")
+        fill = ' style="display:block;width:100%;height:100%;object-fit:contain"'
+        shown = (
+            f'<img src="data:image/webp;base64,{data}" width="{width}" height="{height}"'
+            f' alt="{description}"{fill if told["embed"] else ""}>'
+        )
+    own = ""
+    if told["embed"]:
+        # As wide as what it stands in; as high too, where that has a height of its own.
+        place = (
+            f"display:block;position:relative;width:100%;height:100%;aspect-ratio:{width}/{height}"
+        )
+        own = f' style="{place}"'
+    return (
+        f'<div data-distal class="distal"{own}>{shown}<noscript>{NO_SCRIPT}</noscript></div>\n'
+        f'<script type="application/distal+json">{json_text(told)}</script>\n'
+    )
+
+
+def _fragment(stage: str, told: Mapping[str, Any], player: str) -> str:
+    return (
+        f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
+        f'{stage}<script type="module">{player}</script>\n'
+    )
+
+
+def _document(stage: str, told: Mapping[str, Any], player: str) -> str:
+    name, description = _escaped(told["name"]), _escaped(told["description"])
+    digest = base64.b64encode(hashlib.sha256(player.encode("utf-8")).digest()).decode("ascii")
+    policy = (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
+        "img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="dark light">\n'
+        f"<title>{name}</title>\n"
+        f'<meta name="description" content="{description}">\n'
+        f'<meta property="og:title" content="{name}">\n'
+        f'<meta property="og:description" content="{description}">\n'
+        '<meta property="og:type" content="website">\n'
+        f'<meta name="generator" content="distal {__version__}">\n'
+        f'<link rel="icon" href="{_ICON}">\n'
+        f"<style>{_STYLE}</style>\n</head>\n<body>\n"
+        f'{stage}<script type="module">{player}</script>\n</body>\n</html>\n'
+    )

@@ -1,0 +1,301 @@
+"""What a page's player is told of a scene: its programs, parameters and data, as plain JSON values.
+
+What flows in: something that can be looked at. What flows out: the payload, a dictionary that JSON
+can carry. Knows no HTML. The player's side of the format is ``web/src/payload.ts``.
+"""
+
+from __future__ import annotations
+
+import ast
+import base64
+import json
+import re
+import zlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import PurePath
+from typing import Any, Final
+
+import distal
+from distal.backends import emit, get_target
+from distal.backends.base import Artifact
+from distal.compiler import run_passes
+from distal.diagnostics import CompileError
+from distal.export.resources import resource
+from distal.frontend import lower
+from distal.ir.nodes import Module
+from distal.ir.types import Buffer, Texture
+from distal.lang.composed import Composed
+from distal.lang.functions import Func, Image
+from distal.lang.parameters import Parameter
+from distal.scene.viewable import Viewable
+from distal.version import __version__
+
+PACKAGE: Final = PurePath(distal.__file__).parent
+FORMAT: Final = 1
+TARGET: Final = "glsl-es300"
+COLOR: Final = "color"
+# Names that say nothing about a scene: its file's says more.
+_PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main"})
+_COMMENT: Final = re.compile(r"\s*//.*$")
+
+Places = tuple[tuple[str, int] | None, ...]
+
+
+def payload(
+    seen: Viewable,
+    *,
+    size: tuple[int, int] = (640, 480),
+    params: Mapping[str, Any] | None = None,
+    time: float = 0.0,
+    duration: float | None = None,
+    title: str | None = None,
+    embed: bool = False,
+    panel: bool = True,
+    poster: str | None = None,
+    view: str = COLOR,
+    views: Sequence[str] | None = None,
+    omit: Callable[[str, CompileError], None] | None = None,
+) -> dict[str, Any]:
+    """Everything that the player needs.
+
+    Args:
+        seen: What is shown.
+        size: The author's picture in pixels.
+        params: Values of parameters at the start, by name.
+        time: Seconds at the start.
+        duration: Seconds after which the time begins anew; None: never.
+        title: What a person reads; None for the scene's own name.
+        embed: Whether it is the bare canvas.
+        panel: Whether there are controls beside it.
+        poster: A data URL, where no page shows a poster.
+        view: What is shown first.
+        views: What can be looked at; None for all.
+        omit: Told of each view that WebGL 2 cannot show.
+
+    Raises:
+        CompileError: WebGL 2 cannot show the first view.
+        ValueError: There is no such view or parameter, or a value is out of range.
+    """
+    programs = Programs(seen)
+    names = [view, *(name for name in (views or seen.views) if name != view)]
+    shown = []
+    for name in names:
+        try:
+            number = programs.add(name)
+        except CompileError as error:
+            if name == view:
+                raise
+            if omit is not None:
+                omit(name, error)
+            continue
+        label = name.removeprefix("local:").replace("_", " ")
+        shown.append({"name": name, "label": label[:1].upper() + label[1:], "program": number})
+    name = title or name_of(seen)
+    return {
+        "format": FORMAT,
+        "distal": __version__,
+        "name": name,
+        "description": description_of(seen, name),
+        "size": list(size),
+        "embed": embed,
+        "panel": panel,
+        "steering": {"elevation": seen.elevation} if seen.steers else None,
+        "time": {"start": time, "duration": duration, "animated": seen.animated},
+        "parameters": [_parameter(p) for p in seen.parameters],
+        "values": start_values(seen.parameters, params or {}),
+        "views": shown,
+        "poster": poster,
+        "files": programs.files,
+        "programs": _packed(programs.made),
+        "resources": programs.resources,
+    }
+
+
+def name_of(seen: Viewable) -> str:
+    """What a person calls it: its own name, or that of its file where it has a plain one."""
+    if seen.name in _PLAIN_NAMES and seen.file is not None:
+        return seen.file.stem.replace("_", " ")
+    return seen.name.replace("_", " ")
+
+
+def description_of(seen: Viewable, name: str) -> str:
+    """One sentence for who cannot see it: the author's own, else one made of the name."""
+    text = _documentation(seen).strip()
+    if text:
+        return " ".join(text.split("\n\n")[0].split())
+    return f"{name}: a picture drawn live."
+
+
+def _documentation(seen: Viewable) -> str:
+    """The docstring of an image's function, else that of the file it stands in."""
+    image = seen.image(COLOR)
+    if isinstance(image, Image) and image.python_function.__doc__:
+        return image.python_function.__doc__
+    if seen.file is None:
+        return ""
+    try:
+        return ast.get_docstring(ast.parse(seen.file.read_text(encoding="utf-8"))) or ""
+    except (OSError, ValueError, SyntaxError):  # edited or gone since it was loaded
+        return ""
+
+
+def start_values(parameters: Iterable[Parameter], params: Mapping[str, Any]) -> dict[str, Any]:
+    """The values that are not the defaults, by name.
+
+    Raises:
+        ValueError: There is no such parameter, or a value is out of range.
+        TypeError: A value is of another kind.
+    """
+    known = {key: p for p in parameters for key in (p.label, p.name)}
+    values = {}
+    for key, value in params.items():
+        if key not in known:
+            names = ", ".join(dict.fromkeys(p.name for p in known.values())) or "none"
+            raise ValueError(f"there is no parameter '{key:.60}'; parameters: {names}")
+        checked = known[key].check(value)
+        if checked != known[key].default:
+            values[known[key].name] = _plain(checked)
+    return values
+
+
+def _parameter(parameter: Parameter) -> dict[str, Any]:
+    return {
+        "name": parameter.name,
+        "default": _plain(parameter.default),
+        **{key: _plain(value) for key, value in parameter.interface},
+    }
+
+
+def _plain(value: Any) -> Any:
+    return [_plain(v) for v in value] if isinstance(value, tuple | list) else value
+
+
+def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
+    """The programs as they are, or deflated where that is smaller.
+
+    Deflated field by field: programs of one scene are much alike, and deflate sees no further back
+    than 32 kB. Ten views of the bunny take half as much as program by program.
+    """
+    plain = json.dumps(programs, separators=(",", ":"))
+    columns = {key: [program[key] for program in programs] for key in programs[0]}
+    text = json.dumps(columns, separators=(",", ":"))
+    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
+    packed = base64.b64encode(press.compress(text.encode()) + press.flush()).decode("ascii")
+    if len(packed) < len(plain):
+        return {"encoding": "deflate-raw", "data": packed}
+    return {"encoding": "plain", "data": programs}
+
+
+class Programs:
+    """The programs of a scene's views; what they share is there once.
+
+    Attributes:
+        made: The programs.
+        files: The author's files, without their folders.
+        resources: Textures and buffers by name.
+    """
+
+    def __init__(self, seen: Viewable) -> None:
+        self._seen = seen
+        self.made: list[dict[str, Any]] = []
+        self.files: list[str] = []
+        self.resources: dict[str, Any] = {}
+        self._names: dict[tuple[int, str], str] = {}  # resource -> its name in all programs
+
+    def add(self, view: str) -> int:
+        """The number of a view's program.
+
+        Raises:
+            CompileError: WebGL 2 cannot show it.
+            LoadError: The data of a texture cannot be read.
+        """
+        image = self._seen.image(view, steered=self._seen.steers, encoded=True)
+        artifact, module = _compiled(image)
+        program = self._program(artifact, module)
+        if program not in self.made:
+            self.made.append(program)
+        return self.made.index(program)
+
+    def _program(self, artifact: Artifact, module: Module) -> dict[str, Any]:
+        assert artifact.vertex is not None
+        told = artifact.interface
+        names = {r.name: self._resource(r.name, r.source, r.type) for r in module.resources}
+        fragment, lines = self._lean(artifact.text, artifact.lines)
+        vertex, vertex_lines = self._lean(artifact.vertex, artifact.vertex_lines)
+        return {
+            "vertex": vertex,
+            "fragment": fragment,
+            "uniforms": [_uniform(entry) for entry in told["uniforms"]],
+            "textures": [
+                {key: entry[key] for key in ("uniform", "type", "wrap", "filter")}
+                | {"name": names[entry["name"]]}
+                for entry in told["textures"]
+            ],
+            "buffers": [
+                {key: entry[key] for key in ("uniform", "count", "element")}
+                | {"name": names[entry["name"]]}
+                for entry in told["buffers"]
+            ],
+            "lines": lines,
+            "vertex_lines": vertex_lines,
+        }
+
+    def _resource(self, name: str, source: Any, type: Any) -> str:
+        """Its name in the payload: programs of two views may call two textures alike."""
+        key = (id(source), str(type))
+        if key not in self._names:
+            assert isinstance(type, Texture | Buffer)
+            free, count = name, 2
+            while free in self.resources:
+                free, count = f"{name}_{count}", count + 1
+            self._names[key] = free
+            self.resources[free] = resource(source, type)
+        return self._names[key]
+
+    def _lean(self, text: str, places: Places) -> tuple[str, list[list[int]]]:
+        """A text without comments, empty lines and indentation, and where its lines come from."""
+        kept: list[str] = []
+        origins: list[list[int]] = []
+        for line, place in zip(text.splitlines(), places, strict=True):
+            bare = _COMMENT.sub("", line).strip()
+            if not bare:
+                continue
+            kept.append(bare)
+            if place is None or _is_library(place[0]):
+                continue
+            number, origin = len(kept), [self._file(place[0]), place[1]]
+            if origins and origins[-1][1:] == [number - 1, *origin]:
+                origins[-1][1] = number
+            else:
+                origins.append([number, number, *origin])
+        return "\n".join(kept) + "\n", origins
+
+    def _file(self, path: str) -> int:
+        name = PurePath(path).name
+        if name not in self.files:
+            self.files.append(name)
+        return self.files.index(name)
+
+
+def _is_library(file: str) -> bool:
+    """Whether a line is ours: nobody mends it there, and such lines are half of a payload."""
+    path = PurePath(file)
+    return path.is_relative_to(PACKAGE) and not path.is_relative_to(PACKAGE / "gallery")
+
+
+def _compiled(image: Func | Composed) -> tuple[Artifact, Module]:
+    """The text of a picture, and the module that knows its textures' data."""
+    target = get_target(TARGET)
+    module = lower(image.text() if isinstance(image, Composed) else image)
+    return emit(run_passes(module, target), target), module
+
+
+def _uniform(entry: dict[str, Any]) -> dict[str, Any]:
+    """A uniform by the name that a person sets it by."""
+    return {
+        "name": entry.get("parameter", entry["name"]),
+        "uniform": entry["uniform"],
+        "type": entry["type"],
+        "origin": entry["origin"],
+        "default": entry["default"],
+    }

@@ -1,0 +1,75 @@
+"""The data of textures and buffers as a page carries it.
+
+What flows in: what the author declared. What flows out: JSON with the numbers in base64, in the
+narrowest format that shows the same picture. Knows no page and no program.
+"""
+
+from __future__ import annotations
+
+import base64
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.devices.resources import load
+from distal.ir.types import Buffer, Texture, TextureShape
+
+LEVELS: Final = 256
+
+
+def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
+    """One resource of a payload.
+
+    Raises:
+        LoadError: A file cannot be read, or the data has not the shape of such a resource.
+    """
+    data = load(source, type)
+    return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
+
+
+def _buffer(data: NDArray[Any]) -> dict[str, Any]:
+    kind = {"f": "float32", "i": "int32", "u": "uint32"}[data.dtype.kind]
+    components = 1 if data.ndim == 1 else data.shape[1]
+    return {
+        "type": "buffer",
+        "size": [len(data)],
+        "components": components,
+        "format": kind,
+        "data": _base64(data.astype(f"<{kind[0]}4")),
+    }
+
+
+def _texture(texels: NDArray[np.float32], type: Texture) -> dict[str, Any]:
+    if bool((texels[..., 3] == 1.0).all()):
+        texels = texels[..., :3]  # a texture without alpha reads as 1 there
+    name, stored = _narrowest(texels)
+    height, width = texels.shape[-3:-1]
+    deep = type.shape is TextureShape.VOLUME
+    return {
+        "type": str(type),
+        "size": [width, height, texels.shape[0]] if deep else [width, height],
+        "components": texels.shape[-1],
+        "format": name,
+        "data": _base64(stored),
+    }
+
+
+def _narrowest(texels: NDArray[np.float32]) -> tuple[str, NDArray[Any]]:
+    """The format that loses nothing one can see.
+
+    Bytes where the numbers are bytes. Half floats, of 11 bits, where there are no more levels than
+    a byte has: a picture of bytes decoded to light. Else single floats: heights and volumes are
+    data, and normals of rounded ones show steps.
+    """
+    scaled = texels * np.float32(255.0)
+    whole = np.rint(scaled)
+    if texels.min() >= 0.0 and texels.max() <= 1.0 and float(np.abs(scaled - whole).max()) < 1e-3:
+        return "rgba8", whole.astype(np.uint8)
+    if float(np.abs(texels).max()) < 65504.0 and len(np.unique(texels)) <= LEVELS:
+        return "float16", texels.astype("<f2")
+    return "float32", texels.astype("<f4")
+
+
+def _base64(data: NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(data).tobytes()).decode("ascii")

@@ -1,0 +1,174 @@
+"""A picture as a shader for another place, with a comment that says how to use it there.
+
+What flows in: something to be seen, or a text of the compiler's. What flows out: files. The
+comment's part needs the standard library only: ``distal compile`` uses it too.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from distal.backends import emit, get_target
+from distal.backends.base import Artifact
+from distal.backends.module_text import comment_text
+from distal.compiler import run_passes
+from distal.film.replacement import replacement
+from distal.frontend import lower
+from distal.ir.nodes import EntryKind, Module, Origin
+from distal.lang.composed import Composed
+from distal.version import __version__
+
+if TYPE_CHECKING:
+    from distal.export.registry import Exported
+    from distal.scene.viewable import Viewable
+
+PLACES: Final = {
+    "shadertoy": (
+        "Shadertoy",
+        "Paste all of this into the Image tab of a new shader on shadertoy.com.",
+    ),
+    "glslcanvas": (
+        "glslCanvas",
+        "Paste all of this into editor.thebookofshaders.com, or give the file to a canvas of class "
+        '"glslCanvas" as data-fragment-url.',
+    ),
+    "isf": (
+        "ISF 2, the Interactive Shader Format",
+        "Put this file into your host's folder for ISF generators; its controls appear there.",
+    ),
+    "glsl-es300": (
+        "WebGL 2",
+        "The fragment stage; the file .vert beside it is its vertex stage. Draw 3 vertices as "
+        "triangles, without buffers.",
+    ),
+    "glsl-330": (
+        "OpenGL 3.3",
+        "The fragment stage; the file .vert beside it is its vertex stage. Draw 3 vertices as "
+        "triangles, without buffers.",
+    ),
+    "glsl-es100": (
+        "WebGL 1",
+        "The fragment stage; draw anything that covers the picture. Set every uniform.",
+    ),
+    "wgsl": (
+        "WebGPU",
+        "vertex_main and fragment_main; draw 3 vertices as triangles. The file .json beside it "
+        "tells bindings and offsets.",
+    ),
+    "wgsl-compute": (
+        "WebGPU",
+        "compute_main, in groups of 8 x 8 pixels. The file .json beside it tells bindings and "
+        "offsets.",
+    ),
+}
+_CONSTANT: Final = ("shadertoy", "glslcanvas")
+WIDTH: Final = 96
+
+
+def with_header(artifact: Artifact, target: str, file: str) -> str:
+    """A text under a comment that says whose it is and how to use it.
+
+    Args:
+        artifact: The compiler's.
+        target: For which place.
+        file: The name of the author's file, without its folder; may be empty.
+    """
+    if target not in PLACES:
+        return artifact.text
+    place, use = PLACES[target]
+    whose = comment_text(file).replace("*/", "* /") or "A scene"
+    lines = [f"{whose}, written by distal {__version__} for {place}."]
+    if artifact.interface.get("kind") == EntryKind.FUNCTION.value:
+        use = "The functions alone: call the last one from a shader of your own."
+    lines += _broken(use)
+    uniforms = artifact.interface.get("uniforms", ())
+    parameters = [u for u in uniforms if u["origin"] == Origin.PARAMETER.value]
+    if parameters:
+        kind = "constants below, to be edited" if target in _CONSTANT else "inputs"
+        if target not in (*_CONSTANT, "isf"):
+            kind = "uniforms"
+        names = ", ".join(_spelled(u["uniform"]) for u in parameters)
+        lines += _broken(f"Parameters ({kind}): {names}.")
+    for texture in artifact.interface["textures"] if target == "glslcanvas" else ():
+        lines.append(f"{texture['uniform']}: {comment_text(texture['name'])}, by data-textures.")
+    comment = "\n".join(("/*", *(f" * {line}" for line in lines), " */", ""))
+    return _placed(artifact.text, comment)
+
+
+def _placed(text: str, comment: str) -> str:
+    """Before the text; but a version, or the JSON of ISF, stays the first thing in the file."""
+    if text.startswith("#version"):
+        first, _, rest = text.partition("\n")
+        return f"{first}\n{comment}{rest}"
+    if text.startswith("/*{"):
+        end = text.index("}*/") + len("}*/\n")
+        return f"{text[:end]}\n{comment}{text[end:]}"
+    return f"{comment}\n{text}"
+
+
+def _spelled(name: str) -> str:
+    return name.partition(".")[0]
+
+
+def _broken(text: str) -> list[str]:
+    lines = [""]
+    for word in text.split(" "):
+        if lines[-1] and len(lines[-1]) + len(word) >= WIDTH:
+            lines.append("")
+        lines[-1] += f" {word}" if lines[-1] else word
+    return lines
+
+
+def write(
+    seen: Viewable,
+    path: Path,
+    target: str,
+    *,
+    params: Mapping[str, Any] | None = None,
+    view: str = "color",
+    time: float = 0.0,
+) -> Exported:
+    """Write the text, what it needs beside it, and its interface where a host has to be told."""
+    from distal.export.payload import start_values  # noqa: PLC0415 (needs NumPy)
+    from distal.export.registry import Exported  # noqa: PLC0415 (imports this module by name)
+
+    values = start_values(seen.parameters, params or {})
+    image = seen.image(view, encoded=True)
+    module = lower(image.text() if isinstance(image, Composed) else image)
+    description = get_target(target)
+    artifact = emit(run_passes(_set(module, values), description), description)
+    name = seen.file.name if seen.file is not None else ""
+    beside = write_files(path, artifact, with_header(artifact, target, name))
+    return Exported(path, {}, beside)
+
+
+def write_files(path: Path, artifact: Artifact, text: str) -> tuple[Path, ...]:
+    """Write a text; beside it what a program that runs it reads. Returns what stands beside."""
+    files = {}
+    if artifact.interface.get("target") not in ("shadertoy", "glslcanvas", "isf"):
+        files[path.with_suffix(".json")] = json.dumps(artifact.interface, indent=2)
+    if artifact.vertex is not None:
+        files[path.with_suffix(".vert")] = artifact.vertex
+    for place, content in {**files, path: text}.items():
+        with replacement(place) as file:
+            file.write(content.rstrip("\n").encode() + b"\n")
+    return tuple(files)
+
+
+def _set(module: Module, values: Mapping[str, Any]) -> Module:
+    """The module with these as the defaults of its parameters."""
+    uniforms = tuple(
+        replace(u, default=_tuple(values[u.name]))
+        if u.origin is Origin.PARAMETER and u.name in values
+        else u
+        for u in module.uniforms
+    )
+    return replace(module, uniforms=uniforms)
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,263 @@
+"""What fields and operators promise, beside the functions themselves.
+
+What flows in: ``@func`` functions and the promises made about them. What flows out: ``Primitive``
+and ``Operator`` rows, kept in the order of their declaration. Knows neither the object model that
+reads them nor how anything is rendered.
+
+Functions are joined by the names of their parameters. Some names have a fixed meaning:
+``p`` the point, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a function of a point,
+``cell`` the index of the repetition the point lies in, ``slope``/``slope_a``/``slope_b`` bounds on
+|gradient|, ``bounds``/``bounds_a``/``bounds_b`` boxes. Every other parameter is a number of the
+shape, or a choice (int, bool) fixed when it is compiled.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, Final, TypeAlias, TypeVar
+
+from distal.lang import func, struct, vec2, vec3
+from distal.lang.functions import Func
+
+# Stands for infinity in boxes: finite, so that it can be added and turned. A side beyond a
+# thousandth of it is infinite.
+UNBOUNDED: Final = 1e18
+ENDLESS: Final = UNBOUNDED / 1000.0
+
+
+@struct
+class Bounds:
+    """A box that holds the whole surface and the inside."""
+
+    low: vec3
+    high: vec3
+
+
+@struct
+class Bounds2:
+    """A rectangle that holds the whole outline and the inside."""
+
+    low: vec2
+    high: vec2
+
+
+@struct
+class Site:
+    """A place in a repetition: the point in its cell's own space, and which cell."""
+
+    p: vec3
+    cell: vec3
+
+
+@struct
+class Site2:
+    """A place in a repetition in the plane; ``cell`` has its third number 0."""
+
+    p: vec2
+    cell: vec3
+
+
+class Limit(Enum):
+    """What a number must be; the value finishes the sentence "radius must be …"."""
+
+    POSITIVE = "above 0"
+    NOT_NEGATIVE = "0 or more"
+    NOT_ZERO = "other than 0"
+    UNIT = "a vector of length 1"
+    FRACTION = "between 0 and 1"
+    ANY = "finite"
+
+
+class Claim(Enum):
+    """What a field may promise besides a bound on its slope.
+
+    EXACT_OUTSIDE: outside, the value is the distance to the surface. EXACT_INSIDE: inside, it is
+    minus that. LOWER_BOUND: outside, it is never more than the distance.
+    """
+
+    EXACT_OUTSIDE = "exact outside"
+    EXACT_INSIDE = "exact inside"
+    LOWER_BOUND = "lower bound"
+
+
+EXACT: Final = frozenset(Claim)  # all three
+EXACT_OUTSIDE: Final = frozenset({Claim.EXACT_OUTSIDE, Claim.LOWER_BOUND})
+LOWER_BOUND: Final = frozenset({Claim.LOWER_BOUND})
+NOTHING: Final[frozenset[Claim]] = frozenset()  # the slope's bound alone
+
+# Returns a reason why numbers do not go together, or None. Called with plain floats by name.
+Requirement: TypeAlias = "Callable[..., str | None]"
+# A number, or a @func of some of the shape's numbers (and slope, bounds) that gives a float.
+Rule: TypeAlias = "float | Func"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Primitive:
+    """A shape of the library.
+
+    Attributes:
+        name: The class's name in the object model: "CappedTorus".
+        distance: ``(p, *numbers) -> float``; the point's type tells solid or flat. Defaults of its
+            parameters are the shape's defaults; its docstring is the shape's.
+        claims: What it promises.
+        slope: Bound on |gradient| everywhere; a number, or a function of the shape's numbers.
+        bounds: ``(*numbers) -> Bounds`` (``Bounds2``), or None for a shape without end.
+        limits: What each number must be; a number not named is any finite one.
+        requires: Returns why numbers do not go together, or None.
+        signed: False for surfaces and curves without an inside.
+        estimate: True for fractals and the like, whose slope is an estimate.
+        tier: 1, 2 or 3, the catalogue's.
+    """
+
+    name: str
+    distance: Func
+    claims: frozenset[Claim]
+    slope: Rule = 1.0
+    bounds: Func | None = None
+    limits: Mapping[str, Limit] = field(default_factory=dict)
+    requires: Requirement | None = None
+    signed: bool = True
+    estimate: bool = False
+    tier: int = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Operator:
+    """A way to make a shape of one or two others.
+
+    One of four kinds, by what is given:
+
+    * ``point`` and/or ``finish``: the child is asked at ``point(p, …)`` (a vec3, a vec2 or a
+      ``Site``), and its value ``d`` goes through ``finish(d[, p], …) -> float``. ``p`` is the
+      operator's own point, before ``point`` moved it.
+    * ``combine(a, b[, p], …) -> float``: of two children; ``mix`` tells with the same parameters
+      how much of b's material shows, 0 to 1 (None: whichever child is nearer by ``b < a``).
+    * ``around(field, p, …) -> float``: asks the child at several points. ``site(field, p, …)``
+      gives the place (vec3 or ``Site``) whose material shows at p.
+
+    All of these may also ask for what the rules ask for, by the same names: the ``bounds`` and the
+    ``slope`` of the child (``bounds_a``, ``slope_b`` …), computed once per frame.
+
+    Attributes:
+        name: What messages call it: "twist".
+        keeps: The claims that survive when all children have them. The others are lost (a slope of
+            at most 1 makes a lower bound anyway, whoever claims it).
+        keeps_exact: The claims that hold, besides those, when all children are exact inside and
+            outside: a difference is exact inside only if what it takes away is exact outside.
+        slope: None where the slope stays (of two: the larger); a number multiplies it; a function
+            of ``slope`` (``slope_a``, ``slope_b``), ``bounds`` and numbers gives it.
+        bounds: None where the box stays (of two: the box around both); else a function of
+            ``bounds`` (``bounds_a``, ``bounds_b``) and numbers; ``no_bounds`` for no box.
+        limits: As for a primitive.
+        requires: As for a primitive.
+        needs: What the children must be for a slope to exist; finishes the sentence "twist needs
+            …", said when the slope's rule answers ``UNBOUNDED``.
+    """
+
+    name: str
+    point: Func | None = None
+    finish: Func | None = None
+    combine: Func | None = None
+    mix: Func | None = None
+    around: Func | None = None
+    site: Func | None = None
+    keeps: frozenset[Claim] = NOTHING
+    slope: Rule | None = None
+    bounds: Func | None = None
+    limits: Mapping[str, Limit] = field(default_factory=dict)
+    requires: Requirement | None = None
+    keeps_exact: frozenset[Claim] = NOTHING
+    needs: str = "shapes with a bounded slope"
+
+    def lies_flat(self, child: bool) -> bool:
+        """Whether the result lies in the plane: where the operator's own point does.
+
+        Args:
+            child: Whether what it works on does, which tells where no point is asked for.
+        """
+        for asked in (self.point, self.around, self.finish, self.combine):
+            annotation = asked and asked.python_function.__annotations__.get("p")
+            if annotation is not None:
+                return str(annotation) == "vec2"
+        return child
+
+    @property
+    def repeats(self) -> bool:
+        """Whether what it works on is told its cell."""
+        places = [f.python_function for f in (self.point, self.site) if f is not None]
+        return any(str(f.__annotations__["return"]) in ("Site", "Site2") for f in places)
+
+    def takes_flat(self, lies: bool) -> bool:
+        """Whether it works on flat shapes, where its result lies in the plane or not."""
+        if self.around is not None:
+            field = str(self.around.python_function.__annotations__["field"])
+            return field == "Field2" or "[vec2]" in field
+        if self.point is not None:
+            return str(self.point.python_function.__annotations__["return"]) in ("vec2", "Site2")
+        return lies
+
+
+PRIMITIVES: Final[dict[str, Primitive]] = {}
+OPERATORS: Final[dict[str, Operator]] = {}
+
+F = TypeVar("F", bound=Func)
+
+
+def ended(value: float) -> float:
+    """A computed bound as a number, infinite where it is none."""
+    return float(value) if abs(value) < ENDLESS else math.copysign(math.inf, value)
+
+
+def primitive(
+    name: str,
+    claims: frozenset[Claim],
+    *,
+    slope: Rule = 1.0,
+    bounds: Func | None = None,
+    limits: Mapping[str, Limit] | None = None,
+    requires: Requirement | None = None,
+    signed: bool = True,
+    estimate: bool = False,
+    tier: int = 1,
+) -> Callable[[F], F]:
+    """Declare the ``@func`` below as a shape of the library; see ``Primitive``."""
+
+    def declare(distance: F) -> F:
+        assert name not in PRIMITIVES, f"two shapes are called {name}"
+        PRIMITIVES[name] = Primitive(
+            name,
+            distance,
+            claims,
+            slope,
+            bounds,
+            dict(limits or {}),
+            requires,
+            signed,
+            estimate,
+            tier,
+        )
+        return distance
+
+    return declare
+
+
+def operator(name: str, **declared: Any) -> Operator:
+    """Declare an operator; see ``Operator``."""
+    assert name not in OPERATORS, f"two operators are called {name}"
+    OPERATORS[name] = Operator(name, **declared)
+    return OPERATORS[name]
+
+
+@func
+def no_bounds(bounds: Bounds) -> Bounds:
+    """The box of an operator whose result has no end."""
+    return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED))
+
+
+@func
+def no_bounds2(bounds: Bounds2) -> Bounds2:
+    """The rectangle of an operator whose result has no end."""
+    return Bounds2(vec2(-UNBOUNDED), vec2(UNBOUNDED))

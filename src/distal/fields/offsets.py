@@ -1,0 +1,147 @@
+"""A shape changed by its value alone, and cut by a plane: rounding, offsets, shells.
+
+What flows in: a distance. What flows out: the distance of the new surface, its box, its claims.
+Knows no second shape.
+
+A box that grows by a distance holds the grown surface of every shape whose value outside its own
+box is at least the distance to the box. That is so for exact shapes, and for what unions, cuts,
+blends, offsets and rigid motions make of them; other operators see to it themselves (``deform``).
+A lower bound is not kept by moving the surface: it says nothing of the levels inside and near it.
+"""
+
+from __future__ import annotations
+
+from distal.fields.claims import EXACT_OUTSIDE, Claim, Limit, operator
+from distal.fields.extents import Boxes, at_least_one, grown
+from distal.lang import abs, dot, func, max, vec2, vec3
+
+INSIDE_AND_BOUND = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
+INSIDE_ALONE = frozenset({Claim.EXACT_INSIDE})
+OUTSIDE_ALONE = frozenset({Claim.EXACT_OUTSIDE})
+
+
+@func
+def rounded(d: float, radius: float) -> float:
+    """The shape grown by ``radius``: every edge becomes round, and it is larger by that."""
+    return d - radius
+
+
+@func
+def rounded_bounds(bounds: Boxes, radius: float) -> Boxes:
+    """The box grown by the radius."""
+    return grown(bounds, radius)
+
+
+@func
+def offset_value(d: float, distance: float) -> float:
+    """The surface moved by ``distance``, outward where it is above 0."""
+    return d - distance
+
+
+@func
+def offset_bounds(bounds: Boxes, distance: float) -> Boxes:
+    """The box grown by what the surface moves out; it is not made smaller."""
+    return grown(bounds, max(distance, 0.0))
+
+
+@func
+def eroded(d: float, distance: float) -> float:
+    """The shape without everything within ``distance`` of its surface."""
+    return d + distance
+
+
+@func
+def shell_inner(d: float, thickness: float) -> float:
+    """A hollow shape; its wall lies inside the surface."""
+    return max(d, -d - thickness)
+
+
+@func
+def shell_centre(d: float, thickness: float) -> float:
+    """A hollow shape; the surface is the middle of its wall."""
+    return abs(d) - 0.5 * thickness
+
+
+@func
+def shell_outer(d: float, thickness: float) -> float:
+    """A hollow shape; its wall lies outside the surface."""
+    return max(d - thickness, -d)
+
+
+@func
+def shell_centre_bounds(bounds: Boxes, thickness: float) -> Boxes:
+    """The box grown by half the wall."""
+    return grown(bounds, 0.5 * thickness)
+
+
+@func
+def shell_outer_bounds(bounds: Boxes, thickness: float) -> Boxes:
+    """The box grown by the wall."""
+    return grown(bounds, thickness)
+
+
+@func
+def kept_below(d: float, p: vec3, normal: vec3, offset: float) -> float:
+    """What lies behind a plane: the half that its normal points away from."""
+    return max(d, dot(p, normal) - offset)
+
+
+@func
+def kept_above(d: float, p: vec3, normal: vec3, offset: float) -> float:
+    """What lies before a plane: the half that its normal points into."""
+    return max(d, offset - dot(p, normal))
+
+
+@func
+def kept_below_flat(d: float, p: vec2, normal: vec2, offset: float) -> float:
+    """What lies behind a line: the half that its normal points away from."""
+    return max(d, dot(p, normal) - offset)
+
+
+@func
+def kept_above_flat(d: float, p: vec2, normal: vec2, offset: float) -> float:
+    """What lies before a line: the half that its normal points into."""
+    return max(d, offset - dot(p, normal))
+
+
+ROUND = operator(
+    "round",
+    finish=rounded,
+    keeps=OUTSIDE_ALONE,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=rounded_bounds,
+    limits={"radius": Limit.NOT_NEGATIVE},
+)
+OFFSET = operator("offset", finish=offset_value, bounds=offset_bounds)
+DILATE = operator(
+    "dilate",
+    finish=offset_value,
+    keeps=OUTSIDE_ALONE,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=offset_bounds,
+    limits={"distance": Limit.NOT_NEGATIVE},
+)
+ERODE = operator(
+    "erode", finish=eroded, keeps=INSIDE_ALONE, limits={"distance": Limit.NOT_NEGATIVE}
+)
+THICK = {"thickness": Limit.POSITIVE}
+SHELL_INNER = operator("shell inner", finish=shell_inner, keeps_exact=EXACT_OUTSIDE, limits=THICK)
+SHELL_CENTRE = operator(
+    "shell centre",
+    finish=shell_centre,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=shell_centre_bounds,
+    limits=THICK,
+)
+SHELL_OUTER = operator(
+    "shell outer",
+    finish=shell_outer,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=shell_outer_bounds,
+    limits=THICK,
+)
+CUT = {"keeps": INSIDE_AND_BOUND, "slope": at_least_one, "limits": {"normal": Limit.UNIT}}
+SPLIT_BELOW = operator("split below", finish=kept_below, **CUT)
+SPLIT_ABOVE = operator("split above", finish=kept_above, **CUT)
+SPLIT_BELOW_FLAT = operator("flat split below", finish=kept_below_flat, **CUT)
+SPLIT_ABOVE_FLAT = operator("flat split above", finish=kept_above_flat, **CUT)

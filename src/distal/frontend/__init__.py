@@ -1,0 +1,21 @@
+"""From a decorated Python function to typed IR, with every mistake shown at the author's line."""
+
+from distal.frontend.assembly import Assembly
+from distal.frontend.lower import (
+    SceneCode,
+    has_overload,
+    lower,
+    lower_captured,
+    lower_overload,
+)
+from distal.frontend.objects import type_of_value
+
+__all__ = [
+    "Assembly",
+    "SceneCode",
+    "has_overload",
+    "lower",
+    "lower_captured",
+    "lower_overload",
+    "type_of_value",
+]

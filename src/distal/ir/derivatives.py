@@ -1,0 +1,372 @@
+"""The derivative rules of the table's rows.
+
+What flows in: a ``Builtin`` and, for one direction, the tangent of each argument (None where an
+argument does not change). What flows out: the tangent of the result, an expression over the same
+arguments. The builtin itself is its value, for rules that need it.
+
+Where a function has no derivative one is settled: 0 for length, abs and sqrt at 0 and wherever the
+true slope is infinite; a tie of min or max follows the first argument. No rule gives NaN at a
+point where the function itself is a number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TypeAlias
+
+from distal.ir.nodes import (
+    BinaryOp,
+    Builtin,
+    CompareOp,
+    Compose,
+    Const,
+    Expr,
+    Index,
+    Unary,
+    UnaryOp,
+)
+from distal.ir.tangents import (
+    Lanes,
+    Tangent,
+    binary,
+    compared,
+    inner,
+    matrix_product,
+    minus,
+    negative,
+    number,
+    over,
+    picked,
+    plus,
+    product,
+    scaled,
+    splatted,
+    where_positive,
+    zero,
+)
+from distal.ir.types import FLOAT, INT, Kind, Matrix, Type, Vector
+
+Rule: TypeAlias = Callable[[Builtin, Lanes], Tangent]
+
+
+def _call(name: str, *args: Expr, type: Type | None = None) -> Expr:
+    return Builtin(name, args, args[0].type if type is None else type)
+
+
+def _difference(lhs: Expr, rhs: Expr) -> Expr:
+    return binary(BinaryOp.SUB, lhs, rhs)
+
+
+def _sum(lhs: Expr, rhs: Expr) -> Expr:
+    return binary(BinaryOp.ADD, lhs, rhs)
+
+
+def _quotient(lhs: Expr, rhs: Expr) -> Expr:
+    return binary(BinaryOp.DIV, lhs, rhs)
+
+
+def _negated(e: Expr) -> Expr:
+    return Unary(UnaryOp.NEGATE, e, e.type)
+
+
+def _less(lhs: Expr, rhs: Expr) -> Expr:
+    return compared(CompareOp.LT, lhs, rhs)
+
+
+def _dot(lhs: Expr, rhs: Expr) -> Expr:
+    return _call("dot", lhs, rhs, type=FLOAT)
+
+
+def constant(e: Builtin, d: Lanes) -> Tangent:
+    """Steps, and what is not a float: no change."""
+    return None
+
+
+# One argument, component by component.
+
+
+def absolute(e: Builtin, d: Lanes) -> Tangent:
+    """Abs: the sign, 0 at 0."""
+    return scaled(d[0], _call("sign", e.args[0]))
+
+
+def same(e: Builtin, d: Lanes) -> Tangent:
+    """Fract: x less a step."""
+    return d[0]
+
+
+def to_radians(e: Builtin, d: Lanes) -> Tangent:
+    """A constant factor."""
+    return scaled(d[0], number(math.pi / 180.0, e.type))
+
+
+def to_degrees(e: Builtin, d: Lanes) -> Tangent:
+    """A constant factor."""
+    return scaled(d[0], number(180.0 / math.pi, e.type))
+
+
+def square_root(e: Builtin, d: Lanes) -> Tangent:
+    """1 / (2 sqrt(x)); 0 at 0."""
+    return scaled(d[0], where_positive(e.args[0], _quotient(number(0.5, e.type), e)))
+
+
+def inverse_square_root(e: Builtin, d: Lanes) -> Tangent:
+    """-1 / (2 x sqrt(x))."""
+    x = e.args[0]
+    return scaled(d[0], where_positive(x, _quotient(product(number(-0.5, e.type), e), x)))
+
+
+def exponential(e: Builtin, d: Lanes) -> Tangent:
+    """Itself."""
+    return scaled(d[0], e)
+
+
+def exponential_base_2(e: Builtin, d: Lanes) -> Tangent:
+    """Itself times log 2."""
+    return scaled(d[0], product(e, number(math.log(2.0), e.type)))
+
+
+def logarithm(e: Builtin, d: Lanes) -> Tangent:
+    """1 / x."""
+    return over(d[0], e.args[0])
+
+
+def logarithm_base_2(e: Builtin, d: Lanes) -> Tangent:
+    """1 / (x log 2)."""
+    return over(d[0], product(e.args[0], number(math.log(2.0), e.type)))
+
+
+def sine(e: Builtin, d: Lanes) -> Tangent:
+    """Cosine."""
+    return scaled(d[0], _call("cos", e.args[0]))
+
+
+def cosine(e: Builtin, d: Lanes) -> Tangent:
+    """Minus sine."""
+    return scaled(d[0], _negated(_call("sin", e.args[0])))
+
+
+def tangent(e: Builtin, d: Lanes) -> Tangent:
+    """1 + tan^2."""
+    return scaled(d[0], _sum(number(1.0, e.type), product(e, e)))
+
+
+def _arc_slope(x: Expr) -> Expr:
+    rest = _difference(number(1.0, x.type), product(x, x))
+    return where_positive(rest, _call("inversesqrt", rest))
+
+
+def arc_sine(e: Builtin, d: Lanes) -> Tangent:
+    """1 / sqrt(1 - x^2); 0 at the ends."""
+    return scaled(d[0], _arc_slope(e.args[0]))
+
+
+def arc_cosine(e: Builtin, d: Lanes) -> Tangent:
+    """-1 / sqrt(1 - x^2); 0 at the ends."""
+    return scaled(d[0], _negated(_arc_slope(e.args[0])))
+
+
+def arc_tangent(e: Builtin, d: Lanes) -> Tangent:
+    """1 / (1 + x^2)."""
+    x = e.args[0]
+    return over(d[0], _sum(number(1.0, e.type), product(x, x)))
+
+
+def hyperbolic_sine(e: Builtin, d: Lanes) -> Tangent:
+    """Hyperbolic cosine."""
+    return scaled(d[0], _call("cosh", e.args[0]))
+
+
+def hyperbolic_cosine(e: Builtin, d: Lanes) -> Tangent:
+    """Hyperbolic sine."""
+    return scaled(d[0], _call("sinh", e.args[0]))
+
+
+def hyperbolic_tangent(e: Builtin, d: Lanes) -> Tangent:
+    """1 - tanh^2."""
+    return scaled(d[0], _difference(number(1.0, e.type), product(e, e)))
+
+
+# Several arguments, component by component.
+
+
+def minimum(e: Builtin, d: Lanes) -> Tangent:
+    """The smaller one's; a tie follows the first."""
+    a, b = e.args
+    return picked(_less(b, a), d[1], d[0], e.type)
+
+
+def maximum(e: Builtin, d: Lanes) -> Tangent:
+    """The larger one's; a tie follows the first."""
+    a, b = e.args
+    return picked(_less(a, b), d[1], d[0], e.type)
+
+
+def clamped(e: Builtin, d: Lanes) -> Tangent:
+    """Of min(max(x, low), high)."""
+    x, low, high = e.args
+    raised = picked(_less(x, low), d[1], d[0], e.type)
+    return picked(_less(high, _call("max", x, low)), d[2], raised, e.type)
+
+
+def remainder(e: Builtin, d: Lanes) -> Tangent:
+    """Of a - b * floor(a / b), floor being a step."""
+    a, b = e.args
+    return minus(d[0], scaled(d[1], _call("floor", _quotient(a, b))))
+
+
+def mixed(e: Builtin, d: Lanes) -> Tangent:
+    """Of a + (b - a) * t."""
+    a, b, t = e.args
+    across = plus(scaled(minus(d[1], d[0]), t), scaled(d[2], _difference(b, a)))
+    return plus(d[0], across)
+
+
+def smoothstepped(e: Builtin, d: Lanes) -> Tangent:
+    """6 t (1 - t) times the change of t = (x - low) / (high - low)."""
+    low, high, x = e.args
+    extent = _difference(high, low)
+    place = _quotient(_difference(x, low), extent)
+    moved = over(minus(minus(d[2], d[0]), scaled(minus(d[1], d[0]), place)), extent)
+    t = _call("clamp", place, number(0.0, e.type), number(1.0, e.type))
+    slope = product(product(number(6.0, e.type), t), _difference(number(1.0, e.type), t))
+    # Off the ramp the change of t may be infinite (low = high) and counts for nothing.
+    rising = compared(CompareOp.GT, slope, zero(e.type))
+    return picked(rising, scaled(moved, slope), None, e.type)
+
+
+def power(e: Builtin, d: Lanes) -> Tangent:
+    """Along x: y x^(y-1); along y: x^y log x; 0 for x <= 0."""
+    x, y = e.args
+    along_x = scaled(d[0], where_positive(x, _quotient(product(e, y), x)))
+    along_y = scaled(d[1], where_positive(x, product(e, _call("log", x))))
+    return plus(along_x, along_y)
+
+
+def arc_tangent_2(e: Builtin, d: Lanes) -> Tangent:
+    """(x dy - y dx) / (x^2 + y^2); 0 at the origin."""
+    y, x = e.args
+    square = _sum(product(x, x), product(y, y))
+    around = minus(scaled(d[0], x), scaled(d[1], y))
+    return scaled(around, where_positive(square, _quotient(number(1.0, e.type), square)))
+
+
+# Vectors.
+
+
+def _unit(v: Expr, length: Expr) -> tuple[Expr, Expr]:
+    """The vector ``v / length``, and 1 / length; zero for a zero vector."""
+    inverse = where_positive(length, _quotient(number(1.0, FLOAT), length))
+    return product(v, inverse), inverse
+
+
+def length(e: Builtin, d: Lanes) -> Tangent:
+    """The part of the change along v; 0 for a zero vector."""
+    direction, _ = _unit(e.args[0], e)
+    return inner(direction, d[0])
+
+
+def distance(e: Builtin, d: Lanes) -> Tangent:
+    """Of length(a - b)."""
+    direction, _ = _unit(_difference(e.args[0], e.args[1]), e)
+    return inner(direction, minus(d[0], d[1]))
+
+
+def normalized(e: Builtin, d: Lanes) -> Tangent:
+    """The part of the change across v, over its length."""
+    v = e.args[0]
+    direction, inverse = _unit(v, _call("length", v, type=FLOAT))
+    along = splatted(inner(direction, d[0]), e.type)
+    return scaled(minus(d[0], scaled(along, direction)), inverse)
+
+
+def dot(e: Builtin, d: Lanes) -> Tangent:
+    """The product rule."""
+    return plus(inner(e.args[1], d[0]), inner(e.args[0], d[1]))
+
+
+def _bilinear(e: Builtin, d: Lanes) -> Tangent:
+    first = None if d[0] is None else Builtin(e.name, (d[0], e.args[1]), e.type)
+    second = None if d[1] is None else Builtin(e.name, (e.args[0], d[1]), e.type)
+    return plus(first, second)
+
+
+def cross(e: Builtin, d: Lanes) -> Tangent:
+    """The product rule."""
+    return _bilinear(e, d)
+
+
+def reflected(e: Builtin, d: Lanes) -> Tangent:
+    """Of i - 2 dot(n, i) n."""
+    incident, normal = e.args
+    facing = product(number(2.0, FLOAT), _dot(normal, incident))
+    turned = scaled(plus(inner(incident, d[1]), inner(normal, d[0])), number(2.0, FLOAT))
+    along = plus(scaled(splatted(turned, e.type), normal), scaled(d[1], facing))
+    return minus(d[0], along)
+
+
+def refracted(e: Builtin, d: Lanes) -> Tangent:
+    """Of eta i - (eta c + sqrt(k)) n, c = dot(n, i), k = 1 - eta^2 (1 - c^2); 0 for k < 0."""
+    incident, normal, eta = e.args
+    facing = _dot(normal, incident)
+    d_facing = plus(inner(incident, d[1]), inner(normal, d[0]))
+    across = _difference(number(1.0, FLOAT), product(facing, facing))
+    k = _difference(number(1.0, FLOAT), product(product(eta, eta), across))
+    d_k = scaled(
+        minus(
+            scaled(d_facing, product(product(eta, eta), facing)),
+            scaled(d[2], product(eta, across)),
+        ),
+        number(2.0, FLOAT),
+    )
+    root = _call("sqrt", k)
+    d_root = scaled(d_k, where_positive(k, _quotient(number(0.5, FLOAT), root)))
+    along = _sum(product(eta, facing), root)
+    d_along = plus(plus(scaled(d[2], facing), scaled(d_facing, eta)), d_root)
+    bent = plus(scaled(splatted(d[2], e.type), incident), scaled(d[0], eta))
+    change = minus(bent, plus(scaled(splatted(d_along, e.type), normal), scaled(d[1], along)))
+    return picked(_less(k, number(0.0, FLOAT)), None, change, e.type)
+
+
+def facing_forward(e: Builtin, d: Lanes) -> Tangent:
+    """Plus or minus the normal's."""
+    _, incident, reference = e.args
+    return picked(
+        _less(_dot(incident, reference), number(0.0, FLOAT)), d[0], negative(d[0]), e.type
+    )
+
+
+# Matrices.
+
+
+def transposed(e: Builtin, d: Lanes) -> Tangent:
+    """Linear."""
+    return None if d[0] is None else _call("transpose", d[0])
+
+
+def outer(e: Builtin, d: Lanes) -> Tangent:
+    """The product rule."""
+    return _bilinear(e, d)
+
+
+def determinant(e: Builtin, d: Lanes) -> Tangent:
+    """The sum over the columns of the determinant with that column's change in its place."""
+    m, dm = e.args[0], d[0]
+    if dm is None:
+        return None
+    assert isinstance(m.type, Matrix)
+    size = m.type.size
+    column = Vector(Kind.FLOAT, size)
+    total: Tangent = None
+    for k in range(size):
+        columns = (Index(dm if i == k else m, Const(i, INT), column) for i in range(size))
+        total = plus(total, _call("determinant", Compose(tuple(columns), m.type), type=FLOAT))
+    return total
+
+
+def inverse(e: Builtin, d: Lanes) -> Tangent:
+    """-m^-1 dm m^-1."""
+    if d[0] is None:
+        return None
+    return negative(matrix_product(matrix_product(e, d[0], e.type), e, e.type))

@@ -1,0 +1,48 @@
+"""What a target can do. Passes read it and decompose the rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class FramePlace(Enum):
+    """Where a target computes the per-frame part."""
+
+    HOST = "host"  # beside the pixel program: the CPU's scalar prelude, a GPU dispatch
+    VERTEX = "vertex"  # the vertex stage, handed on as at most 15 packed flat vec4
+    PIXEL = "pixel"  # at the top of the pixel function: the target has a single stage
+    NONE = "none"  # nothing is hoisted (the reference)
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """The capabilities of one target.
+
+    Attributes:
+        name: As the command line spells it.
+        family: The column of the intrinsic table: glsl, glsl100, wgsl, llvm or numpy.
+        frame: Where per-frame work is done.
+        unsigned: Has 32-bit unsigned integers and bit operations.
+        dynamic_loops: Has while and loops whose bounds are not constant.
+        dynamic_index: Indexes arrays and vectors by any expression.
+        integer_floor: Has floored // and % of ints with x // 0 = x (else the prelude's).
+        saturating_cast: Its float to int conversion saturates and gives 0 for NaN.
+        texel_fetch: Reads single texels and sizes.
+        samples: Filters textures itself (else the prelude's filter over single texels).
+        inline: Wants small functions inlined.
+        predicated: Wants loops without break, continue and return inside (see passes.predicate).
+    """
+
+    name: str
+    family: str
+    frame: FramePlace
+    unsigned: bool = True
+    dynamic_loops: bool = True
+    dynamic_index: bool = True
+    integer_floor: bool = False
+    saturating_cast: bool = False
+    texel_fetch: bool = True
+    samples: bool = True
+    inline: bool = False
+    predicated: bool = False

@@ -1,0 +1,244 @@
+"""The types of the IR. Equal types are the same object.
+
+A value type is a scalar, vector, matrix, struct or array. Textures, buffers and functions are
+static: they may be passed to functions, and the specialise pass binds every one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final, TypeAlias
+
+from distal.ir.interning import Interned
+
+
+class Kind(Enum):
+    """What a component is. The value is its spelling."""
+
+    __hash__ = object.__hash__
+
+    FLOAT = "float"
+    INT = "int"
+    UINT = "uint"
+    BOOL = "bool"
+
+
+_VECTOR_PREFIX: Final = {Kind.FLOAT: "vec", Kind.INT: "ivec", Kind.UINT: "uvec", Kind.BOOL: "bvec"}
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Scalar(metaclass=Interned):
+    """One number or truth value."""
+
+    kind: Kind
+
+    def __str__(self) -> str:
+        return self.kind.value
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Vector(metaclass=Interned):
+    """2 to 4 components of one kind."""
+
+    kind: Kind
+    size: int
+
+    def __str__(self) -> str:
+        return f"{_VECTOR_PREFIX[self.kind]}{self.size}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Matrix(metaclass=Interned):
+    """A square float matrix of ``size`` columns; ``m[i]`` is column i."""
+
+    size: int
+
+    def __str__(self) -> str:
+        return f"mat{self.size}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Struct(metaclass=Interned):
+    """Named fields, a value. A returned tuple is a struct with ``is_tuple`` and fields item0 on."""
+
+    name: str
+    fields: tuple[tuple[str, Type], ...]
+    is_tuple: bool
+
+    def field(self, name: str) -> Type | None:
+        """The type of a field, or None."""
+        return dict(self.fields).get(name)
+
+    def __str__(self) -> str:
+        if self.is_tuple:
+            return f"tuple[{', '.join(str(t) for _, t in self.fields)}]"
+        return self.name
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Array(metaclass=Interned):
+    """``length`` values of one type; the length is at least 1."""
+
+    element: Type
+    length: int
+
+    def __str__(self) -> str:
+        return f"array[{self.element}, {self.length}]"
+
+
+class TextureShape(Enum):
+    """How a texture is addressed. The value is the name of its type in the language."""
+
+    FLAT = "Texture2D"
+    CUBE = "TextureCube"
+    VOLUME = "Texture3D"
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Texture(metaclass=Interned):
+    """A read-only picture of vec4 texels, sampled by a vec2 (2D) or a vec3 (cube, 3D)."""
+
+    shape: TextureShape
+
+    def __str__(self) -> str:
+        return self.shape.value
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Buffer(metaclass=Interned):
+    """A read-only run of scalars or float vectors, its length known when it is bound."""
+
+    element: Type
+
+    def __str__(self) -> str:
+        return f"Buffer[{self.element}]"
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class FunctionType(metaclass=Interned):
+    """A function passed to a function. It exists at compile time only."""
+
+    params: tuple[Type, ...]
+    result: Type
+
+    def __str__(self) -> str:
+        return f"Callable[[{', '.join(map(str, self.params))}], {self.result}]"
+
+
+Type: TypeAlias = Scalar | Vector | Matrix | Struct | Array | Texture | Buffer | FunctionType
+
+FLOAT: Final = Scalar(Kind.FLOAT)
+INT: Final = Scalar(Kind.INT)
+UINT: Final = Scalar(Kind.UINT)
+BOOL: Final = Scalar(Kind.BOOL)
+VEC2, VEC3, VEC4 = (Vector(Kind.FLOAT, n) for n in (2, 3, 4))
+IVEC2, IVEC3, IVEC4 = (Vector(Kind.INT, n) for n in (2, 3, 4))
+UVEC2, UVEC3, UVEC4 = (Vector(Kind.UINT, n) for n in (2, 3, 4))
+BVEC2, BVEC3, BVEC4 = (Vector(Kind.BOOL, n) for n in (2, 3, 4))
+MAT2, MAT3, MAT4 = (Matrix(n) for n in (2, 3, 4))
+TEXTURE_2D: Final = Texture(TextureShape.FLAT)
+TEXTURE_CUBE: Final = Texture(TextureShape.CUBE)
+TEXTURE_3D: Final = Texture(TextureShape.VOLUME)
+
+# What an @image receives. The entry pass replaces it: coord becomes a parameter, the rest uniforms.
+FRAME: Final = Struct(
+    "Frame",
+    (
+        ("coord", VEC2),
+        ("resolution", VEC2),
+        ("time", FLOAT),
+        ("mouse", VEC4),
+        ("index", INT),
+        ("seed", UINT),
+    ),
+    False,
+)
+
+
+def tuple_type(items: tuple[Type, ...]) -> Struct:
+    """The struct that carries a returned tuple; its name tells its items' types."""
+    name = "Tuple_" + "_".join(_plain(t) for t in items)
+    return Struct(name, tuple((f"item{i}", t) for i, t in enumerate(items)), True)
+
+
+def _plain(type: Type) -> str:
+    match type:
+        case Array(element, length):
+            return f"{_plain(element)}x{length}"
+        case Struct(name):
+            return name
+        case _:
+            return str(type)
+
+
+def kind_of(type: Type) -> Kind | None:
+    """The kind of a scalar's, vector's or matrix's components; None for other types."""
+    match type:
+        case Scalar(kind) | Vector(kind):
+            return kind
+        case Matrix():
+            return Kind.FLOAT
+        case _:
+            return None
+
+
+def with_kind(type: Type, kind: Kind) -> Type:
+    """The scalar or vector of the same size with components of another kind."""
+    match type:
+        case Scalar():
+            return Scalar(kind)
+        case Vector(_, size):
+            return Vector(kind, size)
+        case _:
+            raise AssertionError(f"{type} has no kind to change")
+
+
+def vector_of(kind: Kind, size: int) -> Type:
+    """The vector of ``size`` components, or the scalar when ``size`` is 1."""
+    return Scalar(kind) if size == 1 else Vector(kind, size)
+
+
+def component_count(type: Type) -> int:
+    """How many scalars a scalar, vector or matrix holds."""
+    match type:
+        case Scalar():
+            return 1
+        case Vector(_, size):
+            return size
+        case Matrix(size):
+            return size * size
+        case _:
+            raise AssertionError(f"{type} has no components")
+
+
+def index_count(type: Type) -> int | None:
+    """How many elements an index chooses among; None for a buffer, whose length is bound later."""
+    match type:
+        case Array(_, length):
+            return length
+        case Vector(_, size) | Matrix(size):
+            return size
+        case Buffer():
+            return None
+        case _:
+            raise AssertionError(f"{type} takes no index")
+
+
+def is_static(type: Type) -> bool:
+    """True for what exists at compile time only: functions, textures and buffers."""
+    return isinstance(type, Texture | Buffer | FunctionType)
+
+
+def contained_structs(type: Type) -> Iterator[Struct]:
+    """Every struct that ``type`` is made of, innermost first, with repeats."""
+    match type:
+        case Struct(_, fields):
+            for _, field_type in fields:
+                yield from contained_structs(field_type)
+            yield type
+        case Array(element) | Buffer(element):
+            yield from contained_structs(element)
+        case _:
+            return

@@ -1,0 +1,314 @@
+"""The rules every module must obey; run after each pass under tests and with ``--verify``.
+
+A module flows in, nothing flows out. A failure is our mistake and never the author's, so it is an
+AssertionError that shows the node, and not a CompileError. What each node demands of its operands
+stands in ``distal.ir.verify_types``; here are names, scopes, order and paths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import assert_never
+
+from distal.ir import nodes
+from distal.ir.nodes import (
+    Apply,
+    Assign,
+    Break,
+    Call,
+    Const,
+    Continue,
+    EntryKind,
+    Expr,
+    Field,
+    For,
+    Function,
+    FunctionRef,
+    Gradient,
+    If,
+    Index,
+    Let,
+    Module,
+    PerFrame,
+    Read,
+    Return,
+    Stmt,
+    Swizzle,
+    Uniform,
+    Var,
+    While,
+)
+from distal.ir.nodes import Resource as ResourceNode
+from distal.ir.printer import print_expression
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    FRAME,
+    INT,
+    VEC2,
+    VEC4,
+    FunctionType,
+    Type,
+    index_count,
+    is_static,
+)
+from distal.ir.verify_types import check_types
+from distal.ir.walk import children, expressions, nodes_in, root_of
+
+DEEPEST = 200
+
+# The passes in order (``distal.passes.pipeline``), and what each leaves behind for good.
+_STAGES = (
+    *("entry", "specialise", "gradient", "decompose", "specialise-prelude", "bounds"),
+    *("fold", "frequency", "inline", "fold-inlined", "share", "predicate"),
+)
+_NO_FRAME = frozenset(_STAGES)
+_NO_FUNCTION_VALUES = frozenset(_STAGES[1:])
+_NO_STATIC_PARAMETERS = frozenset(_STAGES[1:]) - {"decompose"}  # which brings in prelude functions
+_NO_GRADIENT = frozenset(_STAGES[2:])
+_INDICES_IN_RANGE = frozenset(_STAGES[5:])
+_PER_FRAME = frozenset(_STAGES[_STAGES.index("frequency") :])
+
+
+def verify(module: Module, stage: str | None = None) -> None:
+    """Raise AssertionError when the module breaks a rule.
+
+    ``stage`` is the name of the pass that made it: what that pass and those before it promise is
+    checked too. None checks what holds of every module.
+    """
+    assert stage is None or stage in _STAGES, f"no pass {stage}"
+    functions: dict[str, Function] = {}
+    checker = _Checker(module, stage, functions)
+    checker.frame_part()
+    for function in module.functions:
+        assert function.name not in functions, f"function {function.name} defined twice"
+        checker.function(function)
+        functions[function.name] = function
+    assert module.entry in functions, f"no entry function {module.entry}"
+    _unique("uniform", [u.name for u in module.uniforms])
+    _unique("resource", [r.name for r in module.resources])
+    entry = functions[module.entry]
+    if module.kind is EntryKind.IMAGE and stage in _NO_FRAME:
+        assert [p.type for p in entry.params] == [VEC2], f"{entry.name} takes not just coord"
+        assert entry.result is VEC4, f"{entry.name} returns {entry.result}"
+
+
+def _unique(what: str, names: list[str]) -> None:
+    assert len(set(names)) == len(names), f"a {what} declared twice in {names}"
+
+
+class _Checker:
+    """What is known of the module while its functions are gone through."""
+
+    def __init__(
+        self, module: Module, stage: str | None, functions: Mapping[str, Function]
+    ) -> None:
+        self._module = module
+        self._stage = stage
+        self._functions = functions  # those before the one being checked
+        self._uniforms = {u.name: u.type for u in module.uniforms}
+        self._resources = {r.name: r.type for r in module.resources}
+        self._frame: dict[str, Type] = {}
+        self._depths: dict[Expr, int] = {}
+        self._checked: set[Expr] = set()
+
+    def frame_part(self) -> None:
+        for name, value in self._module.frame:
+            assert name not in self._frame, f"per-frame value {name} computed twice"
+            # Functions of the frame part stand anywhere in the module.
+            every = {f.name: f for f in self._module.functions}
+            checker = _Checker(self._module, self._stage, every)
+            checker._frame = self._frame
+            checker.expression(value, {}, f"per-frame value {name}")
+            self._frame[name] = value.type
+
+    def function(self, function: Function) -> None:
+        where = function.name
+        scope: dict[str, Type] = {}
+        for param in function.params:
+            assert param.name not in scope, f"{where}: parameter {param.name} twice"
+            scope[param.name] = param.type
+        for type in (*scope.values(), function.result):
+            self._check_boundary_type(type, where)
+        assert not is_static(function.result), f"{where} returns a {function.result}"
+        walker = _Walker(self, function, set(scope))
+        walker.block(function.body, scope, frozenset(), in_loop=False)
+        assert _ends(function.body), f"{where}: a path ends without return"
+
+    def _check_boundary_type(self, type: Type, where: str) -> None:
+        if self._stage in _NO_FRAME:
+            assert type is not FRAME, f"{where}: Frame after the entry pass"
+        if self._stage in _NO_STATIC_PARAMETERS:
+            assert not is_static(type), f"{where}: a parameter of type {type} after specialise"
+
+    def expression(self, root: Expr, scope: Mapping[str, Type], where: str) -> None:
+        """Check every node below ``root`` once, and every read against this scope."""
+        for e in nodes_in(root):
+            if isinstance(e, Read):
+                found = scope.get(e.name)
+                assert found is e.type, f"{where}: {e.name} is {found}, read as {e.type}"
+            if e in self._checked:
+                continue
+            self._checked.add(e)
+            try:
+                check_types(e)
+                self._references(e)
+                self._stage_rules(e)
+                depth = 1 + max((self._depths[c] for c in children(e)), default=0)
+                assert depth <= DEEPEST, f"deeper than {DEEPEST}"
+            except AssertionError as broken:
+                text = print_expression(e)
+                raise AssertionError(f"{where}: {broken}: {e.type}\n{text}") from broken
+            self._depths[e] = depth
+
+    def _references(self, e: Expr) -> None:
+        """Names that lead out of the function."""
+        match e:
+            case Uniform(nodes.FRAME_TIME, type) if self._stage not in _NO_FRAME:
+                assert type is FLOAT, "the time is a float"
+            case Uniform(name, type):
+                assert self._uniforms.get(name) is type, "no such uniform"
+            case PerFrame(name, type):
+                assert self._frame.get(name) is type, "no such per-frame value"
+            case ResourceNode(name, type):
+                assert self._resources.get(name) is type, "no such resource"
+            case Call(name, args, type):
+                called = self._functions.get(name)
+                assert called is not None, f"{name} does not stand before its caller"
+                _match([p.type for p in called.params], args, name)
+                assert called.result is type, f"{name} returns {called.result}"
+            case FunctionRef(name, captures, type):
+                called = self._functions.get(name)
+                assert called is not None, f"{name} does not stand before its user"
+                assert isinstance(type, FunctionType), "not of a function type"
+                types = [p.type for p in called.params]
+                free = len(types) - len(captures)
+                assert tuple(types[:free]) == type.params, f"{name} takes {types}"
+                _match(types[free:], captures, name)
+                assert called.result is type.result, f"{name} returns {called.result}"
+            case _:
+                pass
+
+    def _stage_rules(self, e: Expr) -> None:
+        if self._stage in _NO_FRAME:
+            assert e.type is not FRAME, "Frame after the entry pass"
+        if self._stage in _NO_FUNCTION_VALUES:
+            assert not isinstance(e, Apply), "Apply after specialise"
+            for child in children(e):
+                bound = isinstance(child, FunctionRef) and isinstance(e, Gradient)
+                assert bound or not isinstance(child.type, FunctionType), "a function value"
+        if self._stage in _NO_GRADIENT:
+            assert not isinstance(e, Gradient | FunctionRef), "Gradient after its pass"
+        if self._stage is not None and self._stage not in _PER_FRAME:
+            assert not isinstance(e, PerFrame), "PerFrame before the frequency pass"
+        if self._stage in _NO_STATIC_PARAMETERS and isinstance(e, Read):
+            assert not is_static(e.type), f"a {e.type} parameter after specialise"
+        if self._stage in _INDICES_IN_RANGE:
+            _index_in_range(e)
+
+
+def _index_in_range(e: Expr) -> None:
+    if isinstance(e, Index) and isinstance(e.index, Const):
+        count = index_count(e.base.type)
+        assert count is None or 0 <= e.index.value < count, "index out of range"
+
+
+def _match(types: Iterable[Type], args: tuple[Expr, ...], name: str) -> None:
+    wanted, given = list(types), [a.type for a in args]
+    assert wanted == given, f"{name} takes {list(map(str, wanted))}, gets {list(map(str, given))}"
+
+
+class _Walker:
+    """The statements of one function."""
+
+    def __init__(self, checker: _Checker, function: Function, bound: set[str]) -> None:
+        self._checker = checker
+        self._function = function
+        self._bound = bound
+
+    def block(
+        self, body: tuple[Stmt, ...], scope: dict[str, Type], vars: frozenset[str], *, in_loop: bool
+    ) -> None:
+        scope = dict(scope)
+        for stmt in body:
+            for e in expressions(stmt):
+                self._checker.expression(e, scope, self._function.name)
+            vars = self._statement(stmt, scope, vars, in_loop)
+
+    def _statement(
+        self, stmt: Stmt, scope: dict[str, Type], vars: frozenset[str], in_loop: bool
+    ) -> frozenset[str]:
+        where = self._function.name
+        match stmt:
+            case Let(name, value):
+                self._bind(name, value.type, scope)
+            case Var(name, value):
+                assert not is_static(value.type), f"{where}: var {name} of type {value.type}"
+                self._bind(name, value.type, scope)
+                return vars | {name}
+            case Assign(target, value):
+                self._target(target, vars)
+                assert target.type is value.type, f"{where}: {target.type} = {value.type}"
+            case If(condition, then, otherwise):
+                assert condition.type is BOOL, f"{where}: if {condition.type}"
+                self.block(then, scope, vars, in_loop=in_loop)
+                self.block(otherwise, scope, vars, in_loop=in_loop)
+            case While(condition, body):
+                assert condition.type is BOOL, f"{where}: while {condition.type}"
+                self.block(body, scope, vars, in_loop=True)
+            case For(name, start, stop, step, body):
+                assert start.type is stop.type is INT, f"{where}: range of {stop.type}"
+                assert step != 0 and -(2**31) <= step < 2**31, f"{where}: step {step}"
+                inner = dict(scope)
+                self._bind(name, INT, inner)
+                self.block(body, inner, vars, in_loop=True)
+            case Break() | Continue():
+                assert in_loop, f"{where}: {stmt} outside a loop"
+            case Return(value):
+                wanted = self._function.result
+                assert value.type is wanted, f"{where} returns {value.type}, declared {wanted}"
+            case _:
+                assert_never(stmt)
+        return vars
+
+    def _bind(self, name: str, type: Type, scope: dict[str, Type]) -> None:
+        assert name not in self._bound, f"{self._function.name}: {name} bound twice"
+        self._bound.add(name)
+        scope[name] = type
+
+    def _target(self, target: Expr, vars: frozenset[str]) -> None:
+        where = self._function.name
+        part = target
+        while not isinstance(part, Read):
+            assert isinstance(part, Swizzle | Index | Field), f"{where}: {part} as a target"
+            if isinstance(part, Swizzle):
+                assert len(set(part.lanes)) == len(part.lanes), f"{where}: {part.lanes} as a target"
+            part = part.base
+        assert root_of(target).name in vars, f"{where}: {part.name} is no var"
+
+
+def _ends(body: tuple[Stmt, ...]) -> bool:
+    """True when no path runs off the end of the block."""
+    return any(_stops(stmt) for stmt in body)
+
+
+def _stops(stmt: Stmt) -> bool:
+    match stmt:
+        case Return() | Break() | Continue():
+            return True
+        case If(_, then, otherwise):
+            return _ends(then) and _ends(otherwise)
+        case While(Const(True), body):
+            return not _breaks(body)
+        case _:
+            return False
+
+
+def _breaks(body: tuple[Stmt, ...]) -> bool:
+    """True when a Break in the block leaves the loop the block belongs to."""
+    for stmt in body:
+        if isinstance(stmt, Break):
+            return True
+        if isinstance(stmt, If) and (_breaks(stmt.then) or _breaks(stmt.otherwise)):
+            return True
+    return False

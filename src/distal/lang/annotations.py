@@ -1,0 +1,50 @@
+"""Names that stand in annotations only: arrays, fields and generic types."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from distal.ir.types import VEC2, VEC3, VEC4, Kind, vector_of
+from distal.lang.values import VALUE_CLASSES, uint
+
+_vec2, _vec3, _vec4 = (VALUE_CLASSES[t] for t in (VEC2, VEC3, VEC4))
+
+_numbers: list[Any] = [
+    float,
+    int,
+    uint,
+    *(VALUE_CLASSES[vector_of(k, n)] for k in (Kind.FLOAT, Kind.INT, Kind.UINT) for n in (2, 3, 4)),
+]
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayAnnotation:
+    """``array[element, length]`` as written; not checked here."""
+
+    element: Any
+    length: Any
+
+
+class array:  # noqa: N801
+    """A fixed array: ``array[float, 4]`` is four floats."""
+
+    def __class_getitem__(cls, item: Any) -> ArrayAnnotation:
+        """Name the type of an array."""
+        if not isinstance(item, tuple) or len(item) != 2:
+            raise TypeError("write array[float, 4]: the element type and the length")
+        return ArrayAnnotation(*item)
+
+    def __init__(self, *_: Any) -> None:
+        raise TypeError("write [a, b, c] for an array's values; array[float, 3] is its type")
+
+
+# A function of a point in the plane, and of one in space: what most functions as parameters are.
+Field2: Any = Callable[[_vec2], float]
+Field3: Any = Callable[[_vec3], float]
+
+# A function with these is compiled for each type it is called with.
+Floats = TypeVar("Floats", float, _vec2, _vec3, _vec4)  # type: ignore[valid-type]
+Numbers = TypeVar("Numbers", *_numbers)  # type: ignore[misc]
+Vectors = TypeVar("Vectors", _vec2, _vec3, _vec4)  # type: ignore[valid-type]

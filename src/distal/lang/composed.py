@@ -1,0 +1,63 @@
+"""Objects that stand for a function of scene code without being written as one.
+
+A shape is a distance, a scene a picture, though no ``def`` says so: each makes its function of the
+IR itself when a program asks for it. The compiler, the executor and scene code take such an object
+wherever they take a ``Func``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from distal.executor_hook import executor
+from distal.ir.nodes import EntryKind
+from distal.ir.types import Type
+from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
+
+if TYPE_CHECKING:
+    from distal.lang.parameters import Parameter
+
+
+class Composed(Unchanging, ABC):
+    """A function that an object makes itself. It never changes once it is made.
+
+    Attributes:
+        name: What messages call it.
+        kind: How it is run: over points, or as a picture.
+        signature: Its parameters, by name and type.
+        result: What it gives.
+        display: For a picture whose pixels are linear light: the function ``(vec4) -> vec4`` that
+            encodes them for display; None where they are encoded already.
+    """
+
+    kind: ClassVar[EntryKind] = EntryKind.FUNCTION
+    name: str
+    signature: tuple[tuple[str, Type], ...]
+    result: Type
+    display: Composed | None = None
+
+    @abstractmethod
+    def compose(self, assembly: Any) -> str:
+        """Add the function to a program; its name there. ``assembly`` is the front end's.
+
+        Raises:
+            CompileError: The object says what scene code cannot say.
+        """
+
+    def text(self) -> Composed:
+        """What an emitted text shows: for a picture, display values."""
+        return self
+
+    def functions(self) -> Iterable[Func]:
+        """The author's own functions within, for whoever must know whether they changed."""
+        return ()
+
+    def parameters(self) -> list[Parameter]:
+        """The parameters (sliders and the like) that it reads."""
+        return executor().parameters(self)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__.lower()} {self.name}>"

@@ -1,0 +1,289 @@
+"""Values that are known only when a picture is made, written with Python's own operators.
+
+What flows in: parameters, the time, numbers, vectors, and operators or built-ins between them
+(``0.5 + 0.1 * np.cos(time)``). What flows out: an ``Expression`` that holds the node of the IR.
+Operators mean what they mean in scene code; the rules themselves are the front end's, reached
+through the one hook. NumPy's functions find their way here by themselves: it is not imported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NoReturn
+
+from distal.executor_hook import combined, executor
+from distal.ir.build import swizzle
+from distal.ir.nodes import FRAME_TIME, Expr, Uniform
+from distal.ir.printer import print_expression
+from distal.ir.types import FLOAT, Type, Vector
+from distal.lang.unchanging import Unchanging
+
+if TYPE_CHECKING:
+    from distal.lang.parameters import Parameter
+
+_LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"}}
+
+# NumPy's functions by what they are in scene code: an operator, or a row of the table.
+UFUNCS: Final[Mapping[str, str]] = {
+    **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/"},
+    **{"floor_divide": "//", "remainder": "%", "power": "**", "float_power": "**"},
+    **{"matmul": "@", "negative": "-x", "positive": "+x"},
+    **{"absolute": "abs", "fabs": "abs", "rint": "round", "minimum": "min", "maximum": "max"},
+    **{"fmin": "min", "fmax": "max", "arcsin": "asin", "arccos": "acos", "arctan": "atan"},
+    **{"arctan2": "atan2", "deg2rad": "radians", "rad2deg": "degrees"},
+    **{
+        name: name
+        for name in (
+            *("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2"),
+            *("floor", "ceil", "trunc", "sign", "degrees", "radians"),
+        )
+    },
+}
+_COMPARING: Final = frozenset(
+    ("less", "less_equal", "greater", "greater_equal", "equal", "not_equal")
+)
+
+
+class Symbolic(Unchanging):
+    """What expressions and parameters share: the operators of scene code."""
+
+    __slots__ = ()
+
+    def as_expression(self) -> Expression:
+        """The value as an expression."""
+        raise NotImplementedError
+
+    def __getattr__(self, name: str) -> Expression:
+        """Components of a vector: ``.x``, ``.xz``, ``.rgb``."""
+        lanes = "".join(_LANES.get(c, "?") for c in name)
+        if 1 <= len(lanes) <= 4 and "?" not in lanes:
+            held = self.as_expression()
+            type = held.node.type
+            if isinstance(type, Vector) and all("xyzw".index(c) < type.size for c in lanes):
+                return Expression(swizzle(held.node, lanes), held.parameters)
+            raise AttributeError(f"a {type} has no component '{name}'")
+        raise AttributeError(f"'{self.__class__.__name__}' has no attribute '{name}'")
+
+    def __iter__(self) -> Iterator[Expression]:
+        """The components of a vector, so that it can be unpacked."""
+        type = self.as_expression().node.type
+        if not isinstance(type, Vector):
+            raise TypeError(f"a {type} has no components to go through")
+        return (getattr(self, lane) for lane in "xyzw"[: type.size])
+
+    # One value for the whole picture has no truth and no number yet.
+
+    def __bool__(self) -> bool:
+        _unknown("whether it is true", "decide in a @func, with if or select")
+
+    def __float__(self) -> float:
+        _unknown("its number", "use np.cos, or cos of distal.lang, instead of math.cos and float")
+
+    def __int__(self) -> int:
+        _unknown("its number", "a count or a choice of a shape is a plain int")
+
+    def __lt__(self, other: object) -> bool:
+        _compared("<")
+
+    def __le__(self, other: object) -> bool:
+        _compared("<=")
+
+    def __gt__(self, other: object) -> bool:
+        _compared(">")
+
+    def __ge__(self, other: object) -> bool:
+        _compared(">=")
+
+    # Arithmetic
+
+    def __add__(self, other: Any) -> Any:
+        return _operated("+", self, other)
+
+    def __radd__(self, other: Any) -> Any:
+        return _operated("+", other, self)
+
+    def __sub__(self, other: Any) -> Any:
+        return _operated("-", self, other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return _operated("-", other, self)
+
+    def __mul__(self, other: Any) -> Any:
+        return _operated("*", self, other)
+
+    def __rmul__(self, other: Any) -> Any:
+        return _operated("*", other, self)
+
+    def __truediv__(self, other: Any) -> Any:
+        return _operated("/", self, other)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return _operated("/", other, self)
+
+    def __floordiv__(self, other: Any) -> Any:
+        return _operated("//", self, other)
+
+    def __rfloordiv__(self, other: Any) -> Any:
+        return _operated("//", other, self)
+
+    def __mod__(self, other: Any) -> Any:
+        return _operated("%", self, other)
+
+    def __rmod__(self, other: Any) -> Any:
+        return _operated("%", other, self)
+
+    def __pow__(self, other: Any) -> Any:
+        return _operated("**", self, other)
+
+    def __rpow__(self, other: Any) -> Any:
+        return _operated("**", other, self)
+
+    def __matmul__(self, other: Any) -> Any:
+        return _operated("@", self, other)
+
+    def __rmatmul__(self, other: Any) -> Any:
+        return _operated("@", other, self)
+
+    def __neg__(self) -> Any:
+        return _operated("-x", self)
+
+    def __pos__(self) -> Any:
+        return _operated("+x", self)
+
+    def __abs__(self) -> Any:
+        return _operated("abs", self)
+
+    def __round__(self, digits: int | None = None) -> Any:
+        if digits is not None:
+            raise TypeError("an expression is rounded to whole numbers only")
+        return _operated("round", self)
+
+    def __floor__(self) -> Any:
+        return _operated("floor", self)
+
+    def __ceil__(self) -> Any:
+        return _operated("ceil", self)
+
+    def __trunc__(self) -> Any:
+        return _operated("trunc", self)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        """What ``np.cos(time)`` and ``np.float64(2) * time`` mean."""
+        name: str = ufunc.__name__
+        if name in _COMPARING:
+            _compared(name)
+        operation = UFUNCS.get(name)
+        if operation is None or method != "__call__" or options:
+            called = f"np.{name}" if method == "__call__" else f"np.{name}.{method}"
+            plain = f"{called} with {', '.join(options)}" if options and operation else called
+            raise TypeError(
+                f"{plain} has no counterpart in scene code; "
+                "use a built-in of distal.lang, or write it in a @func"
+            )
+        result = combined(operation, inputs)
+        if result is None:
+            given = " and ".join(type(i).__name__ for i in inputs)
+            raise TypeError(f"np.{name} of a parameter or of time does not take {given}")
+        return result
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Expression(Symbolic):
+    """A value that depends on parameters and on time. It never changes once it is made.
+
+    Attributes:
+        node: Its node in the IR; the parameters and the time are uniforms in it.
+        parameters: The parameters it reads, by first use.
+    """
+
+    node: Expr
+    parameters: tuple[Parameter, ...] = ()
+
+    @property
+    def type(self) -> Type:
+        """Its type in scene code."""
+        return self.node.type
+
+    def as_expression(self) -> Expression:
+        """Itself."""
+        return self
+
+    def value(self, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
+        """Its value: a number, a vector or a matrix.
+
+        Args:
+            params: Values of parameters by name or label; the others have their defaults.
+            time: Seconds.
+
+        Raises:
+            ValueError: A parameter is unknown, or its value outside its range.
+            TypeError: A value is of another kind.
+        """
+        return executor().value(self, params or {}, time)
+
+    def __eq__(self, other: object) -> Any:
+        """Whether it is the same expression; a number's equality is not known yet."""
+        if isinstance(other, Symbolic):
+            held = other.as_expression()
+            return self.node is held.node and self.parameters == held.parameters
+        if isinstance(other, int | float):
+            _compared("==")
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.node)
+
+    def __copy__(self) -> Expression:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Expression:
+        return self
+
+    def __repr__(self) -> str:
+        return f"<expression {self.type}: {print_expression(self.node)}>"
+
+
+def uniform_of(parameter: Parameter) -> Expression:
+    """The value of a parameter as an expression."""
+    return Expression(Uniform(parameter.name, parameter.type), (parameter,))
+
+
+def is_symbolic(value: object) -> bool:
+    """Whether a value, or a part of a tuple or list, is an expression or a parameter."""
+    if isinstance(value, tuple | list):
+        return any(map(is_symbolic, value))
+    return isinstance(value, Symbolic)
+
+
+def composed_value(operation: str, operands: tuple[Any, ...]) -> Expression:
+    """A built-in, or a type called like a function, of operands with an expression among them.
+
+    Raises:
+        TypeError: It does not take them.
+    """
+    result = combined(operation, operands)
+    if result is None:
+        given = ", ".join(type(o).__name__ for o in operands)
+        raise TypeError(f"{operation}() of a parameter or of time does not take ({given})")
+    return result
+
+
+def _operated(operation: str, *operands: Any) -> Any:
+    result = combined(operation, operands)
+    return NotImplemented if result is None else result
+
+
+def _compared(symbol: str) -> NoReturn:
+    _unknown(f"what '{symbol}' gives", "compare in a @func, or use min, max, clamp or step")
+
+
+def _unknown(what: str, hint: str) -> NoReturn:
+    raise TypeError(
+        f"a parameter or the time has no value yet, so {what} is not known here; {hint}"
+    )
+
+
+time: Final = Expression(Uniform(FRAME_TIME, FLOAT))
+
+__all__ = ["Expression", "Symbolic", "composed_value", "is_symbolic", "time", "uniform_of"]

@@ -1,0 +1,145 @@
+"""``@func`` and ``@image``: a Python function recorded as scene code.
+
+What flows in: the function as Python made it. What flows out: an object that keeps it together
+with its source text. Nothing is parsed or checked; that happens when it is compiled or called.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import FunctionType
+from typing import TYPE_CHECKING, Any
+
+from distal.executor_hook import executor
+from distal.lang.presentable import Presentable
+from distal.lang.source import Source, capture
+
+if TYPE_CHECKING:
+    from distal.lang.parameters import Parameter
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Overload:
+    """One Python function behind a ``Func``.
+
+    Attributes:
+        python: The function itself, for its defaults, its globals and its closure.
+        source: Its text.
+        enclosing: The locals of the function it was defined in, as they were: a type that only
+            an annotation names is in no closure.
+    """
+
+    python: FunctionType
+    source: Source
+    enclosing: Mapping[str, Any]
+
+
+class Func:
+    """A function of scene code: callable from scene code, and from Python through the executor.
+
+    Attributes:
+        overloads: One entry, or several told apart by their parameters' types.
+    """
+
+    def __init__(self, overload: Overload) -> None:
+        python = overload.python
+        self.overloads: list[Overload] = [overload]
+        self.__wrapped__ = python
+        self.__name__ = python.__name__
+        self.__qualname__ = python.__qualname__
+        self.__module__ = python.__module__
+        self.__doc__ = python.__doc__
+
+    @property
+    def name(self) -> str:
+        """The function's own name."""
+        return self.__name__
+
+    @property
+    def python_function(self) -> FunctionType:
+        """The Python function that was decorated (the first of several overloads)."""
+        return self.overloads[0].python
+
+    def overload(self, function: Callable[..., Any]) -> Func:
+        """Add a version for other parameter types: ``@f.overload`` above ``def f``."""
+        self.overloads.append(_record(function, f"@{self.name}.overload", sys._getframe(1)))
+        return self
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Compute with numbers, vectors, or arrays of points (n, 3)."""
+        return executor().call(self, args, kwargs)
+
+    def parameters(self) -> list[Parameter]:
+        """The parameters (sliders and the like) that this and what it calls read."""
+        return executor().parameters(self)
+
+    def __reduce__(self) -> str:
+        """Pickled by its name, as every function is, and so copied as itself."""
+        return self.__qualname__
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__.lower()} {self.__qualname__}>"
+
+
+class Image(Func, Presentable):
+    """A picture: a function from a Frame to the color of its pixel."""
+
+    def render(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        device: str = "cpu",
+        threads: int | None = None,
+        progress: Callable[[float], Any] | None = None,
+        cancel: Any = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+    ) -> Any:
+        """Compute the picture.
+
+        Args:
+            size: Width and height in pixels.
+            time: ``frame.time`` in seconds.
+            params: Values of parameters by name; the others have their defaults.
+            device: "cpu" or "reference".
+            threads: How many to use; None for all the machine lends.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
+            index: ``frame.index``, the frame's number; wraps at 32 bits.
+            seed: ``frame.seed``; wraps at 32 bits.
+        """
+        return executor().render(
+            self,
+            size=size,
+            time=time,
+            params=params,
+            device=device,
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+            mouse=mouse,
+            index=index,
+            seed=seed,
+        )
+
+
+def func(function: Callable[..., Any]) -> Func:
+    """Record a Python function as scene code."""
+    return Func(_record(function, "@func", sys._getframe(1)))
+
+
+def image(function: Callable[..., Any]) -> Image:
+    """Record a function from a Frame to a vec3 or vec4 as a picture."""
+    return Image(_record(function, "@image", sys._getframe(1)))
+
+
+def _record(function: Any, decorator: str, frame: Any) -> Overload:
+    if not isinstance(function, FunctionType):
+        raise TypeError(f"{decorator} stands directly above a def, not on {function!r}")
+    enclosing = {} if frame.f_locals is frame.f_globals else dict(frame.f_locals)
+    return Overload(function, capture(function), enclosing)

@@ -1,0 +1,397 @@
+"""Parameters: the numbers of a scene that change without a new compilation.
+
+What flows in: the author's definitions (``slider("Softness", 0.3)``) and, later, values from a
+caller or a command line. What flows out: frozen ``Parameter`` rows and plain Python values, each
+checked against kind and range; a mistake is a ``ValueError`` or ``TypeError`` that names the
+label. The module does not know how a parameter reaches a target: each one is a uniform of its
+``name``.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import assert_never
+
+from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Type
+from distal.lang.expressions import Expression, Symbolic, uniform_of
+from distal.lang.parameter_values import (
+    TOGGLE_WORDS,
+    Value,
+    as_bool,
+    as_color,
+    as_float,
+    as_int,
+    as_option,
+    as_point,
+    joined,
+    read_coordinates,
+    read_number,
+)
+
+
+class ParameterKind(Enum):
+    """What is asked of a person; the value is the word in the interface."""
+
+    SLIDER = "slider"
+    INTEGER = "integer"
+    TOGGLE = "toggle"
+    CHOICE = "choice"
+    COLOR = "color"
+    POINT = "point"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter(Symbolic):
+    """One adjustable value of a scene. Operators and built-ins of it make an ``Expression``.
+
+    Attributes:
+        name: Identifier made from the label: the uniform's name and what ``--set`` takes.
+        label: What a person reads.
+        kind: What is asked of a person.
+        default: float, int, bool, the option's number for a choice, a tuple of linear red, green,
+            blue for a color, or a tuple of 2 or 3 coordinates for a point.
+        low: Smallest value of a slider or integer, else None.
+        high: Largest value of a slider or integer, else None.
+        step: Distance between positions of a slider or integer; None for a continuous slider.
+        log: Whether the slider's positions are spread by ratio instead of by difference.
+        group: Heading the parameter stands under, or "".
+        help: One sentence about its effect, or "".
+        options: Names of a choice's options, else empty.
+    """
+
+    name: str
+    label: str
+    kind: ParameterKind
+    default: Value
+    low: float | None = None
+    high: float | None = None
+    step: float | None = None
+    log: bool = False
+    group: str = ""
+    help: str = ""
+    options: tuple[str, ...] = ()
+
+    def as_expression(self) -> Expression:
+        """Its value as an expression."""
+        return uniform_of(self)
+
+    @property
+    def interface(self) -> tuple[tuple[str, object], ...]:
+        """What a JSON interface says of it besides its name, type and default, in order."""
+        return (
+            ("label", self.label),
+            ("kind", self.kind.value),
+            ("low", self.low),
+            ("high", self.high),
+            ("step", self.step),
+            ("log", self.log),
+            ("group", self.group),
+            ("help", self.help),
+            ("options", self.options),
+        )
+
+    @property
+    def type(self) -> Type:
+        """The type that scene code sees."""
+        match self.kind:
+            case ParameterKind.SLIDER:
+                return FLOAT
+            case ParameterKind.INTEGER | ParameterKind.CHOICE:
+                return INT
+            case ParameterKind.TOGGLE:
+                return BOOL
+            case ParameterKind.COLOR:
+                return VEC3
+            case ParameterKind.POINT:
+                return VEC2 if _size(self.default) == 2 else VEC3
+            case _:
+                assert_never(self.kind)
+
+    def check(self, value: object) -> Value:
+        """The value as plain Python numbers.
+
+        Takes what the kind means (a choice by name or number, a color as "#hex" or linear
+        numbers), also as NumPy scalars and arrays.
+
+        Raises:
+            TypeError: The value is of another kind.
+            ValueError: The value lies outside the range.
+        """
+        match self.kind:
+            case ParameterKind.SLIDER:
+                return self._within(as_float(self.label, value))
+            case ParameterKind.INTEGER:
+                return self._within(as_int(self.label, value))
+            case ParameterKind.TOGGLE:
+                return as_bool(self.label, value)
+            case ParameterKind.CHOICE:
+                return as_option(self.label, self.options, value)
+            case ParameterKind.COLOR:
+                return as_color(self.label, value)
+            case ParameterKind.POINT:
+                return as_point(self.label, value, (_size(self.default),))
+            case _:
+                assert_never(self.kind)
+
+    def parse(self, text: str) -> Value:
+        """The value that a text stands for, as ``--set`` gives it.
+
+        Raises:
+            ValueError: The text does not stand for a value of this kind and range.
+        """
+        text = text.strip()
+        try:
+            return self.check(self._read(text))
+        except TypeError as error:
+            raise ValueError(str(error)) from None
+
+    def _read(self, text: str) -> object:
+        match self.kind:
+            case ParameterKind.SLIDER:
+                return read_number(self.label, text, float, "a number")
+            case ParameterKind.INTEGER:
+                return read_number(self.label, text, int, "a whole number")
+            case ParameterKind.TOGGLE:
+                if text.lower() not in TOGGLE_WORDS:
+                    raise ValueError(f"'{self.label}' takes true or false, not '{text:.40}'")
+                return TOGGLE_WORDS[text.lower()]
+            case ParameterKind.CHOICE:
+                # An option may itself be called "2": names come first.
+                is_number = text.isascii() and text.isdigit() and text not in self.options
+                return int(text) if is_number else text
+            case ParameterKind.COLOR:
+                return text if text.startswith("#") else read_coordinates(self.label, text)
+            case ParameterKind.POINT:
+                return read_coordinates(self.label, text)
+            case _:
+                assert_never(self.kind)
+
+    def _within(self, value: int | float) -> int | float:
+        assert self.low is not None and self.high is not None
+        if not self.low <= value <= self.high:
+            raise ValueError(
+                f"'{self.label}' lies between {self.low:g} and {self.high:g}, not {value:g}"
+            )
+        return value
+
+    def describe(self) -> str:
+        """Which values it takes, in a few words: "a number from 0 to 1 (default 0.3)"."""
+        match self.kind:
+            case ParameterKind.SLIDER:
+                return f"a number from {self.low:g} to {self.high:g} (default {self.default:g})"
+            case ParameterKind.INTEGER:
+                return f"a whole number from {self.low} to {self.high} (default {self.default})"
+            case ParameterKind.TOGGLE:
+                return f"true or false (default {str(self.default).lower()})"
+            case ParameterKind.CHOICE:
+                assert isinstance(self.default, int)
+                return f"{', '.join(self.options)} (default {self.options[self.default]})"
+            case ParameterKind.COLOR:
+                return f"#rrggbb or linear r,g,b (default {joined(self.default)})"
+            case ParameterKind.POINT:
+                axes = ",".join("xyz"[: _size(self.default)])
+                return f"{axes} (default {joined(self.default)})"
+            case _:
+                assert_never(self.kind)
+
+
+def slider(
+    label: str,
+    default: float,
+    low: float = 0.0,
+    high: float = 1.0,
+    step: float | None = None,
+    *,
+    log: bool = False,
+    group: str = "",
+    help: str = "",
+) -> Parameter:
+    """A float between ``low`` and ``high``, moved by a person.
+
+    Args:
+        label: What a person reads; its letters and digits make the name.
+        default: Value until somebody moves it.
+        low: Smallest value.
+        high: Largest value.
+        step: Distance between positions; None for a continuous slider.
+        log: Spread the positions by ratio; ``low`` must then be above 0.
+        group: Heading to stand under.
+        help: One sentence about its effect.
+
+    Raises:
+        TypeError: Something is not of its kind.
+        ValueError: The range is empty or the default lies outside.
+    """
+    name = _name(label)
+    low, high = as_float(label, low), as_float(label, high)
+    step = None if step is None else as_float(label, step)
+    _check_range(label, low, high, step)
+    if log and low <= 0.0:
+        raise ValueError(f"'{label}': a logarithmic slider needs low above 0, not {low:g}")
+    return _checked(
+        Parameter(
+            name, label, ParameterKind.SLIDER, default, low, high, step, bool(log), group, help
+        )
+    )
+
+
+def integer(
+    label: str,
+    default: int,
+    low: int = 0,
+    high: int = 100,
+    step: int = 1,
+    *,
+    group: str = "",
+    help: str = "",
+) -> Parameter:
+    """A whole number between ``low`` and ``high``; scene code sees an int.
+
+    Raises:
+        TypeError: Something is not a whole number.
+        ValueError: The range is empty, the default lies outside, or 32 bits do not hold it.
+    """
+    name = _name(label)
+    low, high, step = (as_int(label, n) for n in (low, high, step))
+    _check_range(label, low, high, step)
+    return _checked(
+        Parameter(
+            name, label, ParameterKind.INTEGER, default, low, high, step, group=group, help=help
+        )
+    )
+
+
+def toggle(label: str, default: bool = False, *, group: str = "", help: str = "") -> Parameter:
+    """A switch; scene code sees a bool.
+
+    Raises:
+        TypeError: The default is not a bool.
+    """
+    return _checked(
+        Parameter(_name(label), label, ParameterKind.TOGGLE, default, group=group, help=help)
+    )
+
+
+def choice(
+    label: str,
+    options: Sequence[str],
+    default: str | int = 0,
+    *,
+    group: str = "",
+    help: str = "",
+) -> Parameter:
+    """One of several named options; scene code sees its number, counted from 0, as an int.
+
+    Raises:
+        TypeError: An option is not a text.
+        ValueError: There is no option, one is named twice, or the default is none of them.
+    """
+    name = _name(label)
+    if isinstance(options, str):
+        raise TypeError(f"'{label}' takes a list of options, not one text")
+    named = tuple(options)
+    if not named:
+        raise ValueError(f"'{label}' has no options")
+    for option in named:
+        if not isinstance(option, str):
+            raise TypeError(f"'{label}': an option is a text, not {type(option).__name__}")
+        if not option.strip():
+            raise ValueError(f"'{label}': an option is empty")
+    if len(set(named)) < len(named):
+        raise ValueError(f"'{label}' names an option twice")
+    number = as_option(label, named, default)
+    return Parameter(
+        name, label, ParameterKind.CHOICE, number, group=group, help=help, options=named
+    )
+
+
+def color(
+    label: str,
+    default: str | Sequence[float] = "#ffffff",
+    *,
+    group: str = "",
+    help: str = "",
+) -> Parameter:
+    """A color; scene code sees linear red, green, blue as a vec3.
+
+    Args:
+        label: What a person reads.
+        default: "#rrggbb" in sRGB, decoded here, or three linear numbers from 0 to 1.
+        group: Heading to stand under.
+        help: One sentence about its effect.
+
+    Raises:
+        TypeError: The default is neither a text nor three numbers.
+        ValueError: The text is no color, or a number lies outside 0 to 1.
+    """
+    return _checked(
+        Parameter(
+            _name(label),
+            label,
+            ParameterKind.COLOR,
+            as_color(label, default),
+            group=group,
+            help=help,
+        )
+    )
+
+
+def point(
+    label: str,
+    default: Sequence[float] = (0.0, 0.0, 0.0),
+    *,
+    group: str = "",
+    help: str = "",
+) -> Parameter:
+    """A place; scene code sees a vec2 or a vec3, as the default has 2 or 3 coordinates.
+
+    Raises:
+        TypeError: The default is not made of numbers.
+        ValueError: The default has not 2 or 3 coordinates, or one is not finite.
+    """
+    where = as_point(label, default, (2, 3))
+    return Parameter(_name(label), label, ParameterKind.POINT, where, group=group, help=help)
+
+
+def _name(label: object) -> str:
+    """The identifier made of a label's letters and digits."""
+    if not isinstance(label, str):
+        raise TypeError(f"a parameter's label is a text, not {type(label).__name__}")
+    if not label.strip():
+        raise ValueError("a parameter needs a label")
+    if not label.isprintable():
+        raise ValueError(f"a parameter's label is one line of printable text, not {label!r}")
+    # Accents fall off their letters, so that "Größe" is grosse and not gr_e.
+    letters = unicodedata.normalize("NFKD", label.casefold())
+    letters = "".join(c for c in letters if not unicodedata.combining(c))
+    name = re.sub(r"[^a-z0-9]+", "_", letters).strip("_")
+    if not name:
+        raise ValueError(f"the label '{label}' has no Latin letter or digit to make a name of")
+    return f"p_{name}" if name[0].isdigit() else name
+
+
+def _checked(parameter: Parameter) -> Parameter:
+    """The parameter with its default as plain numbers within its range."""
+    try:
+        default = parameter.check(parameter.default)
+    except ValueError as error:
+        raise ValueError(f"default of {error}") from None
+    except TypeError as error:
+        raise TypeError(f"default of {error}") from None
+    return replace(parameter, default=default)
+
+
+def _check_range(label: str, low: float, high: float, step: float | None) -> None:
+    if low >= high:
+        raise ValueError(f"'{label}': low ({low:g}) must be below high ({high:g})")
+    if step is not None and step <= 0:
+        raise ValueError(f"'{label}': step must be above 0, not {step:g}")
+
+
+def _size(value: Value) -> int:
+    assert isinstance(value, tuple)
+    return len(value)

@@ -1,0 +1,104 @@
+"""Picking and blending values, component by component."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from distal.lang import (
+    Floats,
+    clamp,
+    func,
+    ivec2,
+    ivec3,
+    ivec4,
+    max,
+    min,
+    select,
+    uint,
+    uvec2,
+    uvec3,
+    uvec4,
+    vec2,
+    vec3,
+    vec4,
+)
+
+Numbers = TypeVar(
+    "Numbers",
+    float,
+    int,
+    uint,
+    vec2,
+    vec3,
+    vec4,
+    ivec2,
+    ivec3,
+    ivec4,
+    uvec2,
+    uvec3,
+    uvec4,
+)
+
+RADIANS_PER_DEGREE = 0.017453292519943295
+DEGREES_PER_RADIAN = 57.29577951308232
+
+
+@func
+def smaller_int(a: int, b: int) -> int:
+    """The smaller of two ints, for targets whose ``min`` takes floats only."""
+    return select(b < a, b, a)
+
+
+@func
+def larger_int(a: int, b: int) -> int:
+    """The larger of two ints, for targets whose ``max`` takes floats only."""
+    return select(a < b, b, a)
+
+
+@func
+def magnitude_int(x: int) -> int:
+    """The magnitude of an int, for targets whose ``abs`` takes floats only."""
+    return select(x < 0, -x, x)
+
+
+@func
+def sign_int(x: int) -> int:
+    """-1, 0 or 1, for targets whose ``sign`` takes floats only."""
+    return select(x < 0, -1, select(x > 0, 1, 0))
+
+
+@func
+def clamped(x: Numbers, low: Numbers, high: Numbers) -> Numbers:
+    """``x`` held between ``low`` and ``high``; ``high`` wins when they cross."""
+    return min(max(x, low), high)
+
+
+@func
+def mixed(a: Floats, b: Floats, t: Floats) -> Floats:
+    """The value at ``t`` on the line from ``a`` (0) to ``b`` (1)."""
+    return a + (b - a) * t
+
+
+@func
+def stepped(edge: float, x: float) -> float:
+    """0 below ``edge``, else 1."""
+    return select(x < edge, 0.0, 1.0)
+
+
+@func
+def smoothstepped(low: Floats, high: Floats, x: Floats) -> Floats:
+    """Hermite's cubic from 0 at ``low`` to 1 at ``high``, level at both ends."""
+    t = clamp((x - low) / (high - low), 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+@func
+def to_radians(x: Floats) -> Floats:
+    """Degrees to radians."""
+    return x * RADIANS_PER_DEGREE
+
+
+@func
+def to_degrees(x: Floats) -> Floats:
+    """Radians to degrees."""
+    return x * DEGREES_PER_RADIAN

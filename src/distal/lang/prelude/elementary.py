@@ -1,0 +1,289 @@
+"""Elementary functions for the CPU in 32 bits: polynomials without branches, a few ulp exact.
+
+They decide much of a picture's speed, and results do not depend on a machine's mathematics
+library. ``tools/fit_elementary.py`` made the coefficients (minimax fits of relative error) and
+documents how; arguments are first brought into the fitted interval after W. J. Cody and W. Waite,
+"Software Manual for the Elementary Functions" (1980): a whole multiple of the period is taken away
+in two parts, the first so short that its product with the multiple is exact.
+
+Rounding to whole numbers is done by adding and taking away 1.5 * 2^23, whose last bit counts ones:
+the sum's low bits then hold the whole number, ready for sign and exponent. That, and building
+floats from bits, works in 32 bits only; in 64 bit precision the backend computes these rows itself.
+Errors named below are measured (``tests/parity/test_elementary.py``), in units of the last place.
+"""
+
+from __future__ import annotations
+
+from distal.lang import (
+    abs,
+    exp,
+    exp2,
+    float_bits_to_int,
+    func,
+    int_bits_to_float,
+    log2,
+    max,
+    min,
+    select,
+    sqrt,
+)
+from distal.lang.prelude.hidden import raw_atan2, raw_power
+
+ROUNDER = 12582912.0  # 1.5 * 2^23
+SMALLEST_NORMAL = 1.1754943508222875e-38
+BITS_OF_HALF_ROOT = 0x3F3504F3  # of sqrt(1/2): where the fraction's interval starts
+
+INVERSE_PI = 0.3183098861837907
+PI = 3.141592653589793
+HALF_PI = 1.5707963267948966
+PI_HIGH = 3.140625  # 8 bits
+PI_LOW = 0.0009676535897932385
+HALF_PI_HIGH = 1.5703125
+HALF_PI_LOW = 0.00048382679489661923
+LOG2_E = 1.4426950408889634
+LOG_2 = 0.6931471805599453
+LOG_2_HIGH = 0.693359375  # 9 bits
+LOG_2_LOW = -0.00021219444005469057
+
+
+@func
+def sine_near_zero(r: float) -> float:
+    """The sine for ``abs(r) <= pi / 2``."""
+    s = r * r
+    p = -0.00019809778 + s * 2.606103e-06
+    p = 0.008333069 + s * p
+    p = -0.1666666 + s * p
+    return r + r * s * p
+
+
+@func
+def sine(x: float) -> float:
+    """The sine: error below 1e-7 for ``abs(x) < 100``, 1e-6 for ``abs(x) < 10000``."""
+    shifted = x * INVERSE_PI + ROUNDER
+    n = shifted - ROUNDER
+    r = (x - n * PI_HIGH) - n * PI_LOW
+    # An odd multiple of pi turns the sign.
+    sign = float_bits_to_int(shifted) << 31
+    return int_bits_to_float(float_bits_to_int(sine_near_zero(r)) ^ sign)
+
+
+@func
+def cosine(x: float) -> float:
+    """The cosine, by the distance to its nearest zero; errors as the sine's."""
+    shifted = (x * INVERSE_PI + 0.5) + ROUNDER
+    n = (shifted - ROUNDER) - 0.5
+    r = (x - n * PI_HIGH) - n * PI_LOW
+    # cos(n pi + r) for n half below the whole m is (-1)^m sin(r).
+    sign = float_bits_to_int(shifted) << 31
+    return int_bits_to_float(float_bits_to_int(sine_near_zero(r)) ^ sign)
+
+
+@func
+def tangent(x: float) -> float:
+    """The tangent: of the rest to the nearest multiple of pi / 2, or minus its inverse."""
+    shifted = x * (2.0 * INVERSE_PI) + ROUNDER
+    n = shifted - ROUNDER
+    r = (x - n * HALF_PI_HIGH) - n * HALF_PI_LOW
+    s = r * r
+    p = 0.00310965 + s * 0.009391076
+    p = 0.024437124 + s * p
+    p = 0.053409096 + s * p
+    p = 0.1333883 + s * p
+    p = 0.33333156 + s * p
+    t = r + r * s * p
+    return select((float_bits_to_int(shifted) & 1) == 0, t, -1.0 / t)
+
+
+@func
+def scaled_by_power_of_2(x: float, shifted: float) -> float:
+    """``x`` times 2 to the whole number in the low bits of ``shifted``, from -127 (0) to 128."""
+    return x * int_bits_to_float((float_bits_to_int(shifted) + 127) << 23)
+
+
+@func
+def exponential(x: float) -> float:
+    """e^x, relative error below 1e-7; 0 below x = -87.6, infinity above 88.3."""
+    held = min(max(x, -88.0), 89.0)
+    shifted = held * LOG2_E + ROUNDER
+    n = shifted - ROUNDER
+    r = (held - n * LOG_2_HIGH) - n * LOG_2_LOW
+    p = 0.008368677 + r * 0.0013820735
+    p = 0.041668266 + r * p
+    p = 0.16666521 + r * p
+    p = 0.49999994 + r * p
+    return scaled_by_power_of_2(1.0 + (r + r * r * p), shifted)
+
+
+@func
+def exponential_base_2(x: float) -> float:
+    """2^x, relative error below 2e-7; 0 below x = -126.5, infinity above 127.5."""
+    held = min(max(x, -127.0), 128.0)
+    shifted = held + ROUNDER
+    f = held - (shifted - ROUNDER)
+    p = 0.0013390807 + f * 0.00015326454
+    p = 0.009618506 + f * p
+    p = 0.0555036 + f * p
+    p = 0.24022648 + f * p
+    p = 0.6931472 + f * p
+    return scaled_by_power_of_2(1.0 + f * p, shifted)
+
+
+@func
+def logarithm_near_one(f: float) -> float:
+    """log(1 + f) for 1 + f from sqrt(1/2) to sqrt(2)."""
+    p = -0.14267501 + f * 0.08701546
+    p = 0.14914362 + f * p
+    p = -0.16577569 + f * p
+    p = 0.19963105 + f * p
+    p = -0.25001338 + f * p
+    p = 0.3333391 + f * p
+    s = f * f
+    return f + s * (f * p - 0.5)
+
+
+@func
+def exponent_of(x: float) -> int:
+    """The exponent that leaves a fraction from sqrt(1/2) to sqrt(2)."""
+    return (float_bits_to_int(x) - BITS_OF_HALF_ROOT) >> 23
+
+
+@func
+def fraction_of(x: float, exponent: int) -> float:
+    """``x`` over 2 to that exponent."""
+    return int_bits_to_float(float_bits_to_int(x) - (exponent << 23))
+
+
+@func
+def logarithm(x: float) -> float:
+    """The natural logarithm of a positive normal number; about -88 for 0."""
+    exponent = exponent_of(x)
+    n = float(exponent)
+    r = logarithm_near_one(fraction_of(x, exponent) - 1.0)
+    return n * LOG_2_HIGH + (n * LOG_2_LOW + r)
+
+
+@func
+def logarithm_base_2(x: float) -> float:
+    """The logarithm to base 2 of a positive normal number; about -127 for 0."""
+    exponent = exponent_of(x)
+    r = logarithm_near_one(fraction_of(x, exponent) - 1.0)
+    return float(exponent) + r * LOG2_E
+
+
+@func
+def power(x: float, y: float) -> float:
+    """2^(y log2(x)); for x at or below 0 (or too small to tell): 1, 0 or infinity as y says."""
+    # A logarithm far below every real one gives those three by itself; 0 times it is 0.
+    logarithm = select(x < SMALLEST_NORMAL, -1e30, log2(x))
+    return exp2(y * logarithm)
+
+
+@func
+def guarded_power(x: float, y: float) -> float:
+    """The target's power where it is defined; 0 ** 0 = 1, and 0 to a negative power is large."""
+    at_zero = select(y == 0.0, 1.0, 0.0)
+    return select(x > 0.0 or y < 0.0, raw_power(max(x, SMALLEST_NORMAL), y), at_zero)
+
+
+@func
+def arc_sine_near_zero(t: float, s: float) -> float:
+    """The arc sine of ``t`` up to 1/2, ``s`` its square."""
+    p = 0.024184741 + s * 0.0421584
+    p = 0.045469154 + s * p
+    p = 0.074953094 + s * p
+    p = 0.16666752 + s * p
+    return t + t * s * p
+
+
+@func
+def arc_sine(x: float) -> float:
+    """The arc sine; above 1/2 by asin(a) = pi/2 - 2 asin(sqrt((1 - a) / 2))."""
+    a = abs(x)
+    large = a > 0.5
+    s = select(large, 0.5 - 0.5 * a, a * a)
+    q = arc_sine_near_zero(select(large, sqrt(s), a), s)
+    r = select(large, HALF_PI - 2.0 * q, q)
+    return select(x < 0.0, -r, r)
+
+
+@func
+def arc_cosine(x: float) -> float:
+    """The arc cosine, exact near 1 and -1 too."""
+    a = abs(x)
+    large = a > 0.5
+    s = select(large, 0.5 - 0.5 * a, a * a)
+    q = arc_sine_near_zero(select(large, sqrt(s), a), s)
+    near_end = select(x < 0.0, PI - 2.0 * q, 2.0 * q)
+    near_zero = select(x < 0.0, HALF_PI + q, HALF_PI - q)
+    return select(large, near_end, near_zero)
+
+
+@func
+def arc_tangent_up_to_one(t: float) -> float:
+    """The arc tangent for ``t`` from 0 to 1."""
+    s = t * t
+    p = -0.01636355 + s * 0.0029195533
+    p = 0.043205086 + s * p
+    p = -0.07551675 + s * p
+    p = 0.10665771 + s * p
+    p = -0.14211002 + s * p
+    p = 0.19993767 + s * p
+    p = -0.33333153 + s * p
+    return t + t * s * p
+
+
+@func
+def arc_tangent(x: float) -> float:
+    """The arc tangent; above 1 by the inverse."""
+    a = abs(x)
+    large = a > 1.0
+    q = arc_tangent_up_to_one(select(large, 1.0 / a, a))
+    r = select(large, HALF_PI - q, q)
+    return select(x < 0.0, -r, r)
+
+
+@func
+def arc_tangent_2(y: float, x: float) -> float:
+    """The angle of (x, y); 0 for (0, 0)."""
+    across = abs(x)
+    up = abs(y)
+    # The smallest normal float stands in for 0, so that (0, 0) has the angle of (1, 0).
+    q = arc_tangent_up_to_one(min(across, up) / max(max(across, up), SMALLEST_NORMAL))
+    first = select(up > across, HALF_PI - q, q)
+    r = select(x < 0.0, PI - first, first)
+    return select(y < 0.0, -r, r)
+
+
+@func
+def guarded_arc_tangent_2(y: float, x: float) -> float:
+    """The target's angle where it is defined: away from (0, 0), and from x = 0 alone."""
+    across = select(x == 0.0 and y == 0.0, 1.0, x)
+    return raw_atan2(y, across)
+
+
+@func
+def hyperbolic_sine(x: float) -> float:
+    """(e^x - e^-x) / 2, and a polynomial below 1, where the difference would lose digits."""
+    s = x * x
+    p = 0.0083302725 + s * 0.00020373041
+    p = 0.16666716 + s * p
+    e = exp(x)
+    return select(abs(x) < 1.0, x + x * s * p, 0.5 * e - 0.5 / e)
+
+
+@func
+def hyperbolic_cosine(x: float) -> float:
+    """(e^x + e^-x) / 2."""
+    e = exp(x)
+    return 0.5 * e + 0.5 / e
+
+
+@func
+def hyperbolic_tangent(x: float) -> float:
+    """1 - 2 / (e^2x + 1), and a polynomial below 5/8, where the difference would lose digits."""
+    s = x * x
+    p = 0.020628167 + s * -0.0056922967
+    p = -0.053736515 + s * p
+    p = 0.13331406 + s * p
+    p = -0.3333328 + s * p
+    return select(abs(x) < 0.625, x + x * s * p, 1.0 - 2.0 / (exp(2.0 * x) + 1.0))

@@ -1,0 +1,38 @@
+"""The hidden rows of the table under the names that prelude code calls them by.
+
+They are what a target computes by itself with a narrower meaning than the language promises; the
+prelude functions around them make up the difference. Authors never see them.
+"""
+
+from __future__ import annotations
+
+from typing import Final, Protocol, TypeVar
+
+from distal.ir.intrinsics import INTRINSICS
+from distal.lang import uint
+from distal.lang.names import LangFunction
+
+Integers = TypeVar("Integers", int, uint)
+
+
+class _OfTwoFloats(Protocol):
+    def __call__(self, a: float, b: float, /) -> float: ...
+
+
+class _OfTwoIntegers(Protocol):
+    def __call__(self, a: Integers, b: Integers, /) -> Integers: ...
+
+
+class _FloatToInt(Protocol):
+    def __call__(self, x: float, /) -> int: ...
+
+
+class _FloatToUint(Protocol):
+    def __call__(self, x: float, /) -> uint: ...
+
+
+raw_atan2: Final[_OfTwoFloats] = LangFunction(INTRINSICS["raw_atan2"])
+raw_power: Final[_OfTwoFloats] = LangFunction(INTRINSICS["raw_power"])
+saturated_int: Final[_FloatToInt] = LangFunction(INTRINSICS["saturated_int"])
+saturated_uint: Final[_FloatToUint] = LangFunction(INTRINSICS["saturated_uint"])
+truncated_quotient: Final[_OfTwoIntegers] = LangFunction(INTRINSICS["truncated_quotient"])

@@ -1,0 +1,132 @@
+"""Textures and buffers: read-only data that scene code reads.
+
+Declared in the author's module; in scene code the name is the resource. Only the shape of the data
+is looked at here. Loading a file, and checking what is in it, is done by whoever runs the program.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, ClassVar
+
+from distal.ir.types import (
+    FLOAT,
+    INT,
+    TEXTURE_2D,
+    TEXTURE_3D,
+    TEXTURE_CUBE,
+    UINT,
+    Kind,
+    Type,
+    vector_of,
+)
+from distal.lang.values import VectorValue, uint
+
+_WRAPS = ("repeat", "clamp")
+
+
+def _beside(file: str, data: Any) -> Any:
+    """The names of files made whole where such a file stands beside ``file``."""
+    if isinstance(data, list | tuple) and len(data) == 6:  # a cube's faces
+        return [_beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
+    if not isinstance(data, str | PathLike):
+        return data
+    candidate = os.path.join(os.path.dirname(os.path.abspath(file)), os.fspath(data))
+    return candidate if os.path.exists(candidate) else data
+
+
+class TextureValue:
+    """What the three kinds of texture share.
+
+    Attributes:
+        data: A file's name or path, an array, or nested lists of numbers. A relative name is looked
+            for beside the file that declares the texture, then in the working folder.
+        wrap: What lies outside: "repeat" or "clamp" (the edge goes on).
+    """
+
+    __distal_type__: ClassVar[Type]
+
+    def __init__(self, data: Any, wrap: str = "repeat") -> None:
+        if wrap not in _WRAPS:
+            raise ValueError(f"wrap is 'repeat' or 'clamp', not {wrap!r}")
+        declared_in = sys._getframe(1).f_globals.get("__file__")
+        self.data = _beside(declared_in, data) if isinstance(declared_in, str) else data
+        self.wrap = wrap
+
+
+class Texture2D(TextureValue):
+    """A picture, sampled by a vec2: (0, 0) is the lower left corner, (1, 1) the upper right."""
+
+    __distal_type__ = TEXTURE_2D
+
+
+class TextureCube(TextureValue):
+    """Six square pictures, sampled by a direction."""
+
+    __distal_type__ = TEXTURE_CUBE
+
+
+class Texture3D(TextureValue):
+    """A volume, sampled by a vec3 from (0, 0, 0) to (1, 1, 1)."""
+
+    __distal_type__ = TEXTURE_3D
+
+
+@dataclass(frozen=True, slots=True)
+class BufferAnnotation:
+    """``Buffer[element]`` as written; not checked here."""
+
+    element: Any
+
+
+class Buffer:
+    """A run of numbers or vectors, read by index.
+
+    Attributes:
+        data: Floats, ints, vectors or tuples of 2 to 4 floats; or an array (n,) or (n, 2 to 4).
+        element: The type of one element.
+    """
+
+    def __init__(self, data: Any) -> None:
+        self.data = data
+        self.element = _element(data)
+
+    def __class_getitem__(cls, item: Any) -> BufferAnnotation:
+        """Name the type of a buffer parameter."""
+        return BufferAnnotation(item)
+
+
+def _element(data: Any) -> Type:
+    dtype = getattr(data, "dtype", None)
+    if dtype is not None:
+        return _array_element(data.shape, dtype.kind)
+    if isinstance(data, str | bytes) or not isinstance(data, Sequence):
+        raise TypeError("a Buffer takes a list of numbers or vectors, or an array")
+    if len(data) == 0:
+        raise ValueError("a Buffer needs at least one element")
+    sizes = {len(e) if isinstance(e, tuple | list | VectorValue) else 1 for e in data}
+    if len(sizes) > 1 or not sizes <= {1, 2, 3, 4}:
+        raise ValueError("all elements of a Buffer have one size, a number or 2 to 4 of them")
+    (size,) = sizes
+    if size > 1:
+        return vector_of(Kind.FLOAT, size)
+    if any(isinstance(e, bool) or not isinstance(e, int | float) for e in data):
+        raise TypeError("a Buffer takes numbers or vectors")
+    if all(isinstance(e, uint) for e in data):
+        return UINT
+    return INT if all(isinstance(e, int) for e in data) else FLOAT
+
+
+def _array_element(shape: tuple[int, ...], kind: str) -> Type:
+    if len(shape) == 2 and 2 <= shape[1] <= 4 and shape[0] > 0:
+        return vector_of(Kind.FLOAT, shape[1])
+    if len(shape) != 1 or shape[0] == 0:
+        raise ValueError(f"a Buffer takes an array (n,) or (n, 2 to 4), not {shape}")
+    scalars = {"f": FLOAT, "i": INT, "u": UINT}
+    if kind not in scalars:
+        raise TypeError("a Buffer's array holds floats or integers")
+    return scalars[kind]

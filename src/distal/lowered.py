@@ -1,0 +1,67 @@
+"""Functions as the front end lowers them, told apart by what they mean.
+
+What flows in: recorded functions and composed objects. What flows out: their IR, a digest under
+which a kernel is kept, and whether what they captured has changed since. Runs nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+from distal.frontend import lower_captured
+from distal.frontend.freshness import Captured
+from distal.ir.nodes import Module, Origin
+from distal.ir.printer import print_identity
+from distal.ir.types import Type
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.names import LangFunction
+from distal.passes.numbers import freeze as freeze_numbers
+
+Types: TypeAlias = tuple[Type, ...] | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lowered:
+    """A lowered function.
+
+    Attributes:
+        module: The IR.
+        digest: Hash of the printed IR without numbers' values: equal for functions that mean the
+            same but for these.
+        source_hash: Hash of the text of every file that its functions stand in.
+        captured: Tells whether the module still stands for the function.
+    """
+
+    module: Module
+    digest: str
+    source_hash: str
+    captured: Captured
+
+    @staticmethod
+    def of(function: Func | Composed | LangFunction, types: Types) -> Lowered:
+        """Lower a function for argument types."""
+        module, captured = lower_captured(function, types)
+        texts = sorted({"".join(o.source.lines) for o in captured.overloads})
+        return Lowered(module, _hash(print_identity(module)), _hash("\0".join(texts)), captured)
+
+    def frozen(self, numbers: Mapping[str, Any]) -> Lowered:
+        """The same with these values of a scene's numbers as constants."""
+        uniforms = tuple(
+            replace(u, default=numbers[u.name]) if u.origin is Origin.NUMBER else u
+            for u in self.module.uniforms
+        )
+        module = freeze_numbers(replace(self.module, uniforms=uniforms))
+        return replace(self, module=module, digest=_hash(print_identity(module)))
+
+    @property
+    def resources(self) -> dict[str, Any]:
+        """What the author declared of textures and buffers, by name."""
+        return {r.name: r.source for r in self.module.resources}
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()

@@ -1,0 +1,171 @@
+"""The live picture of a notebook cell.
+
+What flows in: something that can be looked at, and values of its parameters. What flows out: a
+widget that shows it in the browser, whose state (parameters, time, view, camera) either side may
+change. Knows nothing of how the browser draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import anywidget
+import traitlets
+
+from distal.export.payload import payload
+from distal.lang.parameters import Parameter
+from distal.scene.steering import Steering
+from distal.scene.viewable import Viewable, viewable
+
+_PLAYER: Final = Path(__file__).parents[1] / "export" / "player.js"
+
+
+class LiveView(anywidget.AnyWidget):
+    """A live picture. Observe ``params``, ``time``, ``view``, ``steering`` as any trait's.
+
+    Attributes:
+        params: The value of each parameter by name. Set it, or ``set(name=value)``, from Python;
+            controls in the browser change it.
+        time: Seconds.
+        playing: Whether the time runs.
+        view: What is shown: "color", "normal", "depth" …
+        steering: How the camera was moved: ``yaw``, ``pitch``, ``zoom``, ``pan``.
+        error: What the browser's driver said of the shader, or "".
+    """
+
+    _esm = _PLAYER
+
+    payload = traitlets.Dict(read_only=True).tag(sync=True)
+    params = traitlets.Dict().tag(sync=True)
+    time = traitlets.Float(0.0).tag(sync=True)
+    playing = traitlets.Bool(False).tag(sync=True)
+    view = traitlets.Unicode("color").tag(sync=True)
+    steering = traitlets.Dict().tag(sync=True)
+    error = traitlets.Unicode("").tag(sync=True)
+
+    def __init__(
+        self,
+        obj: Any,
+        *,
+        size: tuple[int, int] = (640, 480),
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+        playing: bool | None = None,
+        view: str = "color",
+        panel: bool = True,
+    ) -> None:
+        """A live picture of a scene, a shape or an ``@image``.
+
+        Args:
+            obj: What is shown.
+            size: Width and height of the picture in CSS pixels.
+            params: Values of parameters by name; the others have their defaults.
+            time: Seconds at the start.
+            playing: Whether the time runs; None: if the picture depends on it.
+            view: What is shown first.
+            panel: Whether controls stand beside the picture.
+
+        Raises:
+            CompileError: The scene code has mistakes, or says what WebGL cannot do.
+            ValueError: A value lies outside its parameter's range, or there is no such view.
+        """
+        self._seen: Viewable = viewable(obj, params, time)
+        self._parameters: Mapping[str, Parameter] = {p.name: p for p in self._seen.parameters}
+        if view not in self._seen.views:
+            raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
+        values = self._checked(params or {})
+        made = payload(self._seen, size=size, params=values, time=time, panel=panel)
+        super().__init__(
+            params={**{p.name: _plain(p.default) for p in self._seen.parameters}, **values},
+            time=float(time),
+            playing=self._seen.animated if playing is None else playing,
+            view=view,
+            steering=_as_dict(Steering()),
+        )
+        self.set_trait("payload", made)
+        self._size = size
+
+    def set(self, **values: Any) -> None:
+        """Change parameters: ``widget.set(softness=0.1)``.
+
+        Raises:
+            ValueError: There is no such parameter, or a value lies outside its range.
+            TypeError: A value is of another kind.
+        """
+        self.params = {**self.params, **values}
+
+    def render(self, size: tuple[int, int] | None = None, **options: Any) -> Any:
+        """The picture as it stands now, computed by Python: a ``Picture`` to save or to measure.
+
+        Args:
+            size: Width and height in pixels; the widget's without it.
+            options: As for ``Scene.render``: ``device``, ``threads`` …
+        """
+        moved = _as_steering(self.steering)
+        return self._seen.render(
+            size=size or self._size,
+            time=self.time,
+            params=dict(self.params),
+            view=self.view,
+            steering=moved if self._seen.steers else None,
+            **options,
+        )
+
+    def _checked(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        unknown = set(values) - set(self._parameters)
+        if unknown:
+            known = ", ".join(self._parameters) or "none"
+            raise ValueError(f"there is no parameter '{min(unknown)}'; parameters: {known}")
+        return {name: _plain(self._parameters[name].check(v)) for name, v in values.items()}
+
+    @traitlets.validate("params")
+    def _check_params(self, proposal: Any) -> dict[str, Any]:
+        # What one side leaves out keeps its value: nothing is lost by a partial change.
+        return {**self.params, **self._checked(proposal["value"])}
+
+    @traitlets.validate("view")
+    def _check_view(self, proposal: Any) -> str:
+        view: str = proposal["value"]
+        if view not in self._seen.views:
+            raise traitlets.TraitError(
+                f"there is no view '{view}'; views: {', '.join(self._seen.views)}"
+            )
+        return view
+
+    @traitlets.validate("steering")
+    def _check_steering(self, proposal: Any) -> dict[str, Any]:
+        return _as_dict(_as_steering(proposal["value"]))
+
+
+def _as_steering(value: Mapping[str, Any] | Steering) -> Steering:
+    if isinstance(value, Steering):
+        return value
+    numbers = {"yaw": 0.0, "pitch": 0.0, "zoom": 1.0, "pan": (0.0, 0.0), **value}
+    try:
+        x, y = (float(c) for c in numbers.pop("pan"))
+        return Steering(pan=(x, y), **{name: float(v) for name, v in numbers.items()})
+    except (TypeError, ValueError):
+        raise traitlets.TraitError(
+            f"a steering is yaw, pitch, zoom and pan (two numbers), not {value!r}"
+        ) from None
+
+
+def _as_dict(steering: Steering) -> dict[str, Any]:
+    return {
+        "yaw": steering.yaw,
+        "pitch": steering.pitch,
+        "zoom": steering.zoom,
+        "pan": list(steering.pan),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """A parameter's value as JSON has it."""
+    return list(value) if isinstance(value, tuple) else value
+
+
+def show(obj: Any, **options: Any) -> LiveView:
+    """A live picture of a scene, a shape or an ``@image``; see ``LiveView``."""
+    return LiveView(obj, **options)

@@ -1,0 +1,43 @@
+"""Callees before callers.
+
+What flows in: functions in any order, and the entry. What flows out: those that the entry
+reaches, each after everything it calls; otherwise in the order they are called, so that the same
+program always gives the same order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from distal.ir.nodes import Call, Function, FunctionRef
+from distal.ir.walk import expressions_in
+
+
+def in_call_order(functions: Iterable[Function], entry: str) -> tuple[Function, ...]:
+    """The functions that ``entry`` reaches, callees first."""
+    known = {f.name: f for f in functions}
+    done: dict[str, Function] = {}
+    opened: set[str] = set()
+    stack = [(entry, False)]
+    while stack:
+        name, ready = stack.pop()
+        if name in done:
+            continue
+        if ready:
+            done[name] = known[name]
+            continue
+        assert name not in opened, f"{name} calls itself"
+        opened.add(name)
+        stack.append((name, True))
+        stack.extend((callee, False) for callee in reversed(_callees(known, name)))
+    return tuple(done.values())
+
+
+def _callees(known: Mapping[str, Function], name: str) -> list[str]:
+    found: dict[str, None] = {}
+    for e in expressions_in(known[name].body):
+        if isinstance(e, Call):
+            found[e.function] = None
+        elif isinstance(e, FunctionRef):
+            found[e.name] = None
+    return list(found)

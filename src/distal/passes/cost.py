@@ -1,0 +1,165 @@
+"""What computing a node costs, in scalar operations, roughly.
+
+What flows in: expressions and functions. What flows out: whole numbers that passes compare with
+each other; they only have to be right within a factor of two. Taking values apart and putting
+them together is free: it is no work on any target.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Final, assert_never
+
+from distal.ir.nodes import (
+    Apply,
+    Binary,
+    BinaryOp,
+    Builtin,
+    Call,
+    Cast,
+    Compare,
+    Compose,
+    Const,
+    Construct,
+    Expr,
+    Field,
+    For,
+    Function,
+    FunctionRef,
+    Gradient,
+    Index,
+    Logical,
+    MatMul,
+    PerFrame,
+    Read,
+    Resource,
+    Sample,
+    Select,
+    Size,
+    Splat,
+    Stmt,
+    Swizzle,
+    Texel,
+    Unary,
+    Uniform,
+    While,
+)
+from distal.ir.types import Kind, Matrix, Scalar, Type, Vector, component_count, kind_of
+from distal.ir.walk import blocks, expressions, nodes_in, statements_in
+
+UNKNOWN_ROUNDS: Final = 16  # what a loop is taken to run when its bounds are not constant
+MOST_ROUNDS: Final = 128
+
+# For each component of the first argument.
+_BY_COMPONENT: Final[dict[str, int]] = {
+    **dict.fromkeys(("abs", "sign", "floor", "ceil", "trunc", "round", "min", "max"), 1),
+    **dict.fromkeys(("any", "all", "isnan", "isinf", "transpose"), 1),
+    **dict.fromkeys(("fract", "clamp", "step", "radians", "degrees", "dot"), 2),
+    **dict.fromkeys(("mix", "outer"), 3),
+    **dict.fromkeys(("cross", "reflect", "faceforward", "length", "distance", "sqrt"), 4),
+    **dict.fromkeys(("inversesqrt", "normalize", "determinant"), 5),
+    **dict.fromkeys(("mod", "smoothstep", "refract", "pcg"), 8),
+    **dict.fromkeys(("exp", "exp2", "log", "log2", "sin", "cos"), 12),
+    **dict.fromkeys(("tan", "asin", "acos", "atan", "inverse", "sinh", "cosh", "tanh"), 16),
+    **dict.fromkeys(("pow", "raw_power", "atan2", "raw_atan2"), 24),
+    "truncated_quotient": 8,
+}
+
+
+def _components(type: Type) -> int:
+    return component_count(type) if isinstance(type, Scalar | Vector | Matrix) else 4
+
+
+def node_cost(e: Expr, calls: Mapping[str, int]) -> int:
+    """The cost of one node without its operands; ``calls`` holds what functions cost."""
+    match e:
+        case Const() | Read() | Uniform() | PerFrame() | Resource():
+            return 0
+        case Splat() | Compose() | Swizzle() | Field() | Construct() | FunctionRef():
+            return 0
+        case Unary() | Compare() | Cast() | Select():
+            return _components(e.type)
+        case Logical() | Size():
+            return 1
+        case Binary(op, _, _, type):
+            return _components(type) * _operator_cost(op, kind_of(type))
+        case MatMul(lhs, _, type):
+            products = _components(type)
+            side = lhs.type.size if isinstance(lhs.type, Vector | Matrix) else 1
+            return 2 * products * side
+        case Index(_, index):
+            return 0 if isinstance(index, Const) else 3
+        case Builtin(name, args):
+            return _BY_COMPONENT.get(name, 1) * _components(args[0].type)
+        case Call(function):
+            return 2 + calls.get(function, 100)
+        case Sample() | Texel():
+            return 20
+        case Apply() | Gradient():
+            return 100
+        case _:
+            assert_never(e)
+
+
+def _operator_cost(op: BinaryOp, kind: Kind | None) -> int:
+    match op:
+        case BinaryOp.DIV:
+            return 4
+        case BinaryOp.FLOOR_DIV | BinaryOp.MOD:
+            return 8
+        case _:
+            return 1
+
+
+class Costs:
+    """Costs of whole expressions, each distinct node counted once."""
+
+    def __init__(self, calls: Mapping[str, int]) -> None:
+        self.calls = calls
+        self._found: dict[Expr, int] = {}
+
+    def of(self, e: Expr) -> int:
+        """The cost of an expression."""
+        found = self._found.get(e)
+        if found is None:
+            found = self._found[e] = sum(node_cost(n, self.calls) for n in nodes_in(e))
+        return found
+
+
+def function_costs(functions: Iterable[Function]) -> dict[str, int]:
+    """What a call of each function costs; callees stand first."""
+    costs: dict[str, int] = {}
+    for function in functions:
+        costs[function.name] = block_cost(function.body, costs)
+    return costs
+
+
+def block_cost(body: tuple[Stmt, ...], calls: Mapping[str, int]) -> int:
+    """The cost of running a block, both branches of an If counted."""
+    total = 0
+    for stmt in body:
+        own = sum(node_cost(n, calls) for n in nodes_in(*expressions(stmt)))
+        inner = sum(block_cost(b, calls) for b in blocks(stmt))
+        total += own + inner * rounds(stmt)
+        if isinstance(stmt, While):
+            total += own * (UNKNOWN_ROUNDS - 1)
+    return total
+
+
+def rounds(stmt: Stmt) -> int:
+    """How often a statement's blocks are taken to run."""
+    match stmt:
+        case For(_, Const(start), Const(stop), step):
+            return min(len(range(int(start), int(stop), step)), MOST_ROUNDS)
+        case For() | While():
+            return UNKNOWN_ROUNDS
+        case _:
+            return 1
+
+
+def size(body: tuple[Stmt, ...]) -> int:
+    """How much code a block is: its statements and the distinct nodes in each that do work."""
+    return sum(
+        1 + sum(1 for n in nodes_in(*expressions(s)) if not isinstance(n, Const | Read))
+        for s in statements_in(body)
+    )

@@ -1,0 +1,94 @@
+"""Removing locals that nothing reads.
+
+What flows in: the body of a function. What flows out: the same without Lets, Vars, assignments,
+branches and counted loops that no result depends on. A ``while`` stays: whether it ends is part
+of what the author wrote.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from distal.ir.nodes import Assign, Expr, For, If, Let, Read, Stmt, Var, While
+from distal.ir.walk import blocks, children, expressions, map_statement, nodes_in, root_of
+
+Names: TypeAlias = frozenset[str]
+
+
+class ReadNames:
+    """The locals that expressions read, remembered for each node."""
+
+    def __init__(self) -> None:
+        self._found: dict[Expr, Names] = {}
+
+    def of(self, root: Expr) -> Names:
+        """The names of the Reads in an expression."""
+        found = self._found
+        known = found.get(root)
+        if known is not None:
+            return known
+        for e in nodes_in(root):
+            if e in found:
+                continue
+            if isinstance(e, Read):
+                found[e] = frozenset((e.name,))
+                continue
+            below = [found[c] for c in children(e)]
+            if len(below) == 1:
+                found[e] = below[0]
+            else:
+                found[e] = frozenset().union(*below)
+        return found[root]
+
+
+def remove_dead(body: tuple[Stmt, ...], reads: ReadNames | None = None) -> tuple[Stmt, ...]:
+    """The body without what no Return, condition or bound depends on."""
+    reads = reads or ReadNames()
+    needs: dict[str, set[str]] = {}
+    wanted: set[str] = set()
+    _collect(body, reads, needs, wanted)
+    stack = list(wanted)
+    while stack:
+        for name in needs.get(stack.pop(), ()):
+            if name not in wanted:
+                wanted.add(name)
+                stack.append(name)
+    return _kept(body, wanted)
+
+
+def _collect(
+    body: tuple[Stmt, ...], reads: ReadNames, needs: dict[str, set[str]], wanted: set[str]
+) -> None:
+    """Gather what each local's value depends on, and what is wanted in any case."""
+    for stmt in body:
+        match stmt:
+            case Let(name, value) | Var(name, value):
+                needs.setdefault(name, set()).update(reads.of(value))
+            case Assign(target, value):
+                depends = needs.setdefault(root_of(target).name, set())
+                depends |= reads.of(value) | reads.of(target)
+            case _:
+                for e in expressions(stmt):
+                    wanted |= reads.of(e)
+                for block in blocks(stmt):
+                    _collect(block, reads, needs, wanted)
+
+
+def _kept(body: tuple[Stmt, ...], wanted: set[str]) -> tuple[Stmt, ...]:
+    kept: list[Stmt] = []
+    for stmt in body:
+        match stmt:
+            case Let(name) | Var(name):
+                if name not in wanted:
+                    continue
+            case Assign(target):
+                if root_of(target).name not in wanted:
+                    continue
+            case If() | For() | While():
+                stmt = map_statement(stmt, lambda e: e, lambda block: _kept(block, wanted))
+                if not isinstance(stmt, While) and not any(blocks(stmt)):
+                    continue
+            case _:
+                pass
+        kept.append(stmt)
+    return tuple(kept)

@@ -1,0 +1,144 @@
+"""What a target cannot say at all, and loops brought into the form it can.
+
+What flows in: a node or statement, the target, and what to blame. What flows out: nothing, or a
+CompileError that names the target and the mend. Inside a prelude function the blame is the
+author's operation that brought it in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from distal.diagnostics import CompileError, Span
+from distal.ir.build import compare, integer
+from distal.ir.nodes import (
+    Binary,
+    BinaryOp,
+    Break,
+    Builtin,
+    CompareOp,
+    Continue,
+    Expr,
+    For,
+    If,
+    Let,
+    Read,
+    Size,
+    Stmt,
+    Texel,
+    Unary,
+    UnaryOp,
+    While,
+)
+from distal.ir.target import Target
+from distal.ir.types import INT, Array, Buffer, Kind, Struct, Type, kind_of
+from distal.passes.naming import Names
+from distal.passes.ranges import Ranges
+
+_BIT_ROWS: Final = frozenset(
+    ("float_bits_to_int", "float_bits_to_uint", "int_bits_to_float", "uint_bits_to_float")
+)
+_BIT_OPS: Final = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.SHL, BinaryOp.SHR))
+# A loop longer than this is refused where its real length is only known when it runs.
+_LONGEST_CLAMPED_LOOP: Final = 65536
+
+_OTHER_TARGET: Final = "compile for another target, such as glsl-es300"
+
+
+@dataclass(frozen=True, slots=True)
+class Blame:
+    """A place of the author's and, where it helps, the name of what stands there."""
+
+    span: Span | None
+    what: str
+
+
+def _refusal(target: Target, lacks: str, blame: Blame, hint: str) -> CompileError:
+    needs = f", which '{blame.what}' needs" if blame.what else ""
+    return CompileError.at(f"{target.name} has no {lacks}{needs}", blame.span, hint)
+
+
+def refuse_expression(e: Expr, target: Target, blame: Blame) -> None:
+    """Raise a CompileError when the target has no such operation or type."""
+    if not target.unsigned:
+        _refuse_bits(e, target, blame)
+    if not target.texel_fetch and isinstance(e, Texel | Size):
+        if isinstance(e, Size) and isinstance(e.resource.type, Buffer):
+            return
+        what = "single texels" if isinstance(e, Texel) else "texture sizes"
+        raise _refusal(target, what, blame, f"use sample, or {_OTHER_TARGET}")
+
+
+def _refuse_bits(e: Expr, target: Target, blame: Blame) -> None:
+    if _has_uint(e.type):
+        raise _refusal(target, "unsigned integers", blame, f"use int, or {_OTHER_TARGET}")
+    bits = (
+        (isinstance(e, Binary) and e.op in _BIT_OPS and kind_of(e.type) is not Kind.BOOL)
+        or (isinstance(e, Unary) and e.op is UnaryOp.INVERT)
+        or (isinstance(e, Builtin) and e.name in _BIT_ROWS)
+    )
+    if bits:
+        raise _refusal(target, "bit operations", blame, _OTHER_TARGET)
+
+
+def _has_uint(type: Type) -> bool:
+    match type:
+        case Struct(_, fields):
+            return any(_has_uint(t) for _, t in fields)
+        case Array(element) | Buffer(element):
+            return _has_uint(element)
+        case _:
+            return kind_of(type) is Kind.UINT
+
+
+def refuse_statement(stmt: Stmt, target: Target, blame: Blame) -> None:
+    """Raise a CompileError when the target has no such statement."""
+    if isinstance(stmt, While) and not target.dynamic_loops:
+        raise CompileError.at(
+            f"{target.name} has no while loops",
+            blame.span,
+            "for i in range(N): with 'if not ...: break' as the first line",
+        )
+
+
+def constant_loop(
+    loop: For, ranges: Ranges, names: Names, target: Target, blame: Blame, before: list[Stmt]
+) -> For:
+    """The loop with constant bounds; ``before`` gets the statements that go in front of it.
+
+    Bounds that are clamped to a constant become that constant, and the loop leaves early or skips
+    the first rounds.
+    """
+    start, stop = ranges.constant(loop.start), ranges.constant(loop.stop)
+    if start is not None and stop is not None:
+        return replace(loop, start=integer(start), stop=integer(stop))
+    up = loop.step > 0
+    first = ranges.of(loop.start)[0 if up else 1]
+    last = ranges.of(loop.stop)[1 if up else 0]
+    steppable = start is not None or abs(loop.step) == 1
+    if not steppable or abs(last - first) > _LONGEST_CLAMPED_LOOP:
+        raise CompileError.at(
+            f"{target.name} needs loop bounds that are known when compiling",
+            blame.span,
+            "range(min(n, 64)) with a constant, or for i in range(64): if i >= n: break",
+        )
+    i = Read(loop.name, INT)
+    guards: list[Stmt] = []
+    if start is None:
+        bound = _bound_before(f"{loop.name}_start", loop.start, loop, names, before)
+        early = compare(CompareOp.LT if up else CompareOp.GT, i, bound)
+        guards.append(If(early, (Continue(span=loop.span),), (), span=loop.span))
+    if stop is None:
+        bound = _bound_before(f"{loop.name}_stop", loop.stop, loop, names, before)
+        late = compare(CompareOp.GE if up else CompareOp.LE, i, bound)
+        guards.append(If(late, (Break(span=loop.span),), (), span=loop.span))
+    body = (*guards, *loop.body)
+    return replace(loop, start=integer(first), stop=integer(last), body=body)
+
+
+def _bound_before(name: str, value: Expr, loop: For, names: Names, before: list[Stmt]) -> Expr:
+    """A bound, computed once before the loop."""
+    fresh = names.fresh(name)
+    before.append(Let(fresh, value, span=loop.span))
+    return Read(fresh, INT)

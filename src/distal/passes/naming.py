@@ -1,0 +1,59 @@
+"""Names that are free.
+
+What flows in: the names already taken, and a wish. What flows out: the wish, or the wish with the
+first number that is free. Deterministic: the same wishes in the same order give the same names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from distal.ir.nodes import For, Function, Let, Module, Var
+from distal.ir.walk import statements_in
+
+
+class Names:
+    """A growing set of taken names."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._taken = set(taken)
+        self._next: dict[str, int] = {}
+
+    def fresh(self, wish: str) -> str:
+        """The wish if it is free, else ``wish_2``, ``wish_3`` ...; taken from now on."""
+        name = wish
+        if name in self._taken:
+            count = self._next.get(wish, 2)
+            while f"{wish}_{count}" in self._taken:
+                count += 1
+            self._next[wish] = count + 1
+            name = f"{wish}_{count}"
+        self._taken.add(name)
+        return name
+
+    def numbered(self, stem: str) -> str:
+        """The first free name of ``stem_0``, ``stem_1`` ...; taken from now on."""
+        count = self._next.get(f"{stem}#", 0)
+        while f"{stem}_{count}" in self._taken:
+            count += 1
+        self._next[f"{stem}#"] = count + 1
+        name = f"{stem}_{count}"
+        self._taken.add(name)
+        return name
+
+
+def local_names(function: Function) -> Iterator[str]:
+    """The parameters and locals of a function."""
+    for param in function.params:
+        yield param.name
+    for stmt in statements_in(function.body):
+        if isinstance(stmt, Let | Var | For):
+            yield stmt.name
+
+
+def module_names(module: Module) -> Iterator[str]:
+    """The names a module gives to functions, uniforms, resources and per-frame values."""
+    yield from (f.name for f in module.functions)
+    yield from (u.name for u in module.uniforms)
+    yield from (r.name for r in module.resources)
+    yield from (name for name, _ in module.frame)

@@ -1,0 +1,288 @@
+"""Early exits turned into flags, for targets that run many pixels in step.
+
+What flows in: functions with return, break and continue anywhere. What flows out: functions with
+one Return, their last statement, and loops whose only Break is a last statement ``if flag: break``.
+A backend with lane masks then needs to know ifs and loops only. Knows nothing of masks.
+
+An exit on one side of an If moves what follows into the other side, which costs nothing; a flag
+is made only where an exit hides deeper than that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import assert_never
+
+from distal.diagnostics import Span
+from distal.ir import build
+from distal.ir.nodes import (
+    Assign,
+    Break,
+    Compose,
+    Construct,
+    Continue,
+    Expr,
+    For,
+    Function,
+    If,
+    Let,
+    Module,
+    Read,
+    Return,
+    Stmt,
+    Unary,
+    UnaryOp,
+    Var,
+    While,
+)
+from distal.ir.types import (
+    BOOL,
+    Array,
+    Buffer,
+    FunctionType,
+    Matrix,
+    Scalar,
+    Struct,
+    Texture,
+    Type,
+    Vector,
+)
+from distal.ir.walk import blocks, statements_in
+from distal.passes.context import Context
+
+_Block = tuple[Stmt, ...]
+_EXITS = (Return, Break, Continue)
+
+
+def run(module: Module, context: Context) -> Module:
+    """Predicate every function, where the target wants it."""
+    if not context.target.predicated:
+        return module
+    return replace(module, functions=tuple(map(predicated, module.functions)))
+
+
+def predicated(function: Function) -> Function:
+    """The function with a single Return at its end and single exits at the ends of loops."""
+    *before, last = function.body
+    exits = any(isinstance(s, _EXITS) for s in statements_in(tuple(before)))
+    if isinstance(last, Return) and not exits:
+        return function
+    return replace(function, body=_Predicate(function).body())
+
+
+def zero(type: Type) -> Expr:
+    """The value of a type whose every component is zero or false."""
+    match type:
+        case Scalar() | Vector():
+            return build.number(0, type)
+        case Matrix(size):
+            column = build.number(0, build.element_type(type))
+            return Compose((column,) * size, type)
+        case Struct(_, fields):
+            return Construct(tuple(zero(t) for _, t in fields), type)
+        case Array(element, length):
+            return Construct((zero(element),) * length, type)
+        case Texture() | Buffer() | FunctionType():
+            raise AssertionError(f"{type} is not a value")
+        case _:
+            assert_never(type)
+
+
+@dataclass(slots=True)
+class _Loop:
+    """The loop being rewritten: its flags, made when first needed."""
+
+    leave: str | None = None  # this loop ends
+    skip: str | None = None  # this round ends
+
+
+def _exits(stmt: Stmt) -> bool:
+    """Whether control may leave past the end of a statement."""
+    match stmt:
+        case Return() | Break() | Continue():
+            return True
+        case If():
+            return any(_exits(s) for block in blocks(stmt) for s in block)
+        case For(_, _, _, _, body) | While(_, body):
+            return _returns(body)  # its own breaks stay inside
+        case Let() | Var() | Assign():
+            return False
+        case _:
+            assert_never(stmt)
+
+
+def _always_exits(block: _Block) -> bool:
+    """Whether the end of a block is never reached."""
+    if not block:
+        return False
+    match block[-1]:
+        case Return() | Break() | Continue():
+            return True
+        case If(_, then, otherwise):
+            return _always_exits(then) and _always_exits(otherwise)
+        case _:
+            return False
+
+
+def _returns(block: _Block) -> bool:
+    return any(isinstance(s, Return) for s in statements_in(block))
+
+
+class _Predicate:
+    """Rewrites one function."""
+
+    def __init__(self, function: Function) -> None:
+        self.function = function
+        self.names = {p.name for p in function.params} | {
+            s.name for s in statements_in(function.body) if isinstance(s, Let | Var | For)
+        }
+        self.result = self._fresh("result")
+        self.returned: str | None = None
+
+    def body(self) -> _Block:
+        inner = self._block(self._guarded(self.function.body, in_loop=False), None)
+        head: list[Stmt] = [Var(self.result, zero(self.function.result), span=self.function.span)]
+        if self.returned is not None:
+            head.append(Var(self.returned, build.boolean(False), span=self.function.span))
+        last = Return(Read(self.result, self.function.result), span=self.function.span)
+        return (*head, *inner, last)
+
+    def _guarded(self, block: _Block, *, in_loop: bool) -> _Block:
+        """The block with each loop that may return followed by an exit of its own."""
+        done: list[Stmt] = []
+        for stmt in block:
+            match stmt:
+                case If(condition, then, otherwise):
+                    inner = (self._guarded(b, in_loop=in_loop) for b in (then, otherwise))
+                    done.append(If(condition, *inner, span=stmt.span))
+                case For() | While():
+                    done.append(replace(stmt, body=self._guarded(stmt.body, in_loop=True)))
+                    if _returns(stmt.body):
+                        leave: Stmt = Break(span=stmt.span)
+                        if not in_loop:
+                            leave = Return(self._result(), span=stmt.span)
+                        flag = Read(self._returned(), BOOL)
+                        done.append(If(flag, (leave,), (), span=stmt.span))
+                case Let() | Var() | Assign() | Return() | Break() | Continue():
+                    done.append(stmt)
+                case _:
+                    assert_never(stmt)
+        return tuple(done)
+
+    def _result(self) -> Read:
+        return Read(self.result, self.function.result)
+
+    def _fresh(self, wanted: str) -> str:
+        name, count = wanted, 2
+        while name in self.names:
+            name, count = f"{wanted}_{count}", count + 1
+        self.names.add(name)
+        return name
+
+    def _block(self, block: _Block, loop: _Loop | None) -> _Block:
+        """A block without exits: what follows one is moved or guarded."""
+        done: list[Stmt] = []
+        for position, stmt in enumerate(block):
+            rest = block[position + 1 :]
+            match stmt:
+                case Return(value):
+                    if value is not self._result():
+                        done.append(Assign(self._result(), value, span=stmt.span))
+                    if loop is not None:
+                        done.append(_raise(self._returned(), stmt.span))
+                        done.append(_raise(self._leave(loop), stmt.span))
+                    return tuple(done)
+                case Break():
+                    assert loop is not None
+                    done.append(_raise(self._leave(loop), stmt.span))
+                    return tuple(done)
+                case Continue():
+                    assert loop is not None
+                    return tuple(done)
+                case If() if _exits(stmt):
+                    done.extend(self._branch(stmt, rest, loop))
+                    return tuple(done)
+                case For() | While():
+                    done.append(self._loop(stmt))
+                case If(_, then, otherwise):
+                    done.append(self._if(stmt, then, otherwise, loop))
+                case Let() | Var() | Assign():
+                    done.append(stmt)
+                case _:
+                    assert_never(stmt)
+        return tuple(done)
+
+    def _branch(self, stmt: If, rest: _Block, loop: _Loop | None) -> Iterator[Stmt]:
+        """An If that may exit, and what follows it."""
+        then, otherwise = stmt.then, stmt.otherwise
+        if _always_exits(then):
+            yield self._if(stmt, then, (*otherwise, *rest), loop)
+        elif _always_exits(otherwise):
+            yield self._if(stmt, (*then, *rest), otherwise, loop)
+        elif loop is None:
+            # Only a return hides here: the rest runs where none was met.
+            flag = self._returned()
+            yield self._if(stmt, self._marked(then, flag), self._marked(otherwise, flag), None)
+            yield from self._unless(flag, self._block(rest, None), stmt.span)
+        else:
+            if loop.skip is None:
+                loop.skip = self._fresh("skip")
+            flag = loop.skip
+            yield self._if(stmt, self._marked(then, flag), self._marked(otherwise, flag), loop)
+            yield from self._unless(flag, self._block(rest, loop), stmt.span)
+
+    def _if(self, stmt: If, then: _Block, otherwise: _Block, loop: _Loop | None) -> If:
+        condition, yes, no = stmt.condition, self._block(then, loop), self._block(otherwise, loop)
+        if not yes:
+            condition, yes, no = Unary(UnaryOp.NOT, condition, BOOL), no, ()
+        return If(condition, yes, no, span=stmt.span)
+
+    def _marked(self, block: _Block, flag: str) -> _Block:
+        """The block with ``flag`` raised before each exit from it."""
+        done: list[Stmt] = []
+        for stmt in block:
+            match stmt:
+                case Return() | Break() | Continue():
+                    done += (_raise(flag, stmt.span), stmt)
+                case If(condition, then, otherwise):
+                    marked = self._marked(then, flag), self._marked(otherwise, flag)
+                    done.append(If(condition, *marked, span=stmt.span))
+                case Let() | Var() | Assign() | For() | While():
+                    done.append(stmt)
+                case _:
+                    assert_never(stmt)
+        return tuple(done)
+
+    def _unless(self, flag: str, block: _Block, span: Span | None) -> Iterator[Stmt]:
+        if block:
+            condition = Unary(UnaryOp.NOT, Read(flag, BOOL), BOOL)
+            yield If(condition, block, (), span=span)
+
+    def _loop(self, stmt: For | While) -> Stmt:
+        """A loop whose only exit is its last statement."""
+        loop = _Loop()
+        body = self._block(stmt.body, loop)
+        head: list[Stmt] = []
+        tail: list[Stmt] = []
+        if loop.skip is not None:
+            head.append(Var(loop.skip, build.boolean(False), span=stmt.span))
+        if loop.leave is not None:
+            head.append(Var(loop.leave, build.boolean(False), span=stmt.span))
+            leave = Read(loop.leave, BOOL)
+            tail.append(If(leave, (Break(span=stmt.span),), (), span=stmt.span))
+        return replace(stmt, body=(*head, *body, *tail))
+
+    def _returned(self) -> str:
+        if self.returned is None:
+            self.returned = self._fresh("returned")
+        return self.returned
+
+    def _leave(self, loop: _Loop) -> str:
+        if loop.leave is None:
+            loop.leave = self._fresh("leave")
+        return loop.leave
+
+
+def _raise(flag: str, span: Span | None) -> Stmt:
+    return Assign(Read(flag, BOOL), build.boolean(True), span=span)

@@ -1,0 +1,139 @@
+"""Bodies that can stand in the place of a call.
+
+What flows in: a function's body. What flows out: statements that compute the result, and the
+result as an expression over their locals, without a Return; or None where that would need flags
+(a return out of a loop, or one that only some ways through a branch reach).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from distal.ir import build
+from distal.ir.nodes import (
+    Assign,
+    Construct,
+    Expr,
+    For,
+    Function,
+    If,
+    Let,
+    Read,
+    Return,
+    Select,
+    Stmt,
+    Var,
+    While,
+)
+from distal.ir.types import Array, Matrix, Scalar, Struct, Type, Vector
+from distal.ir.walk import statements_in
+from distal.passes.cost import Costs
+
+# Both values of a Select are computed on a vector machine; an If may be skipped.
+PICK_COST: Final = 16
+
+RESULT: Final = "result"
+
+
+@dataclass(frozen=True, slots=True)
+class Straight:
+    """Statements and the value that a call of the function has after them."""
+
+    body: tuple[Stmt, ...]
+    value: Expr
+
+    @property
+    def only_lets(self) -> bool:
+        """True when the whole is one expression with names for its parts."""
+        return all(isinstance(s, Let) for s in self.body)
+
+
+def straighten(function: Function, result: str, costs: Costs) -> Straight | None:
+    """The function's body without Return; ``result`` is a name free in it."""
+    body = function.body
+    if not body:
+        return None
+    last = body[-1]
+    if isinstance(last, Return) and not _returns(body[:-1]):
+        return Straight(body[:-1], last.value)
+    target = Read(result, function.result)
+    ladder = _ladder(body, target, costs)
+    if ladder is None:
+        return None
+    last = ladder[-1]
+    if isinstance(last, Assign) and last.target is target:
+        return Straight(tuple(ladder[:-1]), last.value)
+    return Straight((Var(result, zero(function.result)), *ladder), target)
+
+
+def _returns(body: tuple[Stmt, ...]) -> bool:
+    return any(isinstance(s, Return) for s in statements_in(body))
+
+
+def _ladder(body: tuple[Stmt, ...], result: Read, costs: Costs) -> list[Stmt] | None:
+    """Each Return becomes an assignment; what follows a branch that returned goes to the other."""
+    done: list[Stmt] = []
+    for i, stmt in enumerate(body):
+        match stmt:
+            case Return(value):
+                done.append(Assign(result, value, span=stmt.span))
+                return done
+            case If(condition, then, otherwise) if _returns((stmt,)):
+                rest = body[i + 1 :]
+                if not _always_returns(then):
+                    if _returns(then):
+                        return None
+                    then += rest
+                if not _always_returns(otherwise):
+                    if _returns(otherwise) or len(then) != len(stmt.then):
+                        return None
+                    otherwise += rest
+                yes, no = _ladder(then, result, costs), _ladder(otherwise, result, costs)
+                if yes is None or no is None:
+                    return None
+                picked = _pick(condition, yes, no, result, costs)
+                done.append(picked or If(condition, tuple(yes), tuple(no), span=stmt.span))
+                return done
+            case For() | While() if _returns((stmt,)):
+                return None
+            case _:
+                done.append(stmt)
+    return None
+
+
+def _always_returns(body: tuple[Stmt, ...]) -> bool:
+    match body[-1] if body else None:
+        case Return():
+            return True
+        case If(_, then, otherwise):
+            return _always_returns(then) and _always_returns(otherwise)
+        case _:
+            return False
+
+
+def _pick(
+    condition: Expr, yes: list[Stmt], no: list[Stmt], result: Read, costs: Costs
+) -> Assign | None:
+    """A Select, where both ways do nothing but settle the result, and cheaply."""
+    match yes, no:
+        case [Assign(_, a)], [Assign(_, b)] if costs.of(a) + costs.of(b) <= PICK_COST:
+            return Assign(result, Select(condition, a, b, result.type))
+        case _:
+            return None
+
+
+def zero(type: Type) -> Expr:
+    """A value of a type, to start a Var with."""
+    match type:
+        case Scalar() | Vector():
+            return build.number(0, type)
+        case Matrix(size):
+            column = build.number(0.0, build.element_type(type))
+            return build.compose(type, *[column] * size)
+        case Struct(_, fields):
+            return Construct(tuple(zero(t) for _, t in fields), type)
+        case Array(element, length):
+            return Construct((zero(element),) * length, type)
+        case _:
+            raise AssertionError(f"no value of {type}")

@@ -1,0 +1,169 @@
+"""One name for each value: reads of a changing local are told apart by what it holds.
+
+What flows in: a function's body. What flows out: its places, with every read of a Var renamed to
+``name#3``, a new number wherever the value may have changed, so that equal nodes have equal
+values wherever both are in scope (static single assignment, without the phis: after a branch and
+around a loop a Var simply has a new number). A Let whose value an earlier one in scope already
+has goes away, its reads become reads of the earlier. ``plain`` takes the numbers off again.
+``births`` tells in which place each local and each numbered value comes to be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from distal.ir.nodes import (
+    Assign,
+    Break,
+    Continue,
+    Expr,
+    For,
+    Function,
+    If,
+    Let,
+    Read,
+    Return,
+    Stmt,
+    Var,
+    While,
+)
+from distal.ir.walk import children, map_indices, nodes_in, rebuild, root_of, statements_in
+from distal.passes.places import Place
+
+MARK = "#"  # in no name of a module
+
+
+def assigned_in(body: Iterable[Stmt]) -> set[str]:
+    """The Vars that a block changes, blocks inside it included."""
+    return {root_of(s.target).name for s in statements_in(tuple(body)) if isinstance(s, Assign)}
+
+
+class Versions:
+    """Numbers the values of one function's Vars."""
+
+    def __init__(self, function: Function) -> None:
+        self._mutable = assigned_in(function.body)
+        self._count = 0
+        # Name of a Var or of a Let that went away -> what a read of it is at this point.
+        self._now: dict[str, str] = {}
+        self._available: list[dict[Expr, str]] = []
+        self._place = Place(None, 0)
+        self.births = {param.name: self._place for param in function.params}
+        self.root = self._place
+        self._fill(self.root, function.body)
+
+    def _fresh(self, names: Iterable[str]) -> None:
+        for name in sorted(names):
+            if name in self._mutable:
+                self._count += 1
+                self._now[name] = f"{name}{MARK}{self._count}"
+                self.births[self._now[name]] = self._place
+
+    def _expr(self, root: Expr) -> Expr:
+        memo: dict[Expr, Expr] = {}
+        for e in nodes_in(root):
+            if isinstance(e, Read):
+                name = self._now.get(e.name)
+                memo[e] = e if name is None else Read(name, e.type)
+            else:
+                memo[e] = rebuild(e, tuple([memo[c] for c in children(e)]))
+        return memo[root]
+
+    def _fill(self, place: Place, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+        """Number a block, its statements going into ``place``."""
+        outer, self._place = self._place, place
+        self._available.append({})
+        numbered: list[Stmt] = []
+        for stmt in body:
+            done = self._statement(stmt, len(numbered))
+            if done is not None:
+                numbered.append(done)
+        place.body = tuple(numbered)
+        self._available.pop()
+        self._place = outer
+        return place.body
+
+    def _statement(self, stmt: Stmt, position: int) -> Stmt | None:
+        span = stmt.span
+        match stmt:
+            case Let(name, value):
+                return self._let(stmt, name, self._expr(value))
+            case Var(name, value):
+                value = self._expr(value)
+                self.births[name] = self._place
+                self._fresh((name,))
+                return Var(name, value, span=span)
+            case Assign(target, value):
+                value, where = self._expr(value), map_indices(target, self._expr)
+                self._fresh((root_of(target).name,))
+                return Assign(where, value, span=span)
+            case Return(value):
+                return Return(self._expr(value), span=span)
+            case If():
+                return self._if(stmt, position)
+            case For():
+                return self._for(stmt, position)
+            case While():
+                return self._while(stmt, position)
+            case Break() | Continue():
+                return stmt
+
+    def _let(self, stmt: Let, name: str, value: Expr) -> Let | None:
+        for scope in self._available:
+            known = scope.get(value)
+            if known is not None:
+                self._now[name] = known
+                return None
+        self._available[-1][value] = name
+        self.births[name] = self._place
+        return Let(name, value, span=stmt.span)
+
+    def _if(self, stmt: If, position: int) -> If:
+        condition, before = self._expr(stmt.condition), dict(self._now)
+        ways = (Place(self._place, position), Place(self._place, position))
+        self._place.inner[position] = ways
+        then = self._fill(ways[0], stmt.then)
+        self._now = dict(before)
+        otherwise = self._fill(ways[1], stmt.otherwise)
+        self._now = before
+        self._fresh(assigned_in((stmt,)))
+        return If(condition, then, otherwise, span=stmt.span)
+
+    def _for(self, stmt: For, position: int) -> For:
+        start, stop = self._expr(stmt.start), self._expr(stmt.stop)
+        outer, inside = self._place, Place(self._place, position, repeats=True)
+        outer.inner[position] = (inside,)
+        changed = assigned_in(stmt.body)
+        self._place = inside
+        self.births[stmt.name] = inside
+        self._fresh(changed)
+        body = self._fill(inside, stmt.body)
+        self._place = outer
+        self._fresh(changed)
+        return For(stmt.name, start, stop, stmt.step, body, span=stmt.span)
+
+    def _while(self, stmt: While, position: int) -> While:
+        outer, head = self._place, Place(self._place, position, repeats=True, is_head=True)
+        inside = Place(head, 0, repeats=True)
+        outer.inner[position] = (head,)
+        head.inner[0] = (inside,)
+        changed = assigned_in(stmt.body)
+        self._place = head
+        self._fresh(changed)
+        condition = self._expr(stmt.condition)
+        body = self._fill(inside, stmt.body)
+        self._place = outer
+        self._fresh(changed)
+        return While(condition, body, span=stmt.span)
+
+
+def plain(e: Expr) -> Expr:
+    """The expression with its numbers taken off."""
+    memo: dict[Expr, Expr] = {}
+    for n in nodes_in(e):
+        if isinstance(n, Read):
+            name, mark, _ = n.name.partition(MARK)
+            memo[n] = Read(name, n.type) if mark else n
+        else:
+            memo[n] = rebuild(n, tuple([memo[c] for c in children(n)]))
+    return memo[e]

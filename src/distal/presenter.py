@@ -1,0 +1,34 @@
+"""What ``show``, ``export`` and ``video`` of a picture do: each in a room of its own.
+
+What flows in: a scene, a shape or an image. What flows out: a widget, a page, a film. Reached from
+below through a hook; the rooms are entered only when they are needed.
+"""
+
+from __future__ import annotations
+
+import importlib
+from os import PathLike
+from typing import Any
+
+
+class Presenter:
+    """Hands a picture on to the room that shows it."""
+
+    def show(self, obj: Any, **options: Any) -> Any:
+        """A live picture in a notebook."""
+        try:
+            room = importlib.import_module("distal.notebook.widget")
+        except ModuleNotFoundError as error:
+            if (error.name or "").startswith("distal"):
+                raise
+            message = f"{error.name} is missing: pip install 'distal[notebook]'"
+            raise ModuleNotFoundError(message, name=error.name) from None
+        return room.show(obj, **options)
+
+    def export(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
+        """A page, or a text."""
+        return importlib.import_module("distal.export").export(obj, path, **options)
+
+    def video(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
+        """A video, or a sequence of pictures."""
+        return importlib.import_module("distal.sequence").video(obj, path, **options)

@@ -1,0 +1,91 @@
+"""Light from all around, as surfaces see it.
+
+What flows in: a unit normal and the numbers of the surroundings. What flows out: what a white
+diffuse surface shows, unoccluded. Point lights and the like are in ``lights``.
+"""
+
+from __future__ import annotations
+
+from distal.lang import Buffer, acos, clamp, dot, func, max, normalize, sqrt, vec3
+
+PI = 3.14159265358979
+WHITE = vec3(1.0)
+SKY = vec3(0.6, 0.75, 1.0)
+EARTH = vec3(0.3, 0.25, 0.2)
+UP = vec3(0.0, 1.0, 0.0)
+ZENITH = vec3(0.2, 0.4, 0.8)
+HORIZON = vec3(0.8, 0.85, 0.9)
+GROUND = vec3(0.25, 0.22, 0.2)
+
+
+@func
+def ambient_light(n: vec3, intensity: float = 0.1, color: vec3 = WHITE) -> vec3:
+    """The same from everywhere."""
+    return color * intensity
+
+
+@func
+def hemisphere_light(
+    n: vec3,
+    sky: vec3 = SKY,
+    ground: vec3 = EARTH,
+    intensity: float = 0.5,
+    up: vec3 = UP,
+) -> vec3:
+    """One colour from the upper half of space and one from the lower, exactly.
+
+    Args:
+        n: Unit normal.
+        sky: Colour of the upper half.
+        ground: Colour of the lower half.
+        intensity: Brightness.
+        up: Where the upper half is, of any length but 0.
+    """
+    share = 0.5 + 0.5 * dot(n, normalize(up))
+    return (ground + (sky - ground) * share) * intensity
+
+
+@func
+def climbing_share(height: float) -> float:
+    """What a light as bright as its own height above the horizon gives, by the normal's height.
+
+    Two cosines, both cut off at 0, multiplied over the ball: 2/3 ((pi - a) cos a + sin a), with a
+    the angle between them, over pi.
+
+    Source: Arvo, "Analytic Methods for Simulated Light Transport" (1995), double-axis moments.
+    """
+    cosine = clamp(height, -1.0, 1.0)
+    sine = sqrt(max(1.0 - cosine * cosine, 0.0))
+    return 2.0 / (3.0 * PI) * ((PI - acos(cosine)) * cosine + sine)
+
+
+@func
+def sky_ambient(
+    n: vec3,
+    zenith: vec3 = ZENITH,
+    horizon: vec3 = HORIZON,
+    ground: vec3 = GROUND,
+    intensity: float = 1.0,
+) -> vec3:
+    """The diffuse light of ``sky.sky`` without its sun, exactly."""
+    upper = 0.5 + 0.5 * n.y
+    gradient = (zenith - horizon) * climbing_share(n.y)
+    return (ground * (1.0 - upper) + horizon * upper + gradient) * intensity
+
+
+@func
+def environment_ambient(n: vec3, harmonics: Buffer[vec3], intensity: float = 1.0) -> vec3:
+    """The diffuse light of a picture of the surroundings, from its nine spherical harmonics.
+
+    Args:
+        n: Unit normal.
+        harmonics: Nine coefficients as ``environment.harmonics`` makes them.
+        intensity: Brightness.
+
+    Source: Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps"
+        (2001).
+    """
+    light = harmonics[0] + harmonics[1] * n.y + harmonics[2] * n.z + harmonics[3] * n.x
+    light += harmonics[4] * (n.x * n.y) + harmonics[5] * (n.y * n.z) + harmonics[7] * (n.x * n.z)
+    light += harmonics[6] * (3.0 * n.z * n.z - 1.0) + harmonics[8] * (n.x * n.x - n.y * n.y)
+    return max(light * intensity, vec3(0.0))

@@ -1,0 +1,106 @@
+"""A picture of the surroundings: as background, and as diffuse light.
+
+What flows in: an equirectangular picture (-z in its middle, up at its top) in linear light. What
+flows out: the light from a direction; and nine spherical harmonics of it, which
+``ambient.environment_ambient`` reads. The harmonics are computed once, in Python.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from distal.lang import Texture2D, clamp, cos, func, sample, sin, vec2, vec3
+from distal.render.camera import equirectangular
+
+# What a diffuse surface leaves of each band of the light around it (Ramamoorthi and Hanrahan 2001),
+# over pi, since a white surface shows 1/pi of what falls on it.
+_BANDS: Final = (1.0, 2.0 / 3.0, 1.0 / 4.0)
+# Squares of the harmonics' factors: once for measuring the light, once for showing it.
+_FACTORS: Final = tuple(
+    factor / (4.0 * math.pi)
+    for factor in (1.0, 3.0, 3.0, 3.0, 15.0, 15.0, 5.0 / 4.0, 15.0, 15.0 / 4.0)
+)
+
+
+@func
+def turned_by(direction: vec3, turn: float) -> vec3:
+    """A direction turned about the upright axis."""
+    c = cos(turn)
+    s = sin(turn)
+    return vec3(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z)
+
+
+@func
+def environment(
+    direction: vec3, image: Texture2D, intensity: float = 1.0, turn: float = 0.0
+) -> vec3:
+    """The light that a picture of the surroundings sends from a direction.
+
+    Args:
+        direction: Unit direction.
+        image: Equirectangular picture; linear light.
+        intensity: Brightness.
+        turn: The surroundings turned to the left about the upright axis.
+    """
+    place = equirectangular(turned_by(direction, turn))
+    # Off the poles by half a texel of a picture 1024 high: the opposite row would mix in.
+    held = clamp(place.y, 0.0005, 0.9995)
+    return sample(image, vec2(place.x, held)).rgb * intensity
+
+
+def harmonics(texels: Any) -> list[tuple[float, float, float]]:
+    """Nine coefficients of a picture's diffuse light, for ``ambient.environment_ambient``.
+
+    Args:
+        texels: Array (height, width, 3 or more) of linear light, top row first.
+
+    Source: Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps"
+        (2001).
+    """
+    height, width = int(texels.shape[0]), int(texels.shape[1])
+    around = [2.0 * math.pi * ((column + 0.5) / width - 0.5) for column in range(width)]
+    waves = [
+        [1.0] * width,
+        [math.sin(angle) for angle in around],
+        [math.cos(angle) for angle in around],
+        [math.sin(2.0 * angle) for angle in around],
+        [math.cos(2.0 * angle) for angle in around],
+    ]
+    # Each row's light against each wave around the upright axis: (height, wave, color).
+    rows = (texels[..., :3].swapaxes(1, 2) @ _columns(waves)).swapaxes(1, 2).tolist()
+    sums = [[0.0, 0.0, 0.0] for _ in range(9)]
+    for row, moments in enumerate(rows):
+        polar = math.pi * (row + 0.5) / height
+        area = (2.0 * math.pi / width) * (math.pi / height) * math.sin(polar)
+        for index, weights in enumerate(_row_weights(math.cos(polar), math.sin(polar))):
+            for wave, weight in weights:
+                for color in range(3):
+                    sums[index][color] += area * weight * moments[wave][color]
+    scaled = [_FACTORS[i] * _BANDS[0 if i == 0 else 1 if i < 4 else 2] for i in range(9)]
+    return [
+        (r * scale, g * scale, b * scale) for (r, g, b), scale in zip(sums, scaled, strict=True)
+    ]
+
+
+def _columns(rows: list[list[float]]) -> list[list[float]]:
+    return [list(column) for column in zip(*rows, strict=True)]
+
+
+def _row_weights(y: float, r: float) -> tuple[tuple[tuple[int, float], ...], ...]:
+    """The nine polynomials of (x, y, z) = (r sin a, y, -r cos a), as weights of the five waves.
+
+    The waves are 1, sin a, cos a, sin 2a, cos 2a.
+    """
+    half = 0.5 * r * r
+    return (
+        ((0, 1.0),),
+        ((0, y),),
+        ((2, -r),),
+        ((1, r),),
+        ((1, r * y),),
+        ((2, -r * y),),
+        ((0, 3.0 * half - 1.0), (4, 3.0 * half)),
+        ((3, -half),),
+        ((0, half - y * y), (4, -half)),
+    )

@@ -1,0 +1,54 @@
+"""From pixels to rays and back: samples within a pixel, spread and filtered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.lang import abs, func, max, min, select, sign, sqrt, vec2, vec4
+from distal.render.camera import Ray
+
+
+@func
+def tent(u: float) -> float:
+    """A number from 0 to 1 as an offset within -1 to 1, nearer ones more often."""
+    x = 2.0 * u - 1.0
+    return sign(x) * (1.0 - sqrt(max(1.0 - abs(x), 0.0)))
+
+
+@func
+def sample_offset(index: int, count: int) -> vec2:
+    """Where in a pixel a sample lies, in pixels from its middle.
+
+    The first coordinate is stratified, the second follows the golden ratio, so that any count
+    covers the square evenly (the R2-like rank-1 lattice); a tent filter two pixels wide draws
+    samples to the middle. One sample lies in the middle.
+    """
+    if count <= 1:
+        return vec2(0.0, 0.0)
+    u = (float(index) + 0.5) / float(count)
+    v = (float(index) * 0.6180339887 + 0.5) % 1.0
+    return vec2(tent(u), tent(v))
+
+
+@func
+def exposed(
+    coord: vec2,
+    resolution: vec2,
+    camera: Callable[[vec2], Ray],
+    radiance: Callable[[Ray], vec4],
+    samples: int,
+    transparent: bool,
+) -> vec4:
+    """The linear light of a pixel: the mean of its samples.
+
+    Alpha is straight: colors are the mean of what is there. Opaque unless ``transparent``, but for
+    rays that begin inside a solid and find no way out.
+    """
+    total = vec4(0.0)
+    for i in range(max(samples, 1)):
+        place = coord + sample_offset(i, samples)
+        seen = radiance(camera((2.0 * place - resolution) / resolution.y))
+        weight = max(seen.w, 0.0) if transparent else select(seen.w < 0.0, 0.0, 1.0)
+        total += vec4(seen.xyz * weight, weight)
+    mean = total.xyz / max(total.w, 1e-6)
+    return vec4(mean, min(total.w / float(max(samples, 1)), 1.0))

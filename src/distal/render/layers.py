@@ -1,0 +1,114 @@
+"""What else is known of a pixel besides its color, as plain values: for compositing and denoising.
+
+What flows in: the ray through a pixel's middle, and what a renderer may ask for. What flows out:
+values, not colors: up to three numbers, and in w whether anything was met. Each is asked once for
+each pixel: a mean of depths or of numbers of materials is a place or a material that is nowhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.claims import Bounds
+from distal.lang import Field3, func, vec2, vec3, vec4
+from distal.render.bounce import differences_step, just_before, place_on
+from distal.render.camera import Ray
+from distal.render.heightfield_march import STRIDE, Stride
+from distal.render.march import March
+from distal.render.material import Surface
+from distal.render.normals import EXACT, normal
+from distal.render.trace import first_surface
+
+NOTHING = vec4(0.0)
+
+
+@func
+def through_middle(
+    coord: vec2,
+    resolution: vec2,
+    camera: Callable[[vec2], Ray],
+    radiance: Callable[[Ray], vec4],
+) -> vec4:
+    """What the ray through a pixel's middle brings back, as it is."""
+    return radiance(camera((2.0 * coord - resolution) / resolution.y))
+
+
+@func
+def layer_depth(
+    ray: Ray,
+    field: Field3,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
+) -> vec4:
+    """How far along the ray the first surface is, in scene units."""
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    if not hit.found:
+        return NOTHING
+    return vec4(hit.t, 0.0, 0.0, 1.0)
+
+
+@func
+def layer_normal(
+    ray: Ray,
+    field: Field3,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    normals: int = EXACT,
+    normal_step: float = 1e-3,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
+) -> vec4:
+    """The unit normal in world space that the shading uses: toward where the ray came from."""
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    if not hit.found:
+        return NOTHING
+    step = differences_step(hit, normal_step)
+    return vec4(hit.side * normal(field, just_before(ray, hit, numbers), normals, step), 1.0)
+
+
+@func
+def layer_albedo(
+    ray: Ray,
+    field: Field3,
+    surface: Callable[[vec3], Surface],
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
+) -> vec4:
+    """The material's color, linear and without light."""
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    if not hit.found:
+        return NOTHING
+    return vec4(surface(place_on(ray, hit)).color, 1.0)
+
+
+@func
+def layer_material(
+    ray: Ray,
+    field: Field3,
+    identity: Callable[[vec3], float],
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
+) -> vec4:
+    """The number of the material of which most shows."""
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    if not hit.found:
+        return NOTHING
+    return vec4(identity(place_on(ray, hit)), 0.0, 0.0, 1.0)
+
+
+LAYERS = {
+    "depth": layer_depth,
+    "normal": layer_normal,
+    "albedo": layer_albedo,
+    "material": layer_material,
+}

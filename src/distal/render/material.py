@@ -1,0 +1,225 @@
+"""What a surface is made of at one place, and how much of the light goes which way.
+
+What flows in: colours, weights, optical constants. What flows out: a ``Surface``, and from it the
+shares of light that a ray splits into. Knows no geometry and no lights.
+"""
+
+from __future__ import annotations
+
+from distal.lang import clamp, dot, func, max, min, mix, sqrt, struct, vec3
+
+BLACK = vec3(0.0)
+WHITE = vec3(1.0)
+SILVER = vec3(0.91, 0.92, 0.92)
+
+
+@struct
+class Surface:
+    """A material at one place. Every field is a number that mixes linearly in blends.
+
+    Attributes:
+        color: Share of red, green and blue that is scattered, that a metal mirrors, that goes
+            through.
+        diffuse: Weight of the light that is scattered evenly.
+        specular: Weight of the light that is mirrored.
+        transmission: Weight of the light that goes through.
+        ior: Index of refraction of the inside against the outside.
+        roughness: 0 a perfect mirror, 1 as rough as paper; the width of highlights.
+        metal: 1 for metals, whose mirrored light is tinted by ``color``.
+        emission: Light that the surface gives by itself.
+        absorption: How much light the inside takes for each unit of way (Beer and Lambert).
+        fresnel: 0, the weights hold as they stand. 1, the mirrored share follows Fresnel's
+            formulas, and the weights share out what is left.
+    """
+
+    color: vec3 = WHITE
+    diffuse: float = 1.0
+    specular: float = 0.0
+    transmission: float = 0.0
+    ior: float = 1.5
+    roughness: float = 0.0
+    metal: float = 0.0
+    emission: vec3 = BLACK
+    absorption: vec3 = BLACK
+    fresnel: float = 0.0
+
+
+@func
+def matte(color: vec3 = WHITE) -> Surface:
+    """Paper, chalk: all light is scattered evenly."""
+    return Surface(color=color)
+
+
+@func
+def glossy(
+    color: vec3 = WHITE, diffuse: float = 0.5, specular: float = 0.5, roughness: float = 0.0
+) -> Surface:
+    """Scatters one share of the light and mirrors another, the same from every side."""
+    return Surface(color=color, diffuse=diffuse, specular=specular, roughness=roughness)
+
+
+@func
+def metal(color: vec3 = SILVER, roughness: float = 0.2) -> Surface:
+    """Bare metal: mirrors, tinted by its colour, white at the rim."""
+    return Surface(
+        color=color, diffuse=0.0, specular=1.0, roughness=roughness, metal=1.0, fresnel=1.0
+    )
+
+
+@func
+def mirror(color: vec3 = WHITE) -> Surface:
+    """A perfect mirror, tinted by its colour from every side."""
+    return Surface(color=color, diffuse=0.0, specular=1.0, metal=1.0)
+
+
+@func
+def glass(ior: float = 1.5, absorption: vec3 = BLACK) -> Surface:
+    """Clear glass: mirrors as Fresnel says and lets the rest through.
+
+    Args:
+        ior: Index of refraction: glass 1.5, water 1.33, diamond 2.42.
+        absorption: How much the inside takes for each unit of way.
+    """
+    return Surface(diffuse=0.0, transmission=1.0, ior=ior, absorption=absorption, fresnel=1.0)
+
+
+@func
+def plastic(color: vec3 = WHITE, roughness: float = 0.2, ior: float = 1.5) -> Surface:
+    """A matte colour under a clear coat that mirrors as Fresnel says."""
+    return Surface(color=color, ior=ior, roughness=roughness, fresnel=1.0)
+
+
+@func
+def emissive(color: vec3 = WHITE, strength: float = 1.0) -> Surface:
+    """Glows by itself and reflects nothing."""
+    return Surface(color=BLACK, diffuse=0.0, emission=color * strength)
+
+
+@func
+def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
+    """``a`` where t is 0, ``b`` where it is 1, every number in proportion between."""
+    return Surface(
+        color=mix(a.color, b.color, t),
+        diffuse=mix(a.diffuse, b.diffuse, t),
+        specular=mix(a.specular, b.specular, t),
+        transmission=mix(a.transmission, b.transmission, t),
+        ior=mix(a.ior, b.ior, t),
+        roughness=mix(a.roughness, b.roughness, t),
+        metal=mix(a.metal, b.metal, t),
+        emission=mix(a.emission, b.emission, t),
+        absorption=mix(a.absorption, b.absorption, t),
+        fresnel=mix(a.fresnel, b.fresnel, t),
+    )
+
+
+@func
+def fresnel_dielectric(cosine: float, eta: float) -> float:
+    """The share of unpolarised light that a clear surface mirrors.
+
+    Args:
+        cosine: Of the angle between the ray and the normal, 0 to 1.
+        eta: Index beyond the surface over the index on the ray's side.
+
+    Source: Fresnel's equations, e.g. Born and Wolf, "Principles of Optics", 1.5.2.
+    """
+    sine_squared = (1.0 - cosine * cosine) / (eta * eta)
+    refracted = sqrt(max(1.0 - sine_squared, 0.0))
+    parallel = (eta * cosine - refracted) / max(eta * cosine + refracted, 1e-9)
+    across = (cosine - eta * refracted) / max(cosine + eta * refracted, 1e-9)
+    mirrored = 0.5 * (parallel * parallel + across * across)
+    return 1.0 if sine_squared >= 1.0 else clamp(mirrored, 0.0, 1.0)
+
+
+@func
+def fresnel_metal(cosine: float, color: vec3) -> vec3:
+    """The share that a metal mirrors: its colour head on, white at the rim.
+
+    Source: Christophe Schlick, "An Inexpensive BRDF Model for Physically-based Rendering" (1994).
+    """
+    return color + (1.0 - color) * (1.0 - clamp(cosine, 0.0, 1.0)) ** 5
+
+
+@struct
+class Shares:
+    """Where the light of a ray that meets a surface comes from; the weights of each way."""
+
+    diffuse: vec3
+    mirrored: vec3
+    transmitted: vec3
+
+
+@func
+def shares(surface: Surface, cosine: float, inside: bool) -> Shares:
+    """The weights of scattered, mirrored and transmitted light.
+
+    With Fresnel, the mirrored share is taken off the whole and the rest is divided by the weights;
+    a part that is neither scattered nor let through (a metal's) is lost. Beyond the critical angle
+    whatever would be transmitted is mirrored, with Fresnel or without.
+
+    Args:
+        surface: The surface where the ray meets it.
+        cosine: Of the angle between the ray and the normal, 0 to 1.
+        inside: Whether the ray comes from the inside.
+    """
+    eta = 1.0 / surface.ior if inside else surface.ior
+    dielectric = fresnel_dielectric(cosine, eta)
+    total_reflection = 1.0 if eta * eta <= 1.0 - cosine * cosine else 0.0
+    tint = mix(WHITE, surface.color, surface.metal)
+    of_fresnel = mix(vec3(dielectric), fresnel_metal(cosine, surface.color), surface.metal)
+    whole = surface.diffuse + surface.specular + surface.transmission
+    mirrored = mix(surface.specular * tint, whole * of_fresnel, surface.fresnel)
+    left = 1.0 - surface.fresnel * of_fresnel
+    through = left * surface.color * surface.transmission
+    return Shares(
+        diffuse=surface.color * surface.diffuse * left,
+        mirrored=mirrored + through * total_reflection,
+        transmitted=through * (1.0 - total_reflection),
+    )
+
+
+@func
+def luminance(color: vec3) -> float:
+    """How bright a linear colour is (Rec. ITU-R BT.709)."""
+    return dot(color, vec3(0.2126, 0.7152, 0.0722))
+
+
+@func
+def brightest(color: vec3) -> float:
+    """The largest of the three."""
+    return max(color.r, color.g, color.b)
+
+
+@func
+def highlight(surface: Surface, n: vec3, view: vec3, light: vec3, widened: float) -> float:
+    """How a rough surface mirrors a light: relative to a white diffuse one, square on.
+
+    The microfacet distribution of Trowbridge and Reitz ("GGX") with the height-correlated masking
+    of Smith. A light that fills an angle widens the lobe; a point without size in a smooth mirror
+    shows nothing.
+
+    Args:
+        surface: The surface; its ``roughness`` counts.
+        n: Unit normal.
+        view: Unit direction to the eye.
+        light: Unit direction to the light.
+        widened: Tangent of half the angle that the light fills.
+
+    Source: Walter et al., "Microfacet Models for Refraction through Rough Surfaces" (2007); Heitz,
+        "Understanding the Masking-Shadowing Function" (2014); Karis, "Real Shading in Unreal
+        Engine 4" (2013) for the widening.
+    """
+    alpha = min(surface.roughness * surface.roughness + 0.5 * widened, 1.0)
+    if alpha < 1e-3:
+        return 0.0
+    middle = light + view
+    middle = middle / max(sqrt(dot(middle, middle)), 1e-6)
+    squared = alpha * alpha
+    n_light = max(dot(n, light), 0.0)
+    n_view = max(dot(n, view), 1e-4)
+    n_middle = clamp(dot(n, middle), 0.0, 1.0)
+    spread = 1.0 - n_middle * n_middle * (1.0 - squared)
+    # The distribution times pi: a white diffuse surface shows 1 / pi of the light it gets.
+    facets = squared / max(spread * spread, 1e-12)
+    masked_view = n_light * sqrt(n_view * n_view * (1.0 - squared) + squared)
+    masked_light = n_view * sqrt(n_light * n_light * (1.0 - squared) + squared)
+    return facets * n_light * 0.5 / max(masked_view + masked_light, 1e-6)

@@ -1,0 +1,84 @@
+"""Normals of a field: exact, or by differences.
+
+What flows in: a field and a point. What flows out: a unit vector, never NaN.
+"""
+
+from __future__ import annotations
+
+from distal.lang import Field3, dot, func, gradient, inversesqrt, max, select, vec2, vec3
+
+# How a normal is found; a choice fixed when compiled.
+EXACT = 0  # the field's own derivative
+SIX_TAPS = 1  # central differences: six evaluations
+TETRAHEDRON = 2  # four evaluations, nearly as good
+FORWARD = 3  # three, and one at the point itself; for water, and for speed
+
+
+@func
+def unit_or_up(v: vec3) -> vec3:
+    """The vector at length 1; straight up where it has no direction."""
+    squared = dot(v, v)
+    return select(squared > 1e-30, v * inversesqrt(max(squared, 1e-30)), vec3(0.0, 1.0, 0.0))
+
+
+@func
+def exact_normal(distance: Field3, p: vec3) -> vec3:
+    """By the field's derivative."""
+    return unit_or_up(gradient(distance, p))
+
+
+@func
+def six_tap_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
+    """By central differences."""
+    total = vec3(0.0)
+    for axis in range(3):
+        way = vec3(0.0)
+        way[axis] = step
+        total[axis] = distance(p + way) - distance(p - way)
+    return unit_or_up(total)
+
+
+@func
+def tetrahedron_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
+    """By the field at the four corners of a tetrahedron.
+
+    Source: Paul Malin's and Inigo Quilez's, "Normals for an SDF"
+        (https://iquilezles.org/articles/normalsSDF/).
+    """
+    corners = [
+        vec3(1.0, -1.0, -1.0),
+        vec3(-1.0, -1.0, 1.0),
+        vec3(-1.0, 1.0, -1.0),
+        vec3(1.0, 1.0, 1.0),
+    ]
+    total = vec3(0.0)
+    for corner in corners:
+        total += corner * distance(p + corner * step)
+    return unit_or_up(total)
+
+
+@func
+def forward_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
+    """By forward differences."""
+    e = vec2(step, 0.0)
+    beyond = vec3(distance(p + e.xyy), distance(p + e.yxy), distance(p + e.yyx))
+    return unit_or_up(beyond - distance(p))
+
+
+@func
+def normal(distance: Field3, p: vec3, kind: int, step: float) -> vec3:
+    """The unit normal at a point.
+
+    Args:
+        distance: Field.
+        p: Point.
+        kind: EXACT, SIX_TAPS, TETRAHEDRON or FORWARD.
+        step: How far away the differences are taken.
+    """
+    if kind == SIX_TAPS:
+        return six_tap_normal(distance, p, step)
+    if kind == TETRAHEDRON:
+        return tetrahedron_normal(distance, p, step)
+    if kind == FORWARD:
+        return forward_normal(distance, p, step)
+    return exact_normal(distance, p)

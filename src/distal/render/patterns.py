@@ -1,0 +1,254 @@
+"""Patterns: numbers and colours that differ from place to place on a surface.
+
+What flows in: ``p``, the point in the painted shape's own space, ``n``, the normal there, ``cell``,
+the index of the repetition it lies in, and the numbers of a pattern. What flows out: a share from 0
+(the first colour or material) to 1 (the second), or a linear colour. Knows no shapes and no lights.
+"""
+
+from __future__ import annotations
+
+from distal.fields.noise import fbm
+from distal.fields.noise_lattice import fraction, lattice_hash
+from distal.lang import (
+    Texture2D,
+    TextureCube,
+    abs,
+    atan2,
+    clamp,
+    cos,
+    dot,
+    floor,
+    func,
+    ivec3,
+    length,
+    max,
+    normalize,
+    round,
+    sample,
+    sin,
+    vec2,
+    vec3,
+)
+
+PI = 3.14159265358979
+CENTER = vec3(0.0)
+# A face that lies on the border of two cubes of a checker would flicker between both; all cubes are
+# moved by this share of one, in no direction that faces commonly have.
+OFF_THE_BORDER = vec3(1.31e-4, 1.73e-4, 1.57e-4)
+ALONG_X = vec3(1.0, 0.0, 0.0)
+BELOW = vec3(0.0, -1.0, 0.0)
+ABOVE = vec3(0.0, 1.0, 0.0)
+HALF = vec3(0.5)
+ONCE = vec3(1.0)
+THIRDS = vec3(0.0, 0.33, 0.67)
+
+
+@func
+def checker(p: vec3, size: float = 1.0) -> float:
+    """Cubes in turn; on a flat floor, squares.
+
+    Args:
+        p: Point.
+        size: Edge of one cube.
+    """
+    cube = floor(p / size + OFF_THE_BORDER)
+    return (cube.x + cube.y + cube.z) % 2.0
+
+
+@func
+def checker2(p: vec3, size: float = 1.0) -> float:
+    """Squares in turn, seen from above; the height counts for nothing.
+
+    Args:
+        p: Point.
+        size: Edge of one square.
+    """
+    square = floor(p.xz / size)
+    return (square.x + square.y) % 2.0
+
+
+@func
+def stripes(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
+    """Layers in turn.
+
+    Args:
+        p: Point.
+        size: How thick one layer is.
+        direction: Across the layers, of any length but 0.
+    """
+    return floor(dot(p, normalize(direction)) / size) % 2.0
+
+
+@func
+def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
+    """0 up to ``start``, 1 from ``end`` on, evenly between.
+
+    Args:
+        p: Point.
+        start: Where the change begins.
+        end: Where it is complete.
+    """
+    way = end - start
+    return clamp(dot(p - start, way) / max(dot(way, way), 1e-12), 0.0, 1.0)
+
+
+@func
+def radial_gradient(p: vec3, center: vec3 = CENTER, radius: float = 1.0) -> float:
+    """0 at the centre, 1 from ``radius`` on, evenly between.
+
+    Args:
+        p: Point.
+        center: Where the change begins.
+        radius: Where it is complete.
+    """
+    return clamp(length(p - center) / radius, 0.0, 1.0)
+
+
+@func
+def cell_number(cell: vec3, seed: float, salt: int) -> float:
+    """A number from 0 to 1 for each cell, the same on every target: an integer hash."""
+    place = ivec3(int(round(cell.x)), int(round(cell.y)), int(round(cell.z)))
+    return fraction(lattice_hash(place, int(floor(16.0 * seed)) + salt))
+
+
+@func
+def clouds(p: vec3, size: float = 1.0, octaves: int = 4) -> float:
+    """Noise in layers, each half as large and half as strong as the one before.
+
+    Args:
+        p: Point.
+        size: How large the largest clouds are.
+        octaves: How many layers.
+    """
+    return 0.5 + 0.5 * fbm(p / size, octaves)
+
+
+@func
+def palette(
+    t: float,
+    base: vec3 = HALF,
+    amplitude: vec3 = HALF,
+    frequency: vec3 = ONCE,
+    phase: vec3 = THIRDS,
+) -> vec3:
+    """Colours along a number: ``base + amplitude * cos(2 pi (frequency * t + phase))``.
+
+    Args:
+        t: Number.
+        base: The colour in the middle.
+        amplitude: How far each part swings.
+        frequency: How often each part swings as t goes from 0 to 1.
+        phase: Where in its swing each part begins.
+
+    Source: Inigo Quilez, "Procedural color palette" (https://iquilezles.org/articles/palettes/).
+    """
+    return max(base + amplitude * cos(2.0 * PI * (frequency * t + phase)), vec3(0.0))
+
+
+@func
+def by_cell(cell: vec3, seed: float = 0.0) -> vec3:
+    """A colour of its own for each repetition: any hue, neither pale nor dark.
+
+    Args:
+        cell: Index of the repetition.
+        seed: Any number; another gives other colours.
+    """
+    hue = cell_number(cell, seed, 0)
+    depth = cell_number(cell, seed, 1)
+    pure = palette(hue, vec3(0.5), vec3(0.45), vec3(1.0), vec3(0.0, 0.33, 0.67))
+    return pure * (0.55 + 0.45 * depth)
+
+
+@func
+def limb_darkening(n: vec3, view: vec3, amount: float = 0.6) -> float:
+    """How bright a glowing ball like the sun is: 1 in the middle, less towards the rim.
+
+    Args:
+        n: Unit normal.
+        view: Unit direction to the eye.
+        amount: How much the rim lacks (the sun: about 0.6).
+
+    Source: the linear law of Schwarzschild (1906).
+    """
+    return 1.0 - amount * (1.0 - clamp(dot(n, view), 0.0, 1.0))
+
+
+@func
+def image_planar(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
+    """A picture laid on along z; its middle is at the origin, ``size`` wide and high.
+
+    Args:
+        p: Point.
+        image: Picture.
+        size: How large it is.
+    """
+    return sample(image, p.xy / size + 0.5).rgb
+
+
+@func
+def image_triplanar(p: vec3, n: vec3, image: Texture2D, size: float = 1.0) -> vec3:
+    """A picture laid on from all three sides, blended where faces turn from one to another.
+
+    Args:
+        p: Point.
+        n: Unit normal.
+        image: Picture.
+        size: How large it is.
+    """
+    weight = abs(n)
+    weight = weight * weight * weight * weight
+    weight = weight / max(weight.x + weight.y + weight.z, 1e-6)
+    q = p / size + 0.5
+    along_x = sample(image, q.zy).rgb * weight.x
+    along_y = sample(image, q.xz).rgb * weight.y
+    return along_x + along_y + sample(image, q.xy).rgb * weight.z
+
+
+@func
+def image_spherical(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
+    """A picture around the upright axis, from pole to pole.
+
+    Args:
+        p: Point.
+        image: Picture.
+        size: Share of the turn that it covers, and of the way from pole to pole.
+    """
+    around = atan2(p.x, p.z) / (2.0 * PI)
+    height = atan2(p.y, length(p.xz)) / PI
+    return sample(image, vec2(around, height) / size + 0.5).rgb
+
+
+@func
+def image_cylindrical(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
+    """A picture around the upright axis, as a label around a tin.
+
+    Args:
+        p: Point.
+        image: Picture.
+        size: Share of the turn that it covers; ``size`` units high.
+    """
+    around = atan2(p.x, p.z) / (2.0 * PI)
+    return sample(image, vec2(around, p.y) / size + 0.5).rgb
+
+
+@func
+def cube_map(p: vec3, image: TextureCube) -> vec3:
+    """Six pictures seen from the shape's centre.
+
+    Args:
+        p: Point.
+        image: Cube map.
+    """
+    return sample(image, p).rgb
+
+
+@func
+def waves(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
+    """As stripes, but going smoothly from one to the other and back.
+
+    Args:
+        p: Point.
+        size: From one crest to the next.
+        direction: Across the waves, of any length but 0.
+    """
+    return 0.5 + 0.5 * sin(2.0 * PI * dot(p, normalize(direction)) / size)

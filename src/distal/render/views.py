@@ -1,0 +1,161 @@
+"""What a renderer knows besides color, as pictures; display-ready colors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.claims import Bounds
+from distal.lang import (
+    Field3,
+    abs,
+    clamp,
+    cos,
+    dot,
+    exp,
+    func,
+    gradient,
+    length,
+    max,
+    mix,
+    smoothstep,
+    vec3,
+    vec4,
+)
+from distal.render.bounce import just_before, place_on
+from distal.render.camera import Ray
+from distal.render.heightfield_march import STRIDE, Stride
+from distal.render.march import March, march
+from distal.render.material import Surface
+from distal.render.normals import exact_normal
+from distal.render.tonemap import encode_srgb
+from distal.render.trace import first_surface
+
+EMPTY = vec3(0.08, 0.08, 0.1)
+
+
+@func
+def heat(x: float) -> vec3:
+    """0 to 1 as dark blue, green, yellow, red: even steps look even."""
+    t = clamp(x, 0.0, 1.0)
+    red = smoothstep(0.35, 0.75, t)
+    green = smoothstep(0.05, 0.45, t) - 0.85 * smoothstep(0.65, 1.0, t)
+    blue = 0.25 + 0.6 * smoothstep(0.0, 0.2, t) - 0.85 * smoothstep(0.3, 0.6, t)
+    return vec3(red, green, blue)
+
+
+@func
+def isolines(d: float, spacing: float) -> vec3:
+    """A distance as warm outside and cool inside, with a line for every ``spacing``."""
+    tint = vec3(0.95, 0.6, 0.3) if d > 0.0 else vec3(0.4, 0.65, 0.95)
+    color = tint * (1.0 - exp(-3.0 * abs(d)))
+    color *= 0.85 + 0.15 * cos(6.283185307 * d / spacing)
+    return mix(vec3(1.0), color, smoothstep(0.0, 0.01 + 0.02 * spacing, abs(d)))
+
+
+@func
+def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+    """The normal's x, y, z as red, green, blue."""
+    hit = march(field, ray, bounds, numbers, steps)
+    if not hit.found:
+        return vec4(EMPTY, 0.0)
+    return vec4(0.5 + 0.5 * hit.side * exact_normal(field, just_before(ray, hit, numbers)), 1.0)
+
+
+@func
+def view_depth(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+    """How far away: near is bright, halving every few units."""
+    hit = march(field, ray, bounds, numbers, steps)
+    if not hit.found:
+        return vec4(vec3(0.0), 0.0)
+    return vec4(vec3(1.0 / (1.0 + 0.15 * hit.t)), 1.0)
+
+
+@func
+def view_steps(
+    ray: Ray,
+    field: Field3,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    hybrid: bool = False,
+    stride: Stride = STRIDE,
+) -> vec4:
+    """What a ray costs: how many times the field was asked, of the most allowed."""
+    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    return vec4(heat(float(hit.steps) / float(steps)), 1.0)
+
+
+@func
+def view_coordinate(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+    """Where the ray goes: its direction as a color."""
+    return vec4(0.5 + 0.5 * ray.direction, 1.0)
+
+
+@func
+def view_signal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+    """The number behind the color: how far the ray went, before anything is colored."""
+    hit = march(field, ray, bounds, numbers, steps)
+    return vec4(vec3(exp(-0.2 * hit.t) if hit.found else 0.0), 1.0)
+
+
+@func
+def view_slope(
+    ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int, slope: float
+) -> vec4:
+    """|gradient| on the surface, of the bound that the field promises; above it: magenta."""
+    hit = march(field, ray, bounds, numbers, steps)
+    if not hit.found:
+        return vec4(EMPTY, 0.0)
+    steep = length(gradient(field, just_before(ray, hit, numbers)))
+    if steep > 1.001 * slope:
+        return vec4(1.0, 0.0, 1.0, 1.0)
+    return vec4(heat(steep / slope), 1.0)
+
+
+@func
+def view_material(
+    ray: Ray,
+    field: Field3,
+    surface: Callable[[vec3], Surface],
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+) -> vec4:
+    """The material's own color, without light; what shines shows its light."""
+    hit = march(field, ray, bounds, numbers, steps)
+    if not hit.found:
+        return vec4(EMPTY, 0.0)
+    found = surface(place_on(ray, hit))
+    return vec4(encode_srgb(found.color + found.emission), 1.0)
+
+
+@func
+def view_distance(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+    """The field on the plane through the origin that faces the camera."""
+    t = -dot(ray.origin, ray.direction) / max(dot(ray.direction, ray.direction), 1e-6)
+    return vec4(isolines(field(ray.origin + t * ray.direction), 0.1), 1.0)
+
+
+@func
+def view_slice(
+    ray: Ray, field: Field3, slice_normal: vec3, slice_offset: float, far: float
+) -> vec4:
+    """The field's lines of equal distance on a plane."""
+    facing = dot(ray.direction, slice_normal)
+    t = (slice_offset - dot(ray.origin, slice_normal)) / facing if abs(facing) > 1e-6 else -1.0
+    if t < 0.0 or t > far:
+        return vec4(EMPTY, 0.0)
+    return vec4(isolines(field(ray.origin + t * ray.direction), 0.1), 1.0)
+
+
+VIEWS = {
+    "coordinate": view_coordinate,
+    "signal": view_signal,
+    "distance": view_distance,
+    "normal": view_normal,
+    "depth": view_depth,
+    "steps": view_steps,
+    "material": view_material,
+    "slope": view_slope,
+    "slice": view_slice,
+}

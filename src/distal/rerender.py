@@ -1,0 +1,256 @@
+"""A saved picture, rendered again from what its file says.
+
+What flows in: the file of a picture. What flows out: the same picture, and what is not as it was
+then. Nothing of a scene's file is run before its text is known to be the one of then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import LoadError
+from distal.executor_hook import executor
+from distal.film import exr, png
+from distal.film.metadata import Provenance, ReadError, Record, read
+from distal.film.picture import Picture
+from distal.lang.functions import Func, Image
+from distal.loading import EXAMPLE_PREFIX, digest_of, load, split_source
+from distal.scene.field import Field
+from distal.scene.local_views import view_of_image
+from distal.scene.scene import Scene
+from distal.scene.stage import stage
+from distal.scene.steering import Steering
+from distal.version import __version__
+
+MARK: Final = ".rerendered"
+
+
+class RerenderError(Exception):
+    """A picture that cannot be rendered again as it was, and why, in one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A picture's file, and the scene that it is rendered of again.
+
+    Attributes:
+        path: The picture's file.
+        record: What it says.
+        source: Where the scene was found: ``FILE[:NAME]`` or ``example:NAME``.
+        named: The same as the new picture says it: as it was written, without a folder of ours.
+        notes: What is not as it was, one line each.
+    """
+
+    path: Path
+    record: Record
+    source: str
+    named: str
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """How two pictures differ, in the levels or numbers that their files hold.
+
+    Attributes:
+        largest: The largest difference of a channel; 1 is the display's whole range, or a unit of
+            linear light or of a layer.
+        share: Of the pixels that differ at all.
+    """
+
+    largest: float
+    share: float
+
+    @property
+    def is_none(self) -> bool:
+        """Whether the pictures are equal."""
+        return self.share == 0.0
+
+
+def planned(path: Path, *, source: str | None = None, force: bool = False) -> Plan:
+    """Find what a picture is rendered of, and hold it against what it was then.
+
+    Args:
+        path: A PNG or EXR that ``Picture.save`` wrote.
+        source: ``FILE[:NAME]`` or ``example:NAME`` instead of what the picture says.
+        force: Go on with a scene that has changed.
+
+    Raises:
+        ReadError: The file is broken, or does not say how it was made.
+        RerenderError: The scene is missing, or has changed.
+    """
+    record = read(path)
+    origin = record.provenance
+    found = source or _source(origin, path)
+    try:
+        digest = digest_of(split_source(found)[0], origin.neighbours)
+    except LoadError as error:
+        raise RerenderError(f"cannot rebuild {path}: {error}") from None
+    notes = []
+    if digest != origin.source_hash:
+        also = f" or what it imports ({', '.join(origin.neighbours)})" if origin.neighbours else ""
+        changed = f"{found}{also} is not what {path} was rendered of"
+        if not force:
+            raise RerenderError(f"{changed}: it has changed since; --force renders it as it is now")
+        notes.append(f"{changed}: rendered as it is now")
+    if record.version != __version__:
+        notes.append(f"{path} was made by distal {record.version}, this is {__version__}")
+    return Plan(path, record, found, source or origin.source, tuple(notes))
+
+
+def rerender(
+    plan: Plan,
+    *,
+    size: tuple[int, int] | None = None,
+    samples: int | None = None,
+    device: str | None = None,
+    threads: int | None = None,
+    progress: Callable[[float], Any] | None = None,
+    cancel: Any = None,
+) -> Picture:
+    """Render a picture again; what is None is as it was.
+
+    Raises:
+        RerenderError: The scene cannot show it: a parameter or a view is gone.
+        LoadError: The scene's file fails when run.
+        CompileError: The scene has mistakes.
+        DeviceError: The device is missing.
+    """
+    origin = plan.record.provenance
+    obj = load(*split_source(plan.source))
+    options = {
+        "size": size or plan.record.size,
+        "time": origin.time,
+        "params": origin.parameters,
+        "device": device or origin.device or "cpu",
+        "threads": threads,
+        "progress": progress,
+        "cancel": cancel,
+        "mouse": origin.mouse,
+        "index": origin.index,
+        "seed": origin.seed,
+    }
+    try:
+        made = _rendered(obj, origin, samples, options)
+    except (ValueError, TypeError) as error:  # what a caller asked for, and the scene has not
+        raise RerenderError(f"cannot rebuild {plan.path}: {error}") from None
+    return made.told(source=plan.named)
+
+
+def _rendered(obj: Any, origin: Provenance, samples: int | None, options: Any) -> Picture:
+    if isinstance(obj, Image):
+        if samples is not None:
+            raise ValueError(f"samples are for scenes and shapes; '{obj.name}' is an @image")
+        shown = obj if origin.view == "color" else view_of_image(obj, origin.view)
+        picture: Picture = executor().render(shown, **options)
+        return picture.told(view=origin.view)
+    if isinstance(obj, Func) or not isinstance(obj, Field | Scene):
+        raise ValueError(f"'{obj.name}' is no scene, no shape and no @image")
+    scene = obj if isinstance(obj, Scene) else stage(obj, origin.parameters, origin.time)
+    if origin.exposure is not None or origin.tone_map is not None:
+        scene = scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
+    moved = None
+    if origin.steering is not None:
+        yaw, pitch, zoom, *pan = origin.steering
+        moved = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
+    asked: dict[str, Any] = {} if origin.plane is None else {"plane": origin.plane}
+    again: Picture = scene.render(
+        samples=origin.samples if samples is None else samples,
+        view=origin.view,
+        transparent=origin.transparent,
+        freeze=origin.freeze,
+        steering=moved,
+        layers=origin.layers,
+        **asked,
+        **options,
+    )
+    return again
+
+
+def difference(plan: Plan, picture: Picture) -> Difference:
+    """How a picture differs from what its file holds; NaN is equal to NaN.
+
+    Raises:
+        RerenderError: They are not of one size.
+        ReadError: The file is broken, or another program wrote its pixels anew.
+    """
+    if plan.record.stored_size != (picture.width, picture.height):
+        stored, made = plan.record.stored_size, (picture.width, picture.height)
+        sizes = f"it is {stored[0]}x{stored[1]}, the picture {made[0]}x{made[1]}"
+        raise RerenderError(f"cannot compare {plan.path}: {sizes}")
+    largest = 0.0
+    differs = np.zeros((picture.height, picture.width), bool)
+    for then, now in _channels(plan, picture):
+        unequal = (then != now) & ~(np.isnan(then) & np.isnan(now))
+        differs |= unequal
+        if unequal.any():
+            # Infinities less each other are no number, and as different as can be.
+            gaps = np.abs(then[unequal].astype(np.float64) - now[unequal].astype(np.float64))
+            largest = max(largest, float(np.nan_to_num(gaps, nan=np.inf, posinf=np.inf).max()))
+    return Difference(largest, float(differs.mean()))
+
+
+def _channels(plan: Plan, picture: Picture) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
+    """Each channel as it was and as it is, as both files hold it."""
+    bits = plan.record.bits
+    try:
+        stored = plan.path.read_bytes()
+        if plan.record.format == "png":
+            most = float(2**bits - 1)
+            then = png.decode(stored) / most
+            now = png.decode(png.encode(picture.array, {}, bits)) / most
+            yield from ((then[..., i], now[..., i]) for i in range(4))
+            return
+        held = exr.decode(stored)
+        made = exr.decode(exr.encode(picture.linear, picture.layers, {}, bits))
+    except (OSError, ReadError) as error:
+        raise ReadError(f"cannot compare {plan.path}: {error}") from None
+    if held.keys() != made.keys():
+        raise ReadError(f"cannot compare {plan.path}: it was rewritten with other channels")
+    yield from ((held[name], made[name]) for name in made)
+
+
+def default_output(path: Path) -> Path:
+    """Where a picture that is rendered again goes: beside the first one."""
+    return path.with_name(f"{path.stem}{MARK}{path.suffix}")
+
+
+def _source(origin: Provenance, path: Path) -> str:
+    """Where the scene is: beside the picture, or from where one stands.
+
+    Of several files the first that is as it was then.
+    """
+    text = origin.source
+    if text.startswith(EXAMPLE_PREFIX):
+        return text
+    places = [folder / text for folder in (path.parent, Path())]
+    found = [str(place) for place in dict.fromkeys(places) if _is_file(str(place))]
+    if not found:
+        if not origin.source or "." not in text:
+            said = f"it says no file, only '{text}'" if text else "it says no file"
+            raise RerenderError(f"cannot rebuild {path}: {said}; name it: --source FILE[:NAME]")
+        raise RerenderError(
+            f"cannot rebuild {path}: there is no {text}, neither beside it nor here"
+        )
+    same = [s for s in found if _digest_or_none(s, origin) == origin.source_hash]
+    return (same or found)[0]
+
+
+def _digest_or_none(source: str, origin: Provenance) -> str | None:
+    try:
+        return digest_of(split_source(source)[0], origin.neighbours)
+    except LoadError:
+        return None
+
+
+def _is_file(source: str) -> bool:
+    try:
+        return Path(split_source(source)[0]).is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        return False

@@ -1,0 +1,54 @@
+"""What authors look for by names that shapes do not have.
+
+What flows in: a name that was not found. What flows out: the sentence that tells which method to
+use instead. Knows the methods by name only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+_ROTATE: Final = "rotate(x=…, y=…, z=…), in radians"
+_PAINT: Final = "paint(material or color)"
+_UNION: Final = "a | b, or a.union(b, smooth=0.1)"
+_DIFFERENCE: Final = "a - b, or a.difference(b)"
+_SCENE: Final = "a scene: Scene(shape).render((640, 480)).save(file)"
+
+OTHER_NAMES: Final[Mapping[str, str]] = {
+    **dict.fromkeys(
+        ("move", "moved", "shift", "translated", "at", "position"), "translate(x, y, z)"
+    ),
+    **dict.fromkeys(("rotate_x", "rotate_y", "rotate_z", "rotateX", "rotateY", "rotateZ"), _ROTATE),
+    **dict.fromkeys(("rotated", "rot", "turn"), _ROTATE),
+    **dict.fromkeys(("scaled", "resize"), "scale(factor)"),
+    **dict.fromkeys(("color", "colour", "material", "set_material", "with_material"), _PAINT),
+    **dict.fromkeys(("add", "join", "fuse", "merge", "smooth_union", "blend"), _UNION),
+    **dict.fromkeys(("subtract", "cut", "minus", "smooth_difference"), _DIFFERENCE),
+    **dict.fromkeys(("intersect", "common", "smooth_intersection"), "a & b, or a.intersection(b)"),
+    **dict.fromkeys(("hollow", "onion"), "shell(thickness)"),
+    **dict.fromkeys(("fillet", "rounded", "bevel"), "round(radius), or a.union(b, smooth=0.1)"),
+    **dict.fromkeys(("reflect", "mirror_x", "mirrorX"), "mirror((1, 0, 0)) or symmetry('x')"),
+    **dict.fromkeys(("circular_array", "polar_array"), "repeat_polar(count)"),
+    **dict.fromkeys(("sdf", "distance", "evaluate", "eval"), "shape(points)"),
+    **dict.fromkeys(("normal", "normals", "grad"), "gradient(points)"),
+    **dict.fromkeys(("bounding_box", "bbox"), "bounds()"),
+    **dict.fromkeys(("render", "show", "save", "image"), _SCENE),
+}
+_SOLID_ONLY: Final = "for solids; make it one by extrude(height) or revolve()"
+_FLAT_ONLY: Final = "for flat shapes; slice() makes one of a solid"
+
+
+def instead(kind: str, name: str, *, flat: bool, of_others: bool) -> str:
+    """The message for a name that a shape does not have.
+
+    Args:
+        kind: What the shape is called.
+        name: What was looked for.
+        flat: Whether the shape is.
+        of_others: Whether shapes of the other dimension have it.
+    """
+    message = f"'{kind}' has no '{name}'"
+    if of_others:
+        return f"{message}: it is {_SOLID_ONLY if flat else _FLAT_ONLY}"
+    return f"{message}; there is {OTHER_NAMES[name]}" if name in OTHER_NAMES else message

@@ -1,0 +1,446 @@
+"""A scene: shapes, lights and a camera, ready to become a picture.
+
+What flows in: the author's objects. What flows out: one function from a pixel to linear light, made
+of the library's cameras, marchers and shaders around the shapes' own functions; and a second one
+that encodes light for display. The cheapest renderer is chosen that shows all materials.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ClassVar, Final
+
+from distal.diagnostics import Span
+from distal.fields.claims import Limit
+from distal.frontend import Assembly
+from distal.ir.nodes import EntryKind, Param, Read, Return
+from distal.ir.types import FLOAT, FRAME, INT, VEC3, VEC4
+from distal.lang import func, vec3
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.presentable import Presentable
+from distal.loading import hand_on
+from distal.render import tonemap, views
+from distal.scene.backgrounds import as_background
+from distal.scene.cameras import BaseCamera, Camera
+from distal.scene.cells import check_cells
+from distal.scene.conversion import Asked, choice, number
+from distal.scene.field import Field
+from distal.scene.layers import Layer
+from distal.scene.lights import DistantLight, HemisphereLight, Light
+from distal.scene.materials import as_material
+from distal.scene.numbers import arguments
+from distal.scene.picture import NORMALS, Picturing
+from distal.scene.places import author_place
+from distal.scene.refusals import refuse, refuse_kind
+from distal.scene.steepness import check_slopes
+from distal.scene.steering import Steering
+
+MOST_SAMPLES: Final = 65536
+_LIMITS: Final = {
+    "exposure": Limit.NOT_NEGATIVE,
+    "fog_density": Limit.NOT_NEGATIVE,
+    "ambient_occlusion": Limit.NOT_NEGATIVE,
+    "near": Limit.NOT_NEGATIVE,
+    "far": Limit.POSITIVE,
+    "stride": Limit.POSITIVE,
+    "stride_growth": Limit.POSITIVE,
+}
+
+
+class Scene(Composed, Presentable):
+    """Shapes, lights and a camera.
+
+    Args:
+        shape: What is seen: a solid shape, or several.
+        lights: What it is lit by; a sun and a sky where none are given.
+        camera: Where it is seen from.
+        background: What rays show that meet nothing: a color, a ``Sky``, an ``Environment``, a
+            ``@func`` of the direction.
+        exposure: A factor on all light before it is shown.
+        tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
+            or "neutral".
+        default_material: What unpainted shapes look like.
+        fog: The color of fog.
+        fog_density: How thick it is: a share of 1/e is left after 1/density; 0: clear air.
+        shadows: Whether lights cast shadows.
+        ambient_occlusion: How far ambient light looks for what hides it, in scene units; 0: not.
+        bounces: How often light is followed through mirrors and glass.
+        normals: "exact", or by differences: "six_taps", "tetrahedron" or "forward".
+        march: "sphere", or "heightfield" for terrain and water: long steps over it, then a search.
+        stride: The shortest step of that march at the start, for each unit that it is away.
+        stride_growth: The factor it grows by from step to step.
+        steps: The most steps of a ray.
+        near: Where rays begin.
+        far: Where rays end.
+
+    Raises:
+        CompileError: At the author's line, when something does not go together.
+    """
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+
+    def __init__(
+        self,
+        shape: Any,
+        lights: Any = None,
+        camera: Any = None,
+        background: Any = None,
+        *,
+        exposure: Any = 1.0,
+        tone_map: str = "none",
+        default_material: Any = (0.8, 0.8, 0.8),
+        fog: Any = (0.0, 0.0, 0.0),
+        fog_density: Any = 0.0,
+        shadows: bool = True,
+        ambient_occlusion: Any = 0.4,
+        bounces: int = 6,
+        normals: str = "exact",
+        march: str = "sphere",
+        stride: Any = 0.03,
+        stride_growth: Any = 1.05,
+        steps: int = 160,
+        near: Any = 0.001,
+        far: Any = 200.0,
+        name: str = "scene",
+    ) -> None:
+        place = self.place = author_place()
+        self.name = name
+        self.shape = one_shape(shape, place)
+        check_slopes(self.shape.node)
+        check_cells(self.shape.node)
+        given_lights = checked_lights(lights, place)
+        self.background = as_background(background, given_lights, place)
+        self.lights = all_lights(lights is None, given_lights, self.background.light)
+        if camera is not None and not isinstance(camera, BaseCamera):
+            refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
+        self.camera = camera if camera is not None else Camera((3.0, 2.0, 5.0))
+        self.material = as_material(default_material)
+        self.tone_map = one_of("tone map", tone_map, tonemap.NAMES, place)
+        self.normals = one_of("way to find normals", normals, NORMALS, place)
+        self.march = one_of("march", march, ("sphere", "heightfield"), place)
+        self.shadows = bool(shadows)
+        self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
+        self.steps = whole("steps", steps, Limit.POSITIVE, place)
+        given = {
+            "exposure": exposure,
+            "fog": fog,
+            "fog_density": fog_density,
+            "ambient_occlusion": ambient_occlusion,
+            "near": near,
+            "far": far,
+            "stride": stride,
+            "stride_growth": stride_growth,
+        }
+        self.numbers: Mapping[str, Any] = arguments(
+            scene_numbers,
+            (),
+            given,
+            what="Scene",
+            limits=_LIMITS,
+            requires=_ends,
+            colors=("fog",),
+            place=place,
+        )
+        self.display = Display(self)
+        self.asked_display: Mapping[str, Any] = {}
+        self._pictures: dict[tuple[Any, ...], Composed] = {}
+        self._whole = True
+
+    # Its kernel is made once: what was changed later would not show.
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if "_whole" in self.__dict__:
+            raise AttributeError("a scene does not change; make another: Scene(shape, …)")
+        object.__setattr__(self, name, value)
+
+    @property
+    def renderer(self) -> str:
+        """The cheapest renderer that shows all materials."""
+        found = [n.material for n in self.shape.node.walk() if n.material is not None]
+        found += [n.cut_material for n in self.shape.node.walk() if n.cut_material is not None]
+        found.append(self.material)
+        if self.bounces == 0:
+            return "plain"
+        if any(m.refracts for m in found):
+            return "refracted"
+        return "mirrored" if any(m.reflects for m in found) else "plain"
+
+    def render(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        device: str = "cpu",
+        threads: int | None = None,
+        progress: Callable[[float], Any] | None = None,
+        cancel: Any = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+        *,
+        samples: int = 1,
+        view: str = "color",
+        transparent: bool = False,
+        plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
+        freeze: bool = False,
+        steering: Steering | None = None,
+        layers: Sequence[str] = (),
+    ) -> Any:
+        """Compute the picture.
+
+        Args:
+            size: Width and height in pixels.
+            time: Seconds.
+            params: Values of parameters by name; the others have their defaults.
+            device: "cpu" or "reference".
+            threads: How many to use; None for all the machine lends.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            mouse: As for ``Image.render``.
+            index: The frame's number.
+            seed: What random numbers start from.
+            samples: Rays for each pixel.
+            view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
+                "steps", "material", "slope" or "slice".
+            transparent: Whether alpha is 0 where nothing is met.
+            plane: What "slice" shows: the plane's normal, of length 1, and its distance from the
+                origin along it.
+            freeze: Make constants of all numbers: slower to compile, a little faster to run.
+            steering: How the camera is moved by hand; None: not.
+            layers: What else to compute of each pixel's middle, for ``Picture.layers``: "depth",
+                "normal", "albedo", "material".
+        """
+        rendering = importlib.import_module("distal.scene.rendering")  # needs NumPy
+        return rendering.rendered(
+            self,
+            rendering.Wish(samples, view, transparent, plane, steering, layers),
+            progress,
+            size=size,
+            time=time,
+            params=params,
+            device=device,
+            threads=threads,
+            cancel=cancel,
+            mouse=mouse,
+            index=index,
+            seed=seed,
+            freeze=freeze,
+        )
+
+    def view(
+        self,
+        name: str,
+        *,
+        transparent: bool = False,
+        sampled: bool = False,
+        encoded: bool = False,
+        steered: bool = False,
+    ) -> Composed:
+        """The scene seen in another way: "normal", "depth" …; itself for "color".
+
+        Args:
+            name: What is shown.
+            transparent: Whether alpha is 0 where nothing is met.
+            sampled: Whether a pixel is the mean of ``Samples`` rays.
+            encoded: Whether pixels are display values instead of linear light.
+            steered: Whether the camera moves by the numbers of a ``Steering``.
+        """
+        if name != "color" and name not in views.VIEWS:
+            known = ", ".join(["color", *views.VIEWS])
+            raise ValueError(f"there is no view '{name}'; views: {known}")
+        key = (name, transparent, sampled, encoded, steered)
+        if key == ("color", False, False, False, False):
+            return self
+        if key not in self._pictures:
+            self._pictures[key] = View(self, *key)
+        return self._pictures[key]
+
+    def layer(self, name: str, *, steered: bool = False) -> Composed:
+        """What else is known of each pixel's middle: an image of plain values (``render.layers``).
+
+        Args:
+            name: "depth", "normal", "albedo" or "material".
+            steered: Whether the camera moves by the numbers of a ``Steering``.
+        """
+        key = ("layer", name, steered)
+        if key not in self._pictures:
+            self._pictures[key] = Layer(self, name, steered=steered)
+        return self._pictures[key]
+
+    def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
+        """The same scene, its light shown in another way; None keeps what it says itself."""
+        made = Scene.__new__(Scene)
+        made.__dict__.update({n: v for n, v in self.__dict__.items() if n != "_whole"})
+        if exposure is not None:
+            asked = Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=self.place)
+            made.numbers = {**self.numbers, "exposure": number(exposure, asked)}
+        if tone_map is not None:
+            made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
+        made.display = Display(made)
+        given = {"exposure": exposure, "tone_map": tone_map}
+        said = {name: value for name, value in given.items() if value is not None}
+        made.asked_display = {**self.asked_display, **said}
+        made._pictures = {}
+        made._whole = True
+        hand_on(self, made)
+        return made
+
+    def text(self) -> Composed:
+        """What a text of it shows: display values."""
+        return self.view("color", encoded=True)
+
+    def compose(self, assembly: Assembly) -> str:
+        """Its picture in linear light, as a function of the frame."""
+        made = Picturing(assembly, self)
+        return made.main("color", transparent=False, sampled=False, encoded=False)
+
+    def functions(self) -> Iterable[Func]:
+        """The functions that it is made of."""
+        yield from self.shape.functions()
+        parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
+        for part in parts:
+            yield from part.functions()
+
+
+class View(Composed):
+    """A scene seen in another way."""
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+
+    def __init__(
+        self,
+        scene: Scene,
+        view: str,
+        transparent: bool,
+        sampled: bool,
+        encoded: bool,
+        steered: bool,
+    ) -> None:
+        hand_on(scene, self)
+        self.name = scene.name if view == "color" else f"{scene.name} ({view})"
+        self._scene = scene
+        self._view = view
+        self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
+        self._steered = steered
+        self.display = scene.display if view == "color" and not encoded else None
+
+    def compose(self, assembly: Assembly) -> str:
+        """The picture, as a function of the frame."""
+        return Picturing(assembly, self._scene).main(
+            self._view,
+            transparent=self._transparent,
+            sampled=self._sampled,
+            encoded=self._encoded and self._view == "color",
+            steered=self._steered,
+        )
+
+    def functions(self) -> Iterable[Func]:
+        """The functions that it is made of."""
+        return self._scene.functions()
+
+
+class Display(Composed):
+    """What makes display values of a scene's linear light."""
+
+    signature = (("color", VEC4),)
+    result = VEC4
+
+    def __init__(self, scene: Scene) -> None:
+        self.name = f"display of {scene.name}"
+        self._scene = scene
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function of a linear color."""
+        made = Picturing(assembly, self._scene)
+        value = made.displayed(Read("color", VEC4))
+        return assembly.define("display_color", (Param("color", VEC4),), VEC4, (Return(value),))
+
+
+@func
+def scene_numbers(
+    exposure: float,
+    fog: vec3,
+    fog_density: float,
+    ambient_occlusion: float,
+    near: float,
+    far: float,
+    stride: float,
+    stride_growth: float,
+) -> float:
+    """The numbers of a scene by name; never called."""
+    return exposure
+
+
+def _ends(near: float, far: float) -> str | None:
+    return None if near < far else f"rays begin at near {near:g} and end before it, at far {far:g}"
+
+
+def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
+    """A count of the scene."""
+    return choice(value, Asked(name, "Scene", INT, limit, place=place))
+
+
+def slice_settings(plane: Any) -> dict[str, Any]:
+    """Which plane a slice shows, as settings of a picture."""
+    place = author_place()
+    try:
+        normal, offset = plane
+    except (TypeError, ValueError):
+        hint = "plane=((0, 0, 1), 0.5)"
+        refuse_kind(f"a plane is a normal and an offset, not {plane!r:.60}", hint, place)
+    direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
+    distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
+    return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
+
+
+def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
+    """A choice by its name."""
+    if name not in known:
+        refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
+    return str(name)
+
+
+def one_shape(shape: Any, place: Span | None) -> Field:
+    """One solid of what the author gave: a shape, or several."""
+    shapes = listed(shape)
+    if not shapes:
+        refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
+    for one in shapes:
+        if not isinstance(one, Field):
+            refuse_kind(f"a scene shows shapes, not {one!r:.60}", None, place)
+        if one.flat:
+            hint = "make it solid: .extrude(height) or .revolve()"
+            refuse(f"'{one.name}' is a flat shape; a scene shows solids", hint, place)
+    first: Field = shapes[0]
+    return first.union(*shapes[1:]) if len(shapes) > 1 else first
+
+
+def listed(given: Any) -> list[Any]:
+    """What was given as a list, a generator, an array of objects, or alone."""
+    return list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
+
+
+def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
+    """The lights that the author gave; one light may stand for a list of one."""
+    if lights is None:
+        return ()
+    given = tuple(listed(lights))
+    for light in given:
+        if not isinstance(light, Light):
+            refuse_kind(f"a light is wanted, not {light!r:.60}", "PointLight((2, 3, 4))", place)
+    return given
+
+
+def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
+    """The lights of a scene: those given, what is around if that shines, else a sun and a sky."""
+    if around is not None:  # among the lights too, it is still one light
+        return (*given, around) if around not in given else tuple(given)
+    if unsaid:
+        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
+    return tuple(given)

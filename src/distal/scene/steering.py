@@ -1,0 +1,61 @@
+"""How a person moved a scene's camera, as five numbers.
+
+What flows in: gestures, already turned into angles and shares of the picture. What flows out: the
+values of the uniforms that a steered view reads; ``render/steer.py`` says what they do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from distal.ir.types import FLOAT, VEC2, Type
+from distal.lang.parameter_values import LARGEST_FLOAT
+
+# The numbers of a steered view, without the prefix of their uniforms: type, and value at rest.
+NUMBERS: Final[tuple[tuple[str, Type, Any], ...]] = (
+    ("yaw", FLOAT, 0.0),
+    ("pitch", FLOAT, 0.0),
+    ("zoom", FLOAT, 1.0),
+    ("pan", VEC2, (0.0, 0.0)),
+)
+PREFIX: Final = "View_"
+
+
+@dataclass(frozen=True, slots=True)
+class Steering:
+    """How far a camera was moved by hand; at rest it shows the author's own picture.
+
+    Attributes:
+        yaw: How far the eye went around what it looks at, to the right as it sees it, in radians.
+        pitch: How far it rose, in radians.
+        zoom: Factor on its distance: 0.5 is twice as near.
+        pan: How far what is seen was dragged, to the right and up; 1 is half the picture's height.
+
+    Raises:
+        ValueError: A number is not finite, or zoom is not above 0.
+    """
+
+    yaw: float = 0.0
+    pitch: float = 0.0
+    zoom: float = 1.0
+    pan: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not all(abs(n) <= LARGEST_FLOAT for n in self.numbers):
+            raise ValueError(f"a camera is moved by finite numbers, not {self!r}")
+        if not self.zoom > 0.0:
+            raise ValueError(f"zoom is a factor above 0, not {self.zoom:g}")
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """The five numbers: yaw, pitch, zoom, pan's x and y."""
+        return (self.yaw, self.pitch, self.zoom, *self.pan)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Its uniforms by name."""
+        return {f"{PREFIX}{name}": getattr(self, name) for name, _, _ in NUMBERS}
+
+
+STILL: Final = Steering()

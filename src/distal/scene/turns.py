@@ -1,0 +1,32 @@
+"""Angles that look like degrees: told, because they are radians.
+
+What flows in: the angles that an author turns a shape by. What flows out: a warning at that line.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import Any, Final
+
+from distal.diagnostics import Span
+
+# Nobody turns by 30, 45 or 90 radians; 15 might be the end of a loop.
+LEAST_DEGREES: Final = 30
+STEP_OF_DEGREES: Final = 15
+
+
+def doubt_degrees(place: Span | None, *angles: Any) -> None:
+    """Warn of plain angles that are whole multiples of 15 and so large that degrees are meant."""
+    for angle in angles:
+        plain = isinstance(angle, int | float) and not isinstance(angle, bool)
+        if plain and abs(angle) >= LEAST_DEGREES and angle % STEP_OF_DEGREES == 0:
+            turns = abs(angle) / math.tau
+            message = (
+                f"angles are radians, and {angle:g} of them are {turns:.3g} turns; "
+                f"for degrees write np.radians({angle:g})"
+            )
+            if place is None:
+                warnings.warn(message, stacklevel=3)
+            else:
+                warnings.warn_explicit(message, UserWarning, place.file, place.line)

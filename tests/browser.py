@@ -1,0 +1,145 @@
+"""A real browser for tests: headless Chromium on SwiftShader, with no way out to a network.
+
+What flows in: files. What flows out: playwright's browser, and pages that remember what they said
+and what they asked for. Where there is no browser, a test skips aloud on the error raised here;
+one that is there and does not start is a fault. Knows nothing of WebGL: that is ``tests.webgl``.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+NAMES: Final = ("chromium", "chromium-browser", "google-chrome")
+# SwiftShader is asked for by name: the same pixels on a machine with a GPU. The resolver finds no
+# host but this machine: whatever Chromium itself wants to ask, it asks nobody.
+FLAGS: Final = (
+    *("--no-sandbox", "--no-first-run", "--disable-quic", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update"),
+    *("--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost, EXCLUDE 127.0.0.1",
+)
+# WebGL on the machine's OpenGL instead: given besides, they win. Mesa's llvmpipe compiles the
+# gallery's largest scene in a second; SwiftShader takes minutes and all memory for some.
+MESA: Final = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
+START_MS: Final = 30_000  # 1 s alone; other work on the machine may make it ten times that
+ACTION_MS: Final = 20_000  # playwright's own limit for one step, unless a test says otherwise
+
+
+class BrowserUnavailableError(RuntimeError):
+    """No browser on this machine; a test skips aloud on it."""
+
+
+_running: dict[tuple[str, ...], Any] = {}
+
+
+def browser(*flags: str) -> Any:
+    """The process's one Chromium, or its one with these flags besides ``FLAGS``.
+
+    Started when first asked for and again after a crash, with a user data folder of its own; closed
+    when the process ends. playwright refuses to run inside an asyncio loop.
+
+    Raises:
+        BrowserUnavailableError: Chromium or playwright is missing.
+    """
+    known = _running.get(flags)
+    if known is None or not known.is_connected():
+        known = _running[flags] = _start(flags)
+    return known
+
+
+@contextmanager
+def offline_page(path: Path, *, flags: Sequence[str] = (), **options: Any) -> Iterator[Watched]:
+    """A file opened in a page of its own; anything it asks for over a network fails.
+
+    ``options`` are those of playwright's ``new_context``: ``viewport``, ``device_scale_factor``,
+    ``has_touch``, ``reduced_motion``, ``color_scheme``, … ``flags`` start another Chromium with
+    them: ``--disable-3d-apis`` is one without WebGL.
+
+    Raises:
+        BrowserUnavailableError: Chromium or playwright is missing.
+    """
+    context = browser(*flags).new_context(offline=True, **options)
+    try:
+        context.set_default_timeout(ACTION_MS)
+        watched = Watched(context.new_page())
+        _watch(context, watched, path.resolve().as_uri())
+        watched.page.goto(path.resolve().as_uri())
+        yield watched
+    finally:
+        context.close()
+
+
+@dataclass
+class Watched:
+    """A page, what it said, and what it asked for besides itself.
+
+    playwright tells what happened whenever it is called: after an idle page, call ``settle``.
+
+    Attributes:
+        page: playwright's page.
+        messages: Lines of the console such as ``warning: …``, and ``error: …`` of what was thrown.
+        requests: Addresses besides the page's own, ``data:`` and ``blob:``.
+    """
+
+    page: Any
+    messages: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+    @property
+    def complaints(self) -> list[str]:
+        """Errors and warnings alone."""
+        return [line for line in self.messages if line.startswith(("error:", "warning:"))]
+
+    def settle(self, wait_ms: float = 50.0) -> None:
+        """Let the page go on for a while, and hear what it has to say."""
+        self.page.wait_for_timeout(wait_ms)
+
+
+def _watch(context: Any, watched: Watched, address: str) -> None:
+    def asked(url: str) -> None:
+        if url.split("#")[0] != address and not url.startswith(("data:", "blob:")):
+            watched.requests.append(url)
+
+    context.on("console", lambda said: watched.messages.append(f"{said.type}: {said.text}"))
+    context.on("weberror", lambda thrown: watched.messages.append(f"error: {thrown.error}"))
+    context.on("request", lambda request: asked(request.url))
+    watched.page.on("websocket", lambda socket: asked(socket.url))
+    watched.page.on("crash", lambda _: watched.messages.append("error: the page crashed"))
+
+
+@cache
+def _driver() -> Any:
+    try:
+        from playwright.sync_api import sync_playwright  # noqa: PLC0415 (optional)
+    except ImportError:
+        raise BrowserUnavailableError("playwright is not installed") from None
+    driver = sync_playwright().start()
+    atexit.register(driver.stop)
+    return driver
+
+
+def _start(flags: tuple[str, ...]) -> Any:
+    path = next(filter(None, map(shutil.which, NAMES)), None)
+    if path is None:
+        raise BrowserUnavailableError("chromium is not installed")
+    launch = _driver().chromium.launch
+    options = {"executable_path": path, "headless": True, "args": [*FLAGS, *flags]}
+    try:
+        running = launch(**options, timeout=START_MS)
+    except Exception:  # a loaded machine; playwright makes a new user data folder each time
+        running = launch(**options, timeout=2 * START_MS)
+    atexit.register(_close, running)
+    return running
+
+
+def _close(running: Any) -> None:
+    with contextlib.suppress(Exception):  # already gone: there is nothing left to close
+        running.close()

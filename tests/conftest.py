@@ -1,0 +1,14 @@
+"""What every test runs under."""
+
+import atexit
+import os
+import shutil
+import tempfile
+
+# Each pass's output is held against the IR's rules; read when distal.compiler is imported.
+os.environ.setdefault("DISTAL_VERIFY", "1")
+
+# The person's own cache stays untouched; workers inherit the folder of the process that made it.
+if "DISTAL_CACHE_DIR" not in os.environ:
+    os.environ["DISTAL_CACHE_DIR"] = tempfile.mkdtemp(prefix="distal-tests-")
+    atexit.register(shutil.rmtree, os.environ["DISTAL_CACHE_DIR"], ignore_errors=True)

@@ -1,0 +1,7 @@
+from distal.lang import func
+
+
+@func
+def scene(größe: float) -> float:
+    ä = größe * größe
+    return ä + größ

@@ -1,0 +1,8 @@
+from collections.abc import Callable
+
+from distal.lang import func, vec3
+
+
+@func
+def scene(field: Callable[[vec3], float], p: vec3) -> float:
+    return field(p)

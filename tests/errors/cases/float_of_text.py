@@ -1,0 +1,6 @@
+from distal.lang import func
+
+
+@func
+def scene(x: float) -> float:
+    return x + float("inf")

@@ -1,0 +1,6 @@
+from distal.lang import func, uint
+
+
+@func
+def scene(h: uint, i: int) -> uint:
+    return h + i

@@ -1,0 +1,8 @@
+from distal.lang import func
+
+
+@func
+def scene(n: int) -> bool:
+    a = n is n
+    b = n in (1, 2)
+    return a or b

@@ -1,0 +1,3 @@
+from distal.lang import func
+
+scene = func(lambda x: x)

@@ -1,0 +1,8 @@
+import random
+
+from distal.lang import func, length, vec3
+
+
+@func
+def scene(p: vec3) -> float:
+    return length(p) - random.random()

@@ -1,0 +1,7 @@
+from distal.lang import func
+
+
+@func
+def scene(x: float) -> float:
+    print(x)
+    return x

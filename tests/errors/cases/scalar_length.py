@@ -1,0 +1,6 @@
+from distal.lang import func, length, vec3
+
+
+@func
+def scene(p: vec3) -> float:
+    return length(p.x) - 1.0

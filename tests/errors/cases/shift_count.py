@@ -1,0 +1,6 @@
+from distal.lang import func
+
+
+@func
+def scene(n: int) -> int:
+    return n << 32

@@ -1,0 +1,11 @@
+from distal.lang import func, length, vec3
+
+
+@func
+def sphere(p: vec3, *radii: float) -> float:
+    return length(p) - 1.0
+
+
+@func
+def scene(p: vec3) -> float:
+    return sphere(p)

@@ -1,0 +1,6 @@
+from distal.lang import func
+
+
+@func
+def scene(p) -> float:
+    return p - 1.0

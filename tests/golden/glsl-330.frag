@@ -1,0 +1,69 @@
+#version 330
+
+uniform vec2 resolution;
+uniform float time;
+uniform float filter_ = 0.25;  // Filter, 0.01 to 1.0
+uniform bool outline = true;  // Outline
+
+// Computed once a frame, by the vertex stage.
+flat in vec4 packed_0;
+
+// Per-frame values that functions read.
+float frame_0;
+
+out vec4 fragment_color;
+
+struct Nearest {
+    float distance;
+    int number;
+};
+
+const float[3] table = float[3](0.2, 0.9, 0.4);
+
+// scene.py:39
+vec2 rotated(vec2 p, float angle) {
+    float shared_0 = cos(angle);
+    float shared_1 = sin(angle);
+    return mat2(vec2(shared_0, shared_1), vec2(-shared_1, shared_0)) * p;
+}
+
+// scene.py:44
+float ring(vec2 p, float radius) {
+    return abs(length(p) - radius) - 0.05;
+}
+
+// scene.py:49
+Nearest nearest(vec2 p) {
+    Nearest found = Nearest(1000.0, -1);
+    for (int i = 0; i < 3; i++) {
+        vec2 center = rotated(vec2(0.5, 0.0), time + 2.0 * float(i));
+        float d = ring(p - center, 0.25);
+        if (d < found.distance) {
+            found.distance = d;
+            found.number = i;
+        }
+    }
+    return found;
+}
+
+// scene.py:61
+vec3 rings(vec2 coord) {
+    vec2 p = (2.0 * coord - resolution) / resolution.y;
+    p *= frame_0;
+    Nearest found = nearest(p);
+    if (found.number < 0) {
+        return vec3(0.0);
+    }
+    float shade = clamp(0.5 - found.distance / filter_, 0.0, 1.0);
+    if (outline && abs(found.distance) < 0.01) {
+        shade = max(roundEven(shade), min(shade, 0.5));
+    }
+    return mix(vec3(0.1, 0.1, 0.2), vec3(table[min(max(found.number, 0), 2)], 0.5, 0.3), shade);
+}
+
+// scene.py:61
+void main() {
+    vec2 coord = gl_FragCoord.xy;
+    frame_0 = packed_0.x;
+    fragment_color = vec4(rings(coord), 1.0);
+}

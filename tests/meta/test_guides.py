@@ -1,0 +1,58 @@
+"""Every Python block of the front page and the guides runs as it is printed.
+
+Blocks of one page run in order in one folder, each as a file of its own. One that loads "scene.py"
+finds the block before it there. Pictures are made small; nothing else is changed.
+"""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+import distal
+from distal import Scene, Shape
+from distal.lang.functions import Image
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs/guide").glob("*.md"))]
+BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+SIZE = re.compile(r"\b640, 480\b")
+
+
+def blocks(page: Path) -> list[str]:
+    return [SIZE.sub("32, 24", text) for text in BLOCK.findall(page.read_text(encoding="utf-8"))]
+
+
+@pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda page: page.name)
+def test_its_blocks_run(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for number, text in enumerate(blocks(page)):
+        file = tmp_path / f"block_{number}.py"
+        file.write_text(text, encoding="utf-8")
+        made = runpy.run_path(str(file))
+        if "scene.py" not in text:
+            (tmp_path / "scene.py").write_text(text, encoding="utf-8")
+        for value in made.values():
+            if isinstance(value, Scene | Image):
+                picture = value.render((32, 24))
+                assert picture.array[..., :3].std() > 0.01, f"a blank picture: block {number}"
+            elif isinstance(value, Shape):
+                assert value.slope > 0.0
+
+
+def test_what_the_guide_to_scenes_names_is_there():
+    text = BLOCK.sub("", (ROOT / "docs/guide/scenes.md").read_text(encoding="utf-8"))
+    code = [re.sub(r'"[^"]*"', "", part) for part in re.findall(r"`([^`]+)`", text)]
+    assert code
+    classes = {name for part in code for name in re.findall(r"\b[A-Z][a-z]\w+", part)}
+    assert {name for name in classes if not hasattr(distal, name)} == set()
+    methods = {name for part in code for name in re.findall(r"\.([a-z_]+)\b", part)}
+    known = {*dir(distal.Shape), *dir(distal.Shape2D), *dir(distal.Picture), *dir(distal)}
+    assert methods - known <= {"lang", "py", "png"}  # a module, and the ends of files
+
+
+def test_there_are_blocks():
+    assert {page.name for page in PAGES if blocks(page)} >= {"README.md", "scenes.md"}

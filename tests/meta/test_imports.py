@@ -1,0 +1,95 @@
+"""What may be imported when: the compile path needs the standard library alone.
+
+Import-linter reads the source for the same laws (``pyproject.toml``); here they are tried.
+"""
+
+import ast
+import os
+import subprocess
+import sys
+
+import pytest
+
+import distal
+from distal.cli.application import TargetName
+
+EXAMPLES = sorted(distal.gallery())
+
+# Fails every import of what is neither in the standard library nor distal.
+STANDARD_LIBRARY_ONLY = """
+import sys
+
+class Blocker:
+    def find_spec(self, name, path=None, target=None):
+        top = name.partition(".")[0]
+        if top not in sys.stdlib_module_names and top not in ("distal", "sitecustomize"):
+            raise ModuleNotFoundError(f"blocked: {name}", name=name)
+
+sys.meta_path.insert(0, Blocker())
+"""
+
+WITHOUT_HEAVY_PACKAGES = """
+import sys
+for name in ("numpy", "llvmlite", "wgpu", "PIL", "moderngl"):
+    sys.modules[name] = None
+"""
+
+
+def run(code, *words):
+    answer = subprocess.run(
+        [sys.executable, "-c", code, *words],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert answer.returncode == 0, answer.stderr
+    return answer.stdout
+
+
+def test_the_blocker_blocks():
+    with pytest.raises(AssertionError, match="blocked: numpy"):
+        run(STANDARD_LIBRARY_ONLY + "import numpy")
+
+
+def test_importing_distal_loads_only_itself_and_little_of_it():
+    code = "import sys; before = set(sys.modules); import distal; print(set(sys.modules) - before)"
+    loaded = ast.literal_eval(run(code))
+    assert {name.partition(".")[0] for name in loaded} <= sys.stdlib_module_names | {"distal"}
+    assert len([name for name in loaded if name.startswith("distal")]) <= 4
+
+
+def test_gallery_is_not_empty():
+    assert "raymarcher" in EXAMPLES
+
+
+# What GLSL ES 1.00 lacks it refuses: integer hashes, data. Scenes that import NumPy need it.
+# One imports its neighbour, which the blocker above takes for a package.
+ALONE = [
+    name
+    for name, path in distal.gallery().items()
+    if "import numpy" not in path.read_text() and name != "sea_sphere_tracing"
+]
+REFUSED = dict.fromkeys(("glsl-es100", "glslcanvas", "isf"), ("catalogue", "city", "room_door"))
+
+
+def test_scenes_are_among_those_that_need_nothing():
+    assert {"bunny", "city", "raymarcher"} <= set(ALONE)
+
+
+@pytest.mark.parametrize("target", [t.value for t in TargetName])
+def test_every_target_compiles_on_the_standard_library_alone(target):
+    names = [name for name in ALONE if name not in REFUSED.get(target, ())]
+    code = f"""
+import distal
+for name in {names}:
+    text = distal.compile(distal.load("example:" + name), target={target!r}).text
+    print(name, len(text) > 100)
+"""
+    lines = run(STANDARD_LIBRARY_ONLY + code).splitlines()
+    assert lines == [f"{name} True" for name in names]
+
+
+def test_the_command_compiles_without_numpy_llvmlite_and_wgpu():
+    code = WITHOUT_HEAVY_PACKAGES + "from distal.cli import main; main()"
+    assert "fn " in run(code, "compile", "example:raymarcher", "--target", "wgsl")

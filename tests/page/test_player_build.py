@@ -1,0 +1,83 @@
+"""The player's script is what its sources say, is small, checked, and asks for nothing.
+
+Node and its packages are needed to build it, and only here: who installs distal gets the script.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+WEB = ROOT / "web"
+PLAYER = ROOT / "src" / "distal" / "export" / "player.js"
+LARGEST_BYTES = 46_000
+INSTALL_S = 100
+RUN_S = 60
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the sources with their tools installed; the script, built there, is out.js."""
+    npm = shutil.which("npm")
+    if npm is None or shutil.which("node") is None:
+        pytest.skip("node and npm are not installed")
+    folder = tmp_path_factory.mktemp("player") / "web"
+    shutil.copytree(WEB, folder, ignore=shutil.ignore_patterns("node_modules", ".test"))
+    try:
+        installed = subprocess.run(
+            [npm, "ci", "--prefer-offline", "--ignore-scripts"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=INSTALL_S,
+        )
+    except subprocess.TimeoutExpired:
+        pytest.skip("npm gets no packages here")
+    if installed.returncode != 0:
+        # A lock that does not fit package.json is a fault; a registry out of reach is not.
+        assert "EUSAGE" not in installed.stderr, installed.stderr
+        pytest.skip(f"npm gets no packages here: {installed.stderr.splitlines()[-1:]}")
+    run(folder, "node", "build.mjs", "out.js")
+    return folder
+
+
+def run(folder: Path, *command: str) -> str:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=RUN_S)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_committed_script_is_fresh(built: Path) -> None:
+    assert (built / "out.js").read_bytes() == PLAYER.read_bytes(), (
+        "web/ changed: run `npm ci && npm run build` in web/ and commit src/distal/export/player.js"
+    )
+
+
+def test_types_are_sound(built: Path) -> None:
+    run(built, "npm", "run", "--silent", "check")
+
+
+def test_its_pure_parts_pass_their_own_tests(built: Path) -> None:
+    assert "# fail 0" in run(built, "npm", "run", "--silent", "test")
+
+
+def test_it_is_small_and_asks_for_nothing() -> None:
+    text = PLAYER.read_text(encoding="utf-8")
+    assert len(text.encode()) <= LARGEST_BYTES
+    # The only address is the name of SVG's vocabulary, which nobody fetches.
+    assert set(re.findall(r"https?://[^\"'`\s]*", text)) == {"http://www.w3.org/2000/svg"}
+    for word in ("fetch(", "XMLHttpRequest", "WebSocket", "import(", "innerHTML", "sourceMapping"):
+        assert word not in text, word
+    assert "</script" not in text
+
+
+def test_the_lock_names_no_registry() -> None:
+    packages = json.loads((WEB / "package-lock.json").read_text())["packages"]
+    assert not [name for name, entry in packages.items() if "resolved" in entry]
+    assert all("integrity" in entry for name, entry in packages.items() if name)

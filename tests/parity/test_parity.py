@@ -1,0 +1,93 @@
+"""Every row of the table and every operator, on every type, on every target: one meaning.
+
+To see what each row's tolerance would have to be on this machine, run
+``DISTAL_PARITY_REPORT=1 pytest -s tests/parity/test_parity.py``.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from distal.ir.intrinsics import INTRINSICS
+from distal.ir.nodes import BinaryOp, CompareOp
+from tests.parity import targets
+from tests.parity.cases import operator_cases, table_cases
+from tests.parity.comparing import disagreement
+from tests.parity.programs import Case, Program, program
+from tests.parity.sampling import SAMPLES
+
+CASES_AT_ONCE = 40
+REPORT = os.environ.get("DISTAL_PARITY_REPORT") == "1"
+
+
+@cache
+def _cases() -> tuple[Case, ...]:
+    return (*table_cases(), *operator_cases())
+
+
+BATCHES = range(-(-len(_cases()) // CASES_AT_ONCE))
+
+
+@cache
+def _batch(number: int) -> tuple[Program, NDArray[np.float32]]:
+    first = number * CASES_AT_ONCE
+    packed = program(_cases()[first : first + CASES_AT_ONCE])
+    return packed, targets.reference(packed.module, packed.width, SAMPLES, packed.buffers)
+
+
+# glsl-330 shares its writer with glsl-es300: every fourth batch tells.
+RUNS = [
+    (target, batch)
+    for target in targets.TARGETS
+    for batch in BATCHES
+    if target != "glsl-330" or batch % 4 == 0
+]
+
+
+@pytest.mark.parametrize(("target", "batch"), RUNS)
+def test_agrees_with_reference(target: str, batch: int) -> None:
+    packed, expected = _batch(batch)
+    try:
+        actual = targets.TARGETS[target](packed.module, packed.width, SAMPLES, packed.buffers)
+    except targets.Unavailable as reason:
+        pytest.skip(f"{target} does not run here: {reason}")
+    found = [
+        disagreement(case, before, after, on_cpu=target == "llvm")
+        for (case, before), (_, after) in zip(
+            packed.results(expected), packed.results(actual), strict=True
+        )
+    ]
+    if REPORT:
+        worst: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0])
+        for d in found:
+            row = worst[d.case.name.split("(")[0]]
+            row[:] = [max(row[0], d.absolute), max(row[1], d.relative)]
+        for name, (absolute, relative) in worst.items():
+            if absolute:
+                print(f"{target:12} {name:20} absolute {absolute:.1e} relative {relative:.1e}")
+    messages = [d.message for d in found if d.message]
+    assert not messages, "\n".join(messages)
+
+
+def test_every_row_is_sampled() -> None:
+    names = {case.name.split("(")[0] for case in table_cases()}
+    assert names == set(INTRINSICS)
+
+
+def test_every_operator_is_sampled() -> None:
+    names = {case.name.split(" (")[0] for case in operator_cases()}
+    missing = {op.value for op in (*BinaryOp, *CompareOp)} - names
+    assert not missing
+
+
+def test_samples_reach_negative_divisors_and_edges() -> None:
+    quotients = [case for case in _cases() if case.name == "// (int, int)"]
+    (dividends, divisors) = quotients[0].inputs()
+    assert (divisors == 0).any() and (divisors < 0).any() and (dividends < 0).any()
+    assert ((dividends == -(2.0**31)) & (divisors == -1)).any()

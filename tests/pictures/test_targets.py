@@ -1,0 +1,97 @@
+"""The gallery, at several times: what drivers make of the emitted texts is the CPU's picture.
+
+Scenes of objects are drawn once, by a driver of each language; ``make sweep`` sets
+``DISTAL_ALL_PICTURES=1`` and draws them as often as the small examples.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+
+import pytest
+
+import distal
+from tests.pictures.comparison import difference
+
+SIZE = (160, 120)
+TIMES = (0.0, 2.9, 11.3)
+TARGETS = ("glsl-es300", "wgsl", "wgsl-compute")
+ALL = os.environ.get("DISTAL_ALL_PICTURES") == "1"
+# NumPy follows all rays of mirrors and glass through all steps: a minute for some of these.
+LONG_BY_REFERENCE = ("still_life", "sdfray_glass", "sdfray_refraction", "sdfray_csg_on_checker")
+
+
+def is_small(example):
+    """Whether an example is a function of a pixel, with little besides."""
+    text = distal.gallery()[example].read_text()
+    return "Scene(" not in text and "distal.render" not in text
+
+
+CASES = [
+    (example, target, time)
+    for example in sorted(distal.gallery())
+    for target in TARGETS
+    for time in TIMES
+    if ALL or is_small(example) or (time == 2.9 and target != "wgsl-compute")
+]
+
+
+@cache
+def image(example):
+    return distal.load(f"example:{example}")
+
+
+@cache
+def artifact(example, target):
+    return distal.compile(image(example), target=target)
+
+
+@cache
+def cpu_picture(example, time):
+    return image(example).render(size=SIZE, time=time).array
+
+
+def drawn(program, time):
+    values = {u["name"] for u in program.interface["uniforms"]} & {"time"}
+    uniforms = dict.fromkeys(values, time)
+    if program.interface["target"].startswith("wgsl"):
+        gpu = pytest.importorskip("tests.gpu")
+        try:
+            return gpu.run_wgsl(program, SIZE, uniforms)
+        except gpu.GpuUnavailableError as error:
+            pytest.skip(str(error))
+    glsl = pytest.importorskip("tests.glsl")
+    try:
+        return glsl.run_glsl(program, SIZE, uniforms)
+    except glsl.egl.EglUnavailableError as error:
+        pytest.skip(str(error))
+
+
+@pytest.mark.parametrize(("example", "target", "time"), CASES)
+def test_driver_draws_the_cpu_picture(example, target, time):
+    found = difference(drawn(artifact(example, target), time), cpu_picture(example, time))
+    assert found.is_agreement, found
+
+
+BY_REFERENCE = [n for n in sorted(distal.gallery()) if ALL or n not in LONG_BY_REFERENCE]
+
+
+@pytest.mark.parametrize("example", BY_REFERENCE)
+def test_reference_draws_the_cpu_picture(example):
+    size = SIZE if is_small(example) else (64, 48)
+    cpu, reference = (
+        image(example).render(size=size, time=2.9, device=device).array
+        for device in ("cpu", "reference")
+    )
+    found = difference(reference, cpu)
+    assert found.is_agreement, found
+
+
+@pytest.mark.parametrize("size", [(1, 1), (3, 2), (17, 5), (65, 33), (127, 1), (1, 129)])
+def test_odd_sizes_are_whole(size):
+    cpu = image("raymarcher").render(size=size, time=1.0).array
+    reference = image("raymarcher").render(size=size, time=1.0, device="reference").array
+    assert cpu.shape == (size[1], size[0], 4)
+    assert difference(cpu, reference).mean < 1.0
+    assert abs(cpu - reference).max() < 0.02

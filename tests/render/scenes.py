@@ -1,0 +1,167 @@
+"""A small scene for each renderer, and the sea, as images that every target is given."""
+
+from __future__ import annotations
+
+from distal.fields.claims import Bounds
+from distal.lang import Frame, exp, func, image, length, min, sin, vec2, vec3, vec4
+from distal.render import (
+    bounce,
+    heightfield_march,
+    legend,
+    march,
+    material,
+    patterns,
+    sky,
+    tonemap,
+    views,
+)
+from distal.render.camera import Ray, look_at
+from distal.render.lights import LightSample, distant_light, point_light
+
+STEPS = 96
+
+
+@func
+def balls(p: vec3) -> float:
+    glass_ball = length(p - vec3(-0.9, 0.0, 0.3)) - 0.8
+    mirror_ball = length(p - vec3(1.0, 0.0, -0.3)) - 0.8
+    return min(glass_ball, mirror_ball)
+
+
+@func
+def field(p: vec3) -> float:
+    return min(balls(p), p.y + 0.8)
+
+
+@func
+def surface(p: vec3) -> material.Surface:
+    if p.y + 0.8 < balls(p):
+        white = material.matte(vec3(0.8, 0.8, 0.75))
+        return material.mix_surfaces(
+            white, material.matte(vec3(0.1, 0.12, 0.2)), patterns.checker(p, 0.5)
+        )
+    if p.x < 0.05:
+        return material.glass(1.5, vec3(0.1, 0.02, 0.1))
+    return material.metal(vec3(0.9, 0.7, 0.4), 0.1)
+
+
+@func
+def lights(i: int, p: vec3) -> LightSample:
+    if i == 0:
+        return point_light(p, vec3(2.0, 3.0, 2.0), 8.0, vec3(1.0), 0.2)
+    return distant_light(p, vec3(-1.0, 2.0, 1.0), 0.5)
+
+
+@func
+def ambient(n: vec3) -> vec3:
+    return vec3(0.1)
+
+
+@func
+def background(direction: vec3) -> vec3:
+    return sky.gradient_background(direction)
+
+
+@func
+def ray_of(frame: Frame) -> Ray:
+    uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
+    return look_at(uv, vec3(0.0, 1.2, 5.0), vec3(0.0, -0.1, 0.0), fov=0.7)
+
+
+@func
+def numbers() -> march.March:
+    return march.March(1.0, 0.0, 60.0, 5e-4)
+
+
+@func
+def everywhere() -> Bounds:
+    return Bounds(vec3(-1e18), vec3(1e18))
+
+
+@image
+def plain(frame: Frame) -> vec4:
+    seen = bounce.seen_plain(
+        ray_of(frame), field, surface, lights, ambient, background,
+        everywhere(), numbers(), bounce.Look(0.4, vec3(0.5), 0.02), STEPS, 2, 48,
+    )  # fmt: skip
+    return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
+
+
+@image
+def mirrored(frame: Frame) -> vec4:
+    seen = bounce.seen_mirrored(
+        ray_of(frame), field, surface, lights, ambient, background,
+        everywhere(), numbers(), bounce.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 4,
+    )  # fmt: skip
+    return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
+
+
+@image
+def refracted(frame: Frame) -> vec4:
+    seen = bounce.seen_refracted(
+        ray_of(frame), field, surface, lights, ambient, background,
+        everywhere(), numbers(), bounce.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 6,
+    )  # fmt: skip
+    return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
+
+
+@func
+def sea_height(at: vec2) -> float:
+    waves = 0.06 * sin(2.0 * at.x + 0.7 * at.y) + 0.04 * sin(1.3 * at.y - 3.1 * at.x + 1.0)
+    return waves + 0.02 * sin(5.0 * at.x + 4.1 * at.y)
+
+
+@func
+def sea(p: vec3) -> float:
+    return p.y - sea_height(p.xz)
+
+
+@func
+def sea_ray(frame: Frame) -> Ray:
+    uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
+    return look_at(uv, vec3(0.0, 0.5, 5.0), vec3(0.0, 0.3, 0.0), fov=0.8)
+
+
+@func
+def sea_color(t: float, found: bool) -> vec3:
+    return vec3(exp(-0.05 * t)) if found else vec3(0.0, 0.0, 1.0)
+
+
+@func
+def sea_numbers(threshold: float = 2e-4) -> march.March:
+    # The slope's bound: 1 and the waves' steepest, 0.06 * 2.1 + 0.04 * 3.4 + 0.02 * 6.5.
+    return march.March(1.08, 0.0, 60.0, threshold)
+
+
+@image
+def hybrid(frame: Frame) -> vec4:
+    """Red: the way, as brightness; alpha: evaluations of the field."""
+    stride = heightfield_march.Stride(0.13, 0.01, 1.05)
+    hit = heightfield_march.march_heightfield(
+        sea, sea_ray(frame), everywhere(), sea_numbers(), stride, 400
+    )
+    return vec4(sea_color(hit.t, hit.found), float(hit.steps))
+
+
+@image
+def traced(frame: Frame) -> vec4:
+    """As ``hybrid``, by sphere tracing."""
+    hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(), 400)
+    return vec4(sea_color(hit.t, hit.found), float(hit.steps))
+
+
+@image
+def true_sea(frame: Frame) -> vec4:
+    """As ``traced``, as near to the surface as 32 bits get."""
+    hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(2e-6), 4000)
+    return vec4(sea_color(hit.t, hit.found), 1.0)
+
+
+@image
+def cost(frame: Frame) -> vec4:
+    """The steps of the hybrid march, under a legend."""
+    stride = heightfield_march.Stride(0.13, 0.01, 1.05)
+    seen = views.view_steps(
+        sea_ray(frame), sea, everywhere(), sea_numbers(), 64, hybrid=True, stride=stride
+    )
+    return legend.with_legend(seen, frame.coord, frame.resolution, 64)

@@ -1,0 +1,220 @@
+"""What a checkup finds: claims that hold, claims that do not, where slope comes from."""
+
+import json
+import math
+
+import pytest
+
+from distal import Box, Hexagon, Plane, Shape, Sphere
+from distal.lang import func, length, max, sin, slider, sqrt, vec3
+from distal.scene.checkup import Severity, check, described
+from distal.scene.measuring import measure
+from distal.scene.survey import survey
+
+
+@func
+def ball(p: vec3) -> float:
+    return length(p) - 1.0
+
+
+@func
+def wobbly(p: vec3, depth: float) -> float:
+    return length(p) - 1.0 - depth * sin(9.0 * p.x) * sin(9.0 * p.y)
+
+
+@func
+def half_a_ball(p: vec3) -> float:
+    return 0.5 * (length(p) - 1.0)
+
+
+@func
+def kinked(p: vec3) -> float:
+    """Slope 2 only in a small part: 2 % of the box's width."""
+    return length(p) - 1.0 + max(0.0, p.x - 0.95 - max(0.0, 2.0 * (p.x - 0.97)))
+
+
+@func
+def rooted(p: vec3) -> float:
+    return sqrt(p.x) + length(p) - 1.0
+
+
+BOX = ((-1.2,) * 3, (1.2,) * 3)
+
+
+def codes(checkup, severity=Severity.ERROR):
+    return [
+        (f.code, checkup.shapes[f.shape].node.name)
+        for f in checkup.findings
+        if f.severity is severity
+    ]
+
+
+def test_library_shapes_hold_and_say_nothing():
+    found = check(Box(2.0).translate(1.0, 0.0, 0.0))
+    assert found.holds
+    assert found.findings == ()
+    assert found.slope_from == ()
+    assert [row.node.name for row in found.shapes] == ["translate", "Box"]
+    assert found.shapes[0].promised.low == (0.0, -1.0, -1.0)
+    assert found.shapes[1].promised.high == (1.0, 1.0, 1.0)
+    measured = found.shapes[0].measured
+    assert measured.median == pytest.approx(1.0, abs=1e-6)
+    assert measured.slope == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_slope_that_is_too_small_is_an_error_at_the_shape_that_gives_it():
+    own = Shape.from_function(wobbly, slope=1.2, bounds=BOX, depth=0.05)
+    found = check(own.translate(1.0, 0.0, 0.0) | Box(0.5))
+    assert not found.holds
+    assert codes(found) == [("slope-exceeded", "wobbly")]
+    (error,) = [f for f in found.findings if f.severity is Severity.ERROR]
+    # The steepest is 1 + 0.05 * 9 * sqrt(1): where sin is 0 for one factor and 1 for the other.
+    assert found.shapes[error.shape].measured.slope == pytest.approx(1.45, abs=0.02)
+    assert error.told.hint == "slope=1.5"
+    assert error.told.span.text.strip().startswith("own = Shape.from_function(")
+
+
+def test_a_slope_that_is_large_enough_holds():
+    own = Shape.from_function(wobbly, slope=1.46, bounds=BOX, depth=0.05)
+    assert check(own).holds
+    assert codes(check(own), Severity.NOTE) == [("slope-raised", "wobbly")]
+
+
+def test_what_is_steep_only_in_a_small_part_is_found():
+    found = check(Shape.from_function(kinked, slope=1.5, bounds=BOX))
+    assert codes(found) == [("slope-exceeded", "kinked")]
+
+
+def test_parameters_and_time_are_those_asked_for():
+    depth = slider("Depth", 0.0, high=0.2)
+    own = Shape.from_function(wobbly, slope=1.2, bounds=BOX, depth=depth)
+    assert check(own).holds
+    assert not check(own, {"depth": 0.1}).holds
+
+
+def test_a_box_that_is_too_small_is_an_error():
+    own = Shape.from_function(ball, bounds=((-1.0, -1.0, -1.0), (1.0, 1.0, 0.5)))
+    assert codes(check(own)) == [("outside-box", "ball")]
+    assert check(Shape.from_function(ball, bounds=((-1.0,) * 3, (1.0,) * 3))).holds
+
+
+def test_what_is_called_exact_and_is_not_is_an_error():
+    own = Shape.from_function(half_a_ball, bounds=BOX, exact=True)
+    assert codes(check(own)) == [("not-exact", "half_a_ball")]
+    assert check(Shape.from_function(ball, bounds=BOX, exact=True)).holds
+    assert check(Shape.from_function(half_a_ball, bounds=BOX)).holds
+
+
+def test_what_is_not_a_number_is_an_error():
+    found = check(Shape.from_function(rooted, slope=9.0, bounds=BOX))
+    assert ("undefined", "rooted") in codes(found)
+    (error,) = [f for f in found.findings if f.code == "undefined"]
+    assert error.told.message.startswith("'rooted' is not a number at (-")
+
+
+def test_a_twist_tells_how_much_it_raises_the_slope_and_what_it_loses():
+    shape = Box(1.0, 2.0, 1.0).twist(3.0) | Sphere(0.5)
+    found = check(shape)
+    (twist,) = found.slope_from
+    row = found.shapes[twist]
+    assert row.node.rule.name == "twist"
+    assert row.raised == 1.0
+    assert row.promised.slope == pytest.approx(shape.slope)
+    notes = [f.told.message for f in found.findings if f.shape == twist]
+    assert notes == [
+        f"twist(rate=3) raises the slope from 1 to {shape.slope:.3g}",
+        "twist(rate=3) is no longer exact outside, exact inside, a lower bound",
+    ]
+    assert all("Box(1.0, 2.0, 1.0).twist(3.0)" in f.told.span.text for f in found.findings)
+
+
+def test_shapes_are_called_what_their_author_calls_them():
+    own = Shape.from_function(wobbly, slope=1.5, bounds=BOX, depth=0.05)
+    assert described(own.node) == "wobbly(depth=0.05)"
+    die = (Box(2.0) - Sphere(1.2)).named("die")
+    assert described(die.node) == "'die' (difference)"
+    assert described(Sphere(0.5).named("eye").node) == "'eye' (Sphere(radius=0.5))"
+    grid = Sphere(0.2).repeat(1.0, count=(2, 1, 2))
+    assert described(grid.node) == (
+        "repeat limited(spacing=(1, 1, 1), count_x=2, count_y=1, count_z=2)"
+    )
+
+
+def test_what_makes_boxes_endless_is_named():
+    found = check(Box(0.2) | Plane())
+    assert codes(found, Severity.NOTE) == [("claim-lost", "union"), ("no-box", "Plane")]
+    own = check(Shape.from_function(ball))
+    assert codes(own, Severity.WARNING) == [("no-box", "ball")]
+    assert own.holds
+
+
+def test_blends_that_change_everything_are_warned_of():
+    for blend in ("exponential", "root", "sigmoid"):
+        found = check(Sphere().union(Box(), smooth=0.1, blend=blend))
+        assert ("blend-everywhere", f"union {blend}") in codes(found, Severity.WARNING), blend
+    found = check(Sphere().union(Box(), smooth=0.1, blend="cubic"))
+    assert codes(found, Severity.WARNING) == []
+
+
+def test_flat_shapes_have_boxes_of_two_numbers():
+    found = check(Hexagon(1.0).extrude(0.5))
+    assert found.holds
+    flat = found.as_json()["shapes"][1]
+    assert flat["flat"]
+    assert len(flat["bounds"]["low"]) == 2
+
+
+def test_promises_are_those_of_the_shapes_themselves():
+    shape = (Box(1.0).twist(1.0) - Sphere(0.5).translate(0.2, 0.0, 0.0)).scale(2.0)
+    found = survey(shape.node, {}, 0.0)[id(shape.node)]
+    assert found.slope == pytest.approx(shape.slope)
+    assert found.divisor == pytest.approx(shape.divisor)
+    low, high = shape.bounds()
+    assert found.low == pytest.approx(low)
+    assert found.high == pytest.approx(high)
+    plane = Plane()
+    assert not survey(plane.node, {}, 0.0)[id(plane.node)].finite
+
+
+def test_a_shape_in_several_places_has_one_row():
+    one = Sphere(0.5)
+    found = check(one.translate(1.0, 0.0, 0.0) | one.translate(-1.0, 0.0, 0.0))
+    assert [row.node.name for row in found.shapes] == ["union", "translate", "Sphere", "translate"]
+    assert found.shapes[1].children == found.shapes[3].children == (2,)
+
+
+def test_a_large_tree_is_measured_where_it_matters():
+    shape = Shape.from_function(wobbly, slope=1.2, bounds=BOX, depth=0.05)
+    for i in range(40):
+        shape = shape | Sphere(0.1 + 0.001 * i).translate(0.1 * i, 2.0, 0.0)
+    found = check(shape)
+    measured = {row.node.name for row in found.shapes if row.measured is not None}
+    assert measured == {"union", "wobbly"}
+    assert codes(found) == [("slope-exceeded", "wobbly")]
+
+
+def test_plain_values_are_json_without_infinity():
+    found = check(Shape.from_function(wobbly, slope=1.2, depth=0.05) | Plane())
+    text = json.dumps(found.as_json(), allow_nan=False)
+    made = json.loads(text)
+    assert set(made) == {"version", "holds", "slope_from", "shapes", "findings"}
+    assert made["shapes"][0]["bounds"] == {"low": [None] * 3, "high": [None] * 3}
+    own = next(row for row in made["shapes"] if row["name"] == "wobbly")
+    assert set(own) == {
+        *("id", "name", "kind", "own_function", "flat", "children", "place", "claims", "slope"),
+        *("slope_before", "estimate", "bounds", "measured"),
+    }
+    assert own["own_function"]
+    assert own["place"]["file"] == __file__
+    assert set(made["findings"][0]) == {
+        *("severity", "code", "shape", "message", "hint", "place"),
+    }
+
+
+def test_measurements_are_the_same_for_the_same_seed():
+    shape = Box(1.0).twist(2.0)
+    promised = survey(shape.node, {}, 0.0)[id(shape.node)]
+    first, again, other = (measure(shape, promised, {}, 0.0, seed) for seed in (1, 1, 2))
+    assert first == again
+    assert first != other
+    assert math.isclose(first.median, other.median, rel_tol=0.05)

@@ -1,0 +1,92 @@
+"""Work beside work: order, bounds, failures on either side."""
+
+import threading
+import time
+
+import pytest
+
+from distal.sequence.overlap import WAITING, taking
+
+
+def test_all_items_are_taken_in_order_elsewhere():
+    taken, threads = [], set()
+
+    def take(item):
+        taken.append(item)
+        threads.add(threading.current_thread())
+
+    with taking(take) as taker:
+        for i in range(50):
+            taker.put(i)
+    assert taken == list(range(50))
+    assert threading.current_thread() not in threads
+
+
+def test_only_a_few_wait():
+    gate, put = threading.Event(), []
+
+    def fill(taker):
+        for i in range(20):
+            taker.put(i)
+            put.append(i)
+
+    with taking(lambda item: gate.wait()) as taker:
+        feeder = threading.Thread(target=fill, args=(taker,))
+        feeder.start()
+        time.sleep(0.3)
+        assert len(put) == WAITING + 1  # those that wait, and one being worked on
+        gate.set()
+        feeder.join()
+
+
+def test_both_sides_work_at_once():
+    def take(item):
+        time.sleep(0.02)
+
+    begin = time.perf_counter()
+    with taking(take) as taker:
+        for i in range(10):
+            time.sleep(0.02)
+            taker.put(i)
+    assert time.perf_counter() - begin < 0.34  # one after the other: 0.4
+
+
+def test_a_failure_of_the_taker_reaches_who_puts():
+    def take(item):
+        if item == 3:
+            raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"), taking(take) as taker:
+        for i in range(1000):
+            taker.put(i)
+
+
+def test_a_failure_with_the_last_item_is_not_lost():
+    def take(item):
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"), taking(take) as taker:
+        taker.put(1)
+
+
+def test_a_failure_of_the_maker_drops_what_waits():
+    taken, gate = [], threading.Event()
+
+    def take(item):
+        gate.wait(0.05)
+        taken.append(item)
+
+    before = threading.active_count()
+    with pytest.raises(KeyboardInterrupt), taking(take) as taker:
+        for i in range(4):
+            taker.put(i)
+        raise KeyboardInterrupt
+    assert len(taken) <= 1
+    assert threading.active_count() == before
+
+
+def test_several_take_at_once():
+    together = threading.Barrier(3, timeout=5.0)
+    with taking(lambda item: together.wait(), workers=3) as taker:
+        for i in range(3):
+            taker.put(i)

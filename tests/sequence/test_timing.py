@@ -1,0 +1,77 @@
+"""How frames lie in time: exact counts and times, rates as people write them."""
+
+from fractions import Fraction
+
+import pytest
+
+from distal.film.video import WishError
+from distal.sequence.timing import frame_rate, timing
+
+
+@pytest.mark.parametrize(
+    ("duration", "rate", "count"),
+    [
+        (10, 60, 600),
+        (0.1, 30, 3),
+        (0.05, 30, 2),  # 1.5 frames: the nearest, upwards
+        (0.001, 30, 1),  # at least one
+        ("1/3", 30, 10),
+        (10, "29.97", 300),
+        (1001, "30000/1001", 30000),
+        (0.7, 10, 7),  # binary 0.7 * 10 is below 7
+    ],
+)
+def test_count(duration, rate, count):
+    assert timing(0, duration, rate).count == count
+
+
+def test_times_do_not_drift():
+    when = timing(2.5, 3600, "30000/1001")
+    assert when.time(0) == 2.5
+    assert when.time(30000) == 2.5 + 1001.0
+    assert when.time(90000) == 2.5 + 3003.0
+
+
+def test_the_last_frame_of_a_period_is_one_step_before_its_first():
+    when = timing(0, 2, 24)
+    assert when.time(when.count - 1) + 1 / 24 == pytest.approx(2.0)
+
+
+def test_pieces_hold_two_seconds_and_each_frame_once():
+    pieces = timing(0, 5, "30000/1001").pieces
+    assert [len(piece) for piece in pieces] == [60, 60, 30]
+    assert [i for piece in pieces for i in piece] == list(range(150))
+    assert timing(0, 10, "0.1").pieces == [range(0, 1)]
+
+
+def test_rates_of_broadcast_are_recognised():
+    for written in (29.97, "29.97", "30000/1001", Fraction(30000, 1001)):
+        assert frame_rate(written) == Fraction(30000, 1001)
+    assert frame_rate(23.976) == Fraction(24000, 1001)
+    assert frame_rate(59.94) == Fraction(60000, 1001)
+    assert frame_rate(12.5) == Fraction(25, 2)
+    assert frame_rate(30.0) == 30
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ((0, 0, 30), "a duration is more than 0 seconds, not 0"),
+        ((0, -1, 30), "a duration is more than 0 seconds, not -1"),
+        ((0, "nan", 30), "a duration is a number of seconds, not nan"),
+        ((0, "1/0", 30), "a duration is a number of seconds, not 1/0"),
+        (("soon", 1, 30), "a start is a number of seconds, not soon"),
+        ((0, 1, 0), "a frame rate is more than 0 a second, not 0"),
+        ((0, 1, -24), "a frame rate is more than 0 a second, not -24"),
+        ((0, 1, "fast"), "a frame rate is a number like 30, 29.97 or 30000/1001, not fast"),
+        ((0, 1, 1001), "a frame rate is at most 1000 a second, not 1001"),
+        (
+            (0, 1e6, 60),
+            "60000000 frames are too many: 1e+06 s at 60 fps; a sequence has at most 1000000",
+        ),
+    ],
+)
+def test_what_has_no_sense_is_refused(given, message):
+    with pytest.raises(WishError) as caught:
+        timing(*given)
+    assert str(caught.value) == message

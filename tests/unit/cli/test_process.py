@@ -1,0 +1,149 @@
+"""The command as a process of its own: light to start, polite when interrupted."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+SLOW_SCENE = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
+import distal, time
+from distal.cli import main
+
+class Scene:
+    def parameters(self):
+        return []
+    def render(self, **options):
+        print("rendering", flush=True)
+        time.sleep(60)
+
+distal.load = lambda path, name=None: Scene()
+main()
+"""
+
+
+def environment():
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+
+
+def test_ctrl_c_exits_130_without_traceback_or_partial_file(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-c", SLOW_SCENE, "render", "s.py", "-o", "a.png"],
+        cwd=tmp_path,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout.readline() == "rendering\n"
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=10)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    assert time.monotonic() - begin < 5
+    assert errors == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_command_line_and_compile_import_nothing_heavy():
+    heavy = ("numpy", "llvmlite", "wgpu", "PIL")
+    code = (
+        f"import sys, distal.cli.application as a; print([m for m in {heavy} if m in sys.modules])"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
+    )
+    assert answer.stdout == "[]\n"
+
+
+WITHOUT_NUMPY = """
+import sys
+sys.modules["numpy"] = None
+from distal.cli import main
+main()
+"""
+
+
+def test_a_missing_package_is_named_with_its_remedy(tmp_path):
+    (tmp_path / "s.py").write_text("")
+    answer = subprocess.run(
+        [sys.executable, "-c", WITHOUT_NUMPY, "render", "s.py", "-o", "a.png"],
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 1
+    assert answer.stderr == "error: numpy is missing: pip install numpy\n"
+
+
+SMALL_SCENE = """
+from distal.lang import Frame, image, vec3
+@image
+def picture(frame: Frame) -> vec3:
+    return vec3(0.5)
+"""
+
+
+def render_small(tmp_path, *, before="", size="4x4", cache="off"):
+    (tmp_path / "s.py").write_text(SMALL_SCENE)
+    code = f"{before}\nfrom distal.cli import main\nmain()"
+    return subprocess.run(
+        [sys.executable, "-c", code, "render", "s.py", "-o", "a.png", "--size", size],
+        cwd=tmp_path,
+        env={**environment(), "DISTAL_CACHE_DIR": str(cache)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_too_little_memory_is_one_line(tmp_path):
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 * 2**30, 3 * 2**30))"
+    answer = render_small(tmp_path, before=limit, size="16384x16384")
+    assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)
+    assert answer.stderr.startswith("error: not enough memory: no 4096 MiB")
+
+
+def test_a_warning_is_one_line(tmp_path):
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    cache.chmod(0o777)
+    answer = render_small(tmp_path, cache=cache)
+    assert answer.returncode == 0
+    first, last = answer.stderr.splitlines()
+    assert first.startswith("warning: the kernel cache")
+    assert last.startswith("a.png: 4x4")
+
+
+def test_the_scene_is_not_overwritten_by_its_text(tmp_path):
+    (tmp_path / "s.py").write_text(SMALL_SCENE)
+    answer = subprocess.run(
+        [sys.executable, "-m", "distal.cli", "compile", "s.py", "--target=wgsl", "-o", "./s.py"],
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (answer.returncode, answer.stderr) == (2, "error: 's.py' is the scene itself\n")
+    assert (tmp_path / "s.py").read_text() == SMALL_SCENE
+
+
+def test_a_name_that_is_too_long_is_one_line(tmp_path):
+    answer = subprocess.run(
+        [sys.executable, "-m", "distal.cli", "compile", "s" * 300, "--target=wgsl"],
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)
+    assert answer.stderr.startswith("error: cannot read sss")

@@ -1,0 +1,43 @@
+"""Running scene functions on the reference, for tests of passes."""
+
+import numpy as np
+
+from distal.backends import numpy as reference
+from distal.frontend import lower
+from distal.ir.nodes import Module
+from distal.ir.target import Target
+from distal.ir.verify import verify
+from distal.passes import bounds, decompose, entry, gradient, specialise
+from distal.passes.context import Context
+from distal.prelude_library import PreludeLibrary
+
+PASSES = (
+    ("entry", entry),
+    ("specialise", specialise),
+    ("gradient", gradient),
+    ("decompose", decompose),
+    ("specialise-prelude", specialise),
+    ("bounds", bounds),
+)
+
+
+def passed(func, after="bounds", target: Target = reference.TARGETS[0], precision=64) -> Module:
+    """A function lowered and taken through the passes, each verified."""
+    module = lower(func)
+    verify(module)
+    context = Context(target, PreludeLibrary(), precision)
+    for name, one in PASSES:
+        module = one.run(module, context)
+        verify(module, name)
+        if name == after:
+            break
+    return module
+
+
+def evaluate(module: Module, *args, precision=64):
+    """The entry's value; a point is (components, lanes)."""
+    return reference.evaluate(module, args, {}, {}, precision)
+
+
+def points(size: int, count: int = 200, reach: float = 2.0, seed: int = 1) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(-reach, reach, (size, count))

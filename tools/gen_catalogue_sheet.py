@@ -1,0 +1,232 @@
+"""Draw the catalogue sheet: every shape, operator and blend of the field library under its name.
+
+What flows in: the cells of ``catalogue_cells``. What flows out: one picture for each group in
+``docs/pictures/``, and how long all took to compile. Solids are lit and framed by their own boxes;
+flat shapes are lines of equal distance. ``--only NAME …`` writes single cells to a folder of your
+own instead, large enough to judge them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from catalogue_cells import GROUPS, Cell, cells
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from distal import Box, Camera, DistantLight, HemisphereLight, Scene
+from distal.fields.claims import EXACT
+from distal.lang import Frame, image, slider, vec2, vec4
+from distal.render.views import isolines
+from distal.scene.steepness import check_slopes
+
+FOLDER: Final = Path(__file__).parents[1] / "docs/pictures"
+ACROSS: Final = 10
+LABEL_PX: Final = 16
+MOST_BYTES: Final = 200_000
+PAPER: Final = (250, 249, 246)
+INK: Final = (40, 42, 48)
+BACKGROUND: Final = (0.93, 0.92, 0.89)
+# What a shape promises, as its color: exact, a bound, an estimate of nothing but its slope.
+CLAY: Final = {"exact": "#e2824a", "bound": "#5f93b8", "slope": "#8d9a6b", "part": "#c9ad7c"}
+# An endless shape is shown as far as this.
+ROOM: Final = 1.9
+TOWARDS: Final = (0.55, 0.5, 0.85)  # the camera, as seen from a shape
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """A cell's picture, (height, width, 3) 8-bit, and what it took."""
+
+    cell: Cell
+    pixels: NDArray[np.uint8]
+    compile_s: float
+    problem: str = ""
+
+
+def draw(cell: Cell, size_px: int, samples: int) -> Drawn:
+    """The picture of one cell; a problem is told in it, not raised."""
+    try:
+        shape = cell.make()
+        check_slopes(shape.node)
+        if shape.flat:
+            pixels, took = _flat(shape, size_px)
+        else:
+            color = CLAY[_claim(shape) if cell.group == "solids" else "part"]
+            pixels, took = _solid(shape, color, size_px, samples)
+    except Exception as error:  # one bad row must not hide the others
+        blank = np.full((size_px, size_px, 3), (200, 60, 60), np.uint8)
+        return Drawn(cell, blank, 0.0, f"{type(error).__name__}: {error}")
+    shown = np.clip(np.nan_to_num(pixels[..., :3]), 0.0, 1.0)
+    return Drawn(cell, np.round(shown * 255).astype(np.uint8), took)
+
+
+def _solid(shape: Any, color: str, size_px: int, samples: int) -> tuple[Any, float]:
+    shape, low, high = _within(shape)
+    center = (low + high) / 2.0
+    radius = max(0.5 * float(np.linalg.norm(high - low)), 0.05)
+    away = 4.5 * radius
+    basis = _looking(TOWARDS)
+    # Where to look and how wide, in units of the distance: parameters, so that looking once more
+    # compiles nothing.
+    aim = tuple(slider(name, 0.0, low=-1.0, high=1.0) for name in ("Right", "Up"))
+    wide = slider("Wide", 0.3, low=0.001, high=2.0)
+    target = tuple(
+        float(center[i]) + away * (float(basis[0][i]) * aim[0] + float(basis[1][i]) * aim[1])
+        for i in range(3)
+    )
+    scene = Scene(
+        shape.paint(color),
+        lights=[
+            DistantLight((-0.4, 1.0, 0.75), 0.85, angle=0.12),
+            HemisphereLight(sky=(0.95, 0.97, 1.0), ground=(0.55, 0.47, 0.42), intensity=0.45),
+        ],
+        camera=Camera(tuple(map(float, center + away * basis[2])), target=target, fov=wide),
+        background=BACKGROUND,
+        ambient_occlusion=0.35 * radius,
+        steps=256,
+    )
+    first = 2.0 * float(np.tan(np.arcsin(radius / away)))
+    seen = scene.render(size=(72, 72), params={"wide": 2.0 * np.arctan(first / 2.0)})
+    right, up, wide_enough = _framed(seen.linear, first)
+    picture = scene.render(
+        size=(size_px, size_px),
+        samples=samples,
+        params={"right": right, "up": up, "wide": 2.0 * np.arctan(wide_enough / 2.0)},
+    )
+    return picture.array, picture.stats["compile_s"] + seen.stats["compile_s"]
+
+
+def _looking(towards: Sequence[float]) -> NDArray[np.float64]:
+    """Right, up and back of a camera that looks at the origin from somewhere."""
+    back = np.array(towards) / np.linalg.norm(towards)
+    right = np.cross((0.0, 1.0, 0.0), back)
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(back, right), back])
+
+
+def _framed(linear: NDArray[np.float32], wide: float) -> tuple[float, float, float]:
+    """Where a shape's middle was seen, and how wide to look to see it and a rim."""
+    shown = np.abs(linear[..., :3] - np.array(BACKGROUND)).max(axis=2) > 0.02
+    rows, columns = np.flatnonzero(shown.any(axis=1)), np.flatnonzero(shown.any(axis=0))
+    if not rows.size:
+        return 0.0, 0.0, wide
+    px = wide / linear.shape[0]
+    left, right = columns[0] * px, (columns[-1] + 1) * px
+    top, bottom = rows[0] * px, (rows[-1] + 1) * px
+    room = 1.14 * max(right - left, bottom - top)
+    return (left + right - wide) / 2.0, (wide - top - bottom) / 2.0, room
+
+
+def _within(shape: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.float64]]:
+    """The shape, cut where it has no end, and the corners of what is shown."""
+    low, high = (np.array(corner, float) for corner in shape.bounds())
+    if np.isfinite(low).all() and np.isfinite(high).all():
+        return shape, low, high
+    half = ROOM / 2.0
+    low, high = np.clip(low, -half, half), np.clip(high, -half, half)
+    return shape & Box(ROOM), low, high
+
+
+def _claim(shape: Any) -> str:
+    claims = shape.claims
+    if claims >= EXACT:
+        return "exact"
+    return "bound" if claims else "slope"
+
+
+def _flat(shape: Any, size_px: int) -> tuple[Any, float]:
+    low, high = (np.clip(corner, -1.2, 1.2) for corner in shape.bounds())
+    middle = vec2(*map(float, (low + high) / 2.0))
+    reach = float(max(high - low)) * 0.5 * 1.35
+
+    @image
+    def lines(frame: Frame) -> vec4:
+        """The outline, and the lines of equal distance around it."""
+        across = frame.resolution.y
+        color = vec4(0.0)
+        for i in range(9):
+            at = frame.coord + vec2(float(i % 3) - 1.0, float(i // 3) - 1.0) / 3.0
+            p = middle + reach * (2.0 * at - frame.resolution) / across
+            color += vec4(isolines(shape(p), 0.1), 1.0) / 9.0
+        return color
+
+    picture = lines.render(size=(size_px, size_px))
+    return picture.array, picture.stats["compile_s"]
+
+
+def sheet(drawn: Sequence[Drawn], size_px: int, across: int = ACROSS) -> Image.Image:
+    """All pictures in rows, each over its name."""
+    gap, down = 8, -(-len(drawn) // across)
+    step_x, step_y = size_px + gap, size_px + LABEL_PX + gap
+    made = Image.new("RGB", (across * step_x + gap, down * step_y + gap), PAPER)
+    pen = ImageDraw.Draw(made)
+    for i, one in enumerate(drawn):
+        x, y = gap + (i % across) * step_x, gap + (i // across) * step_y
+        made.paste(Image.fromarray(one.pixels), (x, y))
+        font = _fitting(one.cell.title, size_px + gap - 2)
+        pen.text((x + size_px / 2, y + size_px + 2), one.cell.title, INK, font, anchor="ma")
+    return made
+
+
+def _fitting(text: str, width_px: int) -> Any:
+    """The largest letters with which a title keeps within its cell."""
+    for size in (12, 11, 10, 9, 8):
+        font = ImageFont.load_default(size)
+        if font.getlength(text) <= width_px:
+            break
+    return font
+
+
+def _save(picture: Image.Image, path: Path) -> None:
+    """Write a PNG with as many colors as it has room for."""
+    for colors in (224, 128, 96, 64):
+        picture.quantize(colors, dither=Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size <= MOST_BYTES:
+            return
+
+
+def main() -> int:
+    """Draw the sheets; 1 when a cell could not be drawn."""
+    told = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    told.add_argument("groups", nargs="*", help=f"of {', '.join(GROUPS)}; all without")
+    told.add_argument("--size", type=int, default=104, help="of a cell, in pixels")
+    told.add_argument("--samples", type=int, default=9)
+    told.add_argument("--processes", type=int, default=2)
+    told.add_argument("--across", type=int, default=ACROSS)
+    told.add_argument("--only", nargs="*", help="titles of cells to draw")
+    told.add_argument("--folder", type=Path, default=FOLDER)
+    given = told.parse_args()
+    failed = 0
+    for group in given.groups or GROUPS:
+        chosen = [c for c in cells([group]) if not given.only or c.title in given.only]
+        if not chosen:
+            continue
+        begin = time.perf_counter()
+        with ProcessPoolExecutor(given.processes) as pool:
+            drawn = list(pool.map(partial(draw, size_px=given.size, samples=given.samples), chosen))
+        took, compiled = time.perf_counter() - begin, sum(one.compile_s for one in drawn)
+        given.folder.mkdir(parents=True, exist_ok=True)
+        path = given.folder / f"catalogue_{group}.png"
+        _save(sheet(drawn, given.size, given.across), path)
+        print(f"{group}: {len(drawn)} cells in {took:.1f} s, {compiled:.1f} s of it compiling")
+        slow = sorted(drawn, key=lambda one: -one.compile_s)[:3]
+        print("  slowest:", ", ".join(f"{one.cell.title} {one.compile_s:.1f} s" for one in slow))
+        for one in drawn:
+            if one.problem:
+                print(f"  {one.cell.title}: {one.problem}", file=sys.stderr)
+                failed += 1
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

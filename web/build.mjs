@@ -1,0 +1,40 @@
+// Builds the player: src/main.ts -> one minified ES module.
+//
+//   node build.mjs [OUTPUT]     default: ../src/distal/export/player.js
+//
+// The output is committed, so that nobody needs Node to export a page; a test builds it again and
+// compares the bytes. Nothing of this machine goes in: no paths, no dates, no source map.
+
+import { readFile } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { argv } from "node:process";
+import { fileURLToPath } from "node:url";
+import { build, transform } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+
+// A style sheet becomes a text, without its white space.
+const styles = {
+  name: "styles",
+  setup(builder) {
+    builder.onLoad({ filter: /\.css$/ }, async ({ path }) => {
+      const source = await readFile(path, "utf8");
+      const { code } = await transform(source, { loader: "css", minify: true, target: "chrome123" });
+      return { contents: code.trim(), loader: "text" };
+    });
+  },
+};
+
+await build({
+  absWorkingDir: here,
+  entryPoints: ["src/main.ts"],
+  outfile: argv[2] ?? join(here, "../src/distal/export/player.js"),
+  bundle: true,
+  minify: true,
+  format: "esm",
+  target: "es2022",
+  charset: "utf8",
+  legalComments: "none",
+  plugins: [styles],
+  logLevel: "warning",
+});

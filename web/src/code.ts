@@ -1,0 +1,56 @@
+/** The state of a page as Python: what to hand to `render` for the same picture. Pure. */
+
+import { hexOf, linearOf } from "./color";
+import type { Steering } from "./camera";
+import type { Parameter, Value, Values } from "./payload";
+import { same } from "./values";
+
+/** A Python literal of a number; -0 and integers stay what they are. */
+function number(value: number): string {
+  return String(+value.toPrecision(7));
+}
+
+/** A Python literal of a text: JSON's is one. */
+function text(value: string): string {
+  return JSON.stringify(value);
+}
+
+function tuple(values: readonly number[]): string {
+  return `(${values.map(number).join(", ")})`;
+}
+
+function literal(parameter: Parameter, value: Value): string {
+  if (parameter.kind === "toggle") return value ? "True" : "False";
+  if (parameter.kind === "choice") return text(parameter.options[value as number] ?? "");
+  if (!Array.isArray(value)) return number(value as number);
+  if (parameter.kind === "color") {
+    // A color that the picker can say is said as people say it.
+    const hex = hexOf(value);
+    if (linearOf(hex)!.every((light, i) => Math.abs(light - value[i]!) < 1e-6)) return text(hex);
+  }
+  return tuple(value);
+}
+
+/** `params={...}` of what differs from the defaults, the time and the camera where they moved. */
+export function pythonOf(
+  parameters: readonly Parameter[],
+  values: Values,
+  time: number | null,
+  steering: Steering | null,
+): string {
+  const changed = parameters.filter(({ name, default: fallback }) => !same(values[name], fallback));
+  const rows = changed.map((p) => `${text(p.name)}: ${literal(p, values[p.name]!)}`);
+  const parts = [`params={${rows.join(", ")}}`];
+  if (time !== null) parts.push(`time=${number(+time.toFixed(3))}`);
+  if (steering) {
+    const { yaw, pitch, zoom, pan } = steering;
+    const said = [
+      yaw && `yaw=${number(+yaw.toFixed(4))}`,
+      pitch && `pitch=${number(+pitch.toFixed(4))}`,
+      zoom !== 1 && `zoom=${number(+zoom.toFixed(4))}`,
+      (pan[0] || pan[1]) && `pan=${tuple(pan.map((p) => +p.toFixed(4)))}`,
+    ].filter(Boolean);
+    parts.push(`steering=Steering(${said.join(", ")})`);
+  }
+  return parts.join(", ");
+}

@@ -1,0 +1,196 @@
+/**
+ * The elements around a picture: canvas, poster, bar, panel, notices, all in a shadow root.
+ *
+ * In: a player. Out: elements; the size and visibility of the canvas as they change. It decides
+ * what is beside what, and nothing about pictures.
+ */
+
+import { make } from "./dom";
+import { listen } from "./gestures";
+import { helpOf } from "./help";
+import { press } from "./keyboard";
+import { Notices } from "./notices";
+import { panelOf } from "./panel";
+import type { Player } from "./player";
+import type { State } from "./renderer";
+import style from "./style.css";
+import { toolbarOf } from "./toolbar";
+
+export type Theme = "auto" | "light" | "dark";
+
+/** Below this width the panel is a sheet under the picture. */
+const NARROW_PX = 640;
+/** More pixels than this for one of the page's are not seen. */
+const FINEST = 2;
+
+export class Frame {
+  static #pages = 0;
+  readonly root: ShadowRoot;
+  readonly notices = new Notices();
+  readonly help: HTMLDialogElement;
+  canvas: HTMLCanvasElement;
+  #player: Player;
+  #box: HTMLElement;
+  #stage: HTMLElement;
+  #panel: HTMLElement | null = null;
+  #isOpen: boolean | null = null;
+  #end = new AbortController();
+  #onPanel: (isOpen: boolean) => void = () => {};
+  #onSize: (entry: ResizeObserverEntry) => void = () => {};
+  #sizes = new ResizeObserver((entries) => entries.forEach((entry) => this.#onSize(entry)));
+
+  constructor(player: Player, theme: Theme) {
+    const { host, payload } = player;
+    this.#player = player;
+    this.root = host.shadowRoot ?? host.attachShadow({ mode: "open" });
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync(style);
+    this.root.adoptedStyleSheets = [sheet];
+    host.style.setProperty("--distal-shape", `${payload.size[0]} / ${payload.size[1]}`);
+    this.canvas = this.#newCanvas();
+    const poster = payload.poster && make("img", { src: payload.poster, alt: payload.description });
+    const still = make("slot", { className: "still" }, poster || "");
+    this.#stage = make("div", { className: "stage" }, still, this.canvas, this.notices.element);
+    this.help = helpOf((action) => this.#has(action), !!player.camera);
+    const classes = `player ${theme} ${payload.embed ? "embed" : ""}`;
+    this.#box = make("div", { className: classes }, this.#stage, this.notices.status, this.help);
+    this.root.replaceChildren(this.#box);
+    this.#stage.after(toolbarOf(player));
+    if (!payload.embed) {
+      this.#panel = panelOf(player);
+      this.#box.append(this.#panel);
+    }
+  }
+
+  set live(isLive: boolean) {
+    this.#stage.classList.toggle("live", isLive);
+  }
+
+  set state(state: State) {
+    this.#box.dataset["state"] = state;
+  }
+
+  togglePanel(): void {
+    this.#isOpen = !this.#box.classList.contains("open");
+    this.#arrange();
+  }
+
+  /** Reports the canvas's size in pixels, whether it can be seen, whether the panel is open. */
+  follow(
+    onSize: (width: number, height: number) => void,
+    onSight: (isVisible: boolean) => void,
+    onPanel: (isOpen: boolean) => void,
+  ): void {
+    this.#onPanel = onPanel;
+    this.#onSize = (entry) => {
+      if (entry.target !== this.canvas) return this.#arrange();
+      const density = devicePixelRatio || 1;
+      const exact = entry.devicePixelContentBoxSize?.[0];
+      const width = exact?.inlineSize ?? entry.contentRect.width * density;
+      const height = exact?.blockSize ?? entry.contentRect.height * density;
+      const share = Math.min(1, FINEST / density);
+      onSize(Math.max(1, Math.round(width * share)), Math.max(1, Math.round(height * share)));
+    };
+    this.#sizes.observe(this.#player.host);
+    this.#observeCanvas();
+    let isNear = false;
+    const tell = () => onSight(isNear && !document.hidden);
+    const sight = new IntersectionObserver((entries) => {
+      isNear = entries.at(-1)!.isIntersecting;
+      tell();
+    });
+    sight.observe(this.#player.host);
+    const { signal } = this.#end;
+    document.addEventListener("visibilitychange", tell, { signal });
+    signal.addEventListener("abort", () => sight.disconnect());
+  }
+
+  /** Gestures and keys begin to mean something. */
+  listen(isMovable: boolean): void {
+    const { canvas } = this;
+    canvas.classList.toggle("movable", isMovable);
+    if (isMovable) listen(canvas, this.#player.hand, (event) => this.#takesWheel(event));
+    if (this.#end.signal.aborted || this.#isListening) return;
+    this.#isListening = true;
+    const { signal } = this.#end;
+    const act = (event: KeyboardEvent) => press(event, this.#player.actions);
+    this.#box.addEventListener("keydown", act);
+    if (this.#player.payload.embed) return;
+    // On a page of its own the keys need no focus.
+    Frame.#pages += 1;
+    signal.addEventListener("abort", () => (Frame.#pages -= 1));
+    const actAlone = (event: KeyboardEvent) => {
+      const isFree = event.target === document.body || event.target === document.documentElement;
+      if (isFree && Frame.#pages === 1 && this.#fills()) act(event);
+    };
+    document.addEventListener("keydown", actAlone, { signal });
+  }
+
+  #isListening = false;
+
+  /** A canvas that failed once gives no context ever again: another one. */
+  newCanvas(): HTMLCanvasElement {
+    const fresh = this.#newCanvas();
+    fresh.width = this.canvas.width;
+    fresh.height = this.canvas.height;
+    this.#sizes.unobserve(this.canvas);
+    this.canvas.replaceWith(fresh);
+    this.canvas = fresh;
+    this.#observeCanvas();
+    return fresh;
+  }
+
+  dispose(): void {
+    this.#end.abort();
+    this.#sizes.disconnect();
+    this.notices.clear();
+    this.root.replaceChildren(document.createElement("slot"));
+  }
+
+  #newCanvas(): HTMLCanvasElement {
+    const { description, steering } = this.#player.payload;
+    const keys = steering ? " Arrow keys turn around it, plus and minus go nearer and farther." : "";
+    const canvas = make("canvas", { tabIndex: 0, role: "img" });
+    canvas.setAttribute("aria-label", `${description}${keys}`);
+    return canvas;
+  }
+
+  #observeCanvas(): void {
+    try {
+      this.#sizes.observe(this.canvas, { box: "device-pixel-content-box" });
+    } catch {
+      this.#sizes.observe(this.canvas); // Not every browser tells device pixels.
+    }
+  }
+
+  #arrange(): void {
+    const isNarrow = this.#player.host.clientWidth < NARROW_PX;
+    // A sheet would hide half of a small screen: it opens when asked for.
+    const isOpen = this.#isOpen ?? (!isNarrow && this.#player.payload.panel);
+    this.#box.classList.toggle("narrow", isNarrow);
+    this.#box.classList.toggle("open", isOpen);
+    if (this.#panel) this.#panel.inert = !isOpen;
+    this.#onPanel(isOpen);
+  }
+
+  #has(action: string): boolean {
+    const { payload, camera } = this.#player;
+    if (action === "arrow" || action === "zoom" || action === "reset") return !!camera;
+    if (action === "toggle") return payload.time.animated;
+    if (action === "nextView") return payload.views.length > 1;
+    if (action === "fullScreen") return document.fullscreenEnabled;
+    return action !== "panel" || !payload.embed;
+  }
+
+  /** Whether the page is there for this player alone, and not a text around it. */
+  #fills(): boolean {
+    const { height } = this.#player.host.getBoundingClientRect();
+    return !this.#player.payload.embed && height > 0.9 * innerHeight;
+  }
+
+  /** The wheel scrolls a page, unless the canvas was picked up first. */
+  #takesWheel(event: WheelEvent): boolean {
+    if (!this.#player.camera) return false;
+    return event.ctrlKey || this.root.activeElement === this.canvas || this.#fills();
+  }
+}

@@ -1,0 +1,25 @@
+/** The list of keys and gestures, as a dialog. */
+
+import { make } from "./dom";
+import { KEYS, type Actions } from "./keyboard";
+
+export function helpOf(has: (action: keyof Actions) => boolean, turns: boolean): HTMLDialogElement {
+  const rows: (readonly [string, string])[] = turns
+    ? [
+        ["Drag", "Turn around the scene"],
+        ["Right drag, two fingers", "Move the scene"],
+        ["Wheel, pinch", "Nearer, farther"],
+        ["Double click", "Reset the camera"],
+      ]
+    : [];
+  for (const [keys, meaning, needs] of KEYS) if (has(needs)) rows.push([keys, meaning]);
+  const list = make("dl");
+  for (const [keys, meaning] of rows) list.append(make("dt", {}, keys), make("dd", {}, meaning));
+  const close = make("button", { type: "submit", className: "text", autofocus: true }, "Close");
+  const title = make("h2", {}, "Mouse and keys");
+  const form = make("form", { method: "dialog" }, title, list, close);
+  const dialog = make("dialog", { "aria-label": "Mouse and keys" }, form);
+  // A click beside the sheet closes it.
+  dialog.onclick = (event) => event.target === dialog && dialog.close();
+  return dialog;
+}

@@ -1,0 +1,130 @@
+/**
+ * One WebGL 2 context: draws bands of a picture into a hidden target and shows whole pictures.
+ *
+ * In: linked programs, inputs, sizes. Out: the canvas. The hidden target lets a large still grow
+ * over several frames while the old picture stays, and lets a picture be smaller or larger than the
+ * canvas. It knows no time and no schedule.
+ */
+
+import type { Payload, Program } from "./payload";
+import { link, type Linked } from "./program";
+import { Resources } from "./resources";
+import { setUniforms, type Inputs } from "./uniforms";
+
+interface Target {
+  frame: WebGLFramebuffer;
+  pixels: WebGLRenderbuffer;
+  width: number;
+  height: number;
+}
+
+export class Painter {
+  readonly gl: WebGL2RenderingContext;
+  #programs = new Map<Program, Promise<Linked>>();
+  #resources: Resources;
+  #work: Target;
+  #shown: Target;
+  #largest: number;
+
+  /** Throws where the browser gives no WebGL 2. */
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    resources: Payload["resources"],
+    transparent: boolean,
+  ) {
+    let why = "";
+    const listen = (event: Event) => (why = (event as WebGLContextEvent).statusMessage);
+    canvas.addEventListener("webglcontextcreationerror", listen);
+    const gl = canvas.getContext("webgl2", {
+      alpha: transparent,
+      antialias: false,
+      depth: false,
+      premultipliedAlpha: false,
+      powerPreference: "high-performance",
+    });
+    canvas.removeEventListener("webglcontextcreationerror", listen);
+    if (!gl) throw new Error(why);
+    this.gl = gl;
+    this.#resources = new Resources(gl, resources);
+    this.#work = newTarget(gl);
+    this.#shown = newTarget(gl);
+    this.#largest = Math.min(gl.getParameter(gl.MAX_RENDERBUFFER_SIZE) as number, 8192);
+    gl.bindVertexArray(gl.createVertexArray());
+    gl.disable(gl.DITHER);
+  }
+
+  /** The linked program; each is compiled once, when it is first asked for. */
+  program(source: Program): Promise<Linked> {
+    let made = this.#programs.get(source);
+    if (!made) {
+      made = link(this.gl, source);
+      this.#programs.set(source, made);
+      // Whoever asks again after a failure tries again.
+      made.catch(() => this.#programs.delete(source));
+    }
+    return made;
+  }
+
+  /** The size of a picture at a scale of the canvas, as far as the GPU goes. */
+  size(scale: number): [number, number] {
+    const { width, height } = this.canvas;
+    const most = Math.min(scale, this.#largest / Math.max(width, height));
+    return [Math.max(1, Math.round(width * most)), Math.max(1, Math.round(height * most))];
+  }
+
+  /** Draws `rows` rows of the next picture, counted from its lower edge. */
+  draw(program: Linked, inputs: Inputs, size: [number, number], from: number, rows: number): void {
+    const { gl } = this;
+    const [width, height] = size;
+    resize(gl, this.#work, width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.#work.frame);
+    gl.viewport(0, 0, width, height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, from, width, rows);
+    gl.useProgram(program.handle);
+    this.#resources.bind(program);
+    setUniforms(gl, program, inputs);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.SCISSOR_TEST);
+  }
+
+  /** The picture that was drawn is the one to show. */
+  present(): void {
+    [this.#work, this.#shown] = [this.#shown, this.#work];
+    this.show();
+  }
+
+  /** Copies the last whole picture to the canvas, once more after the canvas changed its size. */
+  show(): void {
+    const { gl, canvas } = this;
+    const { frame, width, height } = this.#shown;
+    if (!width) return;
+    const exact = width === canvas.width && height === canvas.height;
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, frame);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(
+      ...([0, 0, width, height, 0, 0, canvas.width, canvas.height] as const),
+      gl.COLOR_BUFFER_BIT,
+      exact ? gl.NEAREST : gl.LINEAR,
+    );
+  }
+
+  /** Gives the memory back at once instead of when the browser comes round to it. */
+  dispose(): void {
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+}
+
+function newTarget(gl: WebGL2RenderingContext): Target {
+  return { frame: gl.createFramebuffer()!, pixels: gl.createRenderbuffer()!, width: 0, height: 0 };
+}
+
+function resize(gl: WebGL2RenderingContext, target: Target, width: number, height: number): void {
+  if (target.width === width && target.height === height) return;
+  Object.assign(target, { width, height });
+  gl.bindRenderbuffer(gl.RENDERBUFFER, target.pixels);
+  gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+  const { FRAMEBUFFER, COLOR_ATTACHMENT0, RENDERBUFFER } = gl;
+  gl.framebufferRenderbuffer(FRAMEBUFFER, COLOR_ATTACHMENT0, RENDERBUFFER, target.pixels);
+}

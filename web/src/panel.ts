@@ -1,0 +1,103 @@
+/**
+ * The panel at the side: the scene's name, its views, its parameters in groups, the picture's
+ * quality, and what can be done with all of them at once.
+ *
+ * In: the player. Out: an element that follows the player's events.
+ */
+
+import { SPEEDS } from "./clock";
+import { rowOf, type Row } from "./controls";
+import { make } from "./dom";
+import type { Player } from "./player";
+
+const SCALES = [
+  ["auto", "Automatic"],
+  ["0.25", "¼"],
+  ["0.5", "½"],
+  ["1", "Full"],
+  ["2", "Double"],
+] as const;
+
+export function panelOf(player: Player): HTMLElement {
+  const { name, description } = player.payload;
+  const panel = make("section", { className: "panel", "aria-label": "Settings" });
+  const body = make("div", { className: "body" });
+  const head = make("h2", {}, name);
+  const about = description !== name && make("p", { className: "about" }, description);
+  body.append(make("header", {}, head, about || ""), ...viewGroup(player));
+  body.append(...parameterGroups(player), pictureGroup(player));
+  panel.append(body, actions(player));
+  return panel;
+}
+
+function group(title: string, ...children: Node[]): HTMLElement {
+  const heading = title && make("h3", {}, title);
+  return make("div", { className: "group", role: "group", "aria-label": title || "Parameters" },
+    heading, ...children);
+}
+
+let count = 0;
+
+/** A menu in a row of its own; `follow` is called with what sets its choice from outside. */
+function menu(
+  label: string,
+  options: readonly (readonly [value: string, text: string])[],
+  value: string,
+  choose: (value: string) => void,
+): [HTMLElement, HTMLSelectElement] {
+  const id = `m${++count}`;
+  const items = options.map(([key, text]) => make("option", { value: key }, text));
+  const select = make("select", { id }, ...items);
+  select.value = value;
+  select.onchange = () => choose(select.value);
+  const caption = make("label", { className: "label", for: id }, label);
+  return [make("div", { className: "row choice" }, caption, select), select];
+}
+
+function viewGroup(player: Player): HTMLElement[] {
+  const { views } = player.payload;
+  if (views.length < 2) return [];
+  const options = views.map((view) => [view.name, view.label] as const);
+  const [row, select] = menu("View", options, player.view, (name) => player.setView(name));
+  player.on("view", ({ name }) => (select.value = name));
+  return [make("div", { className: "group" }, row)];
+}
+
+function parameterGroups(player: Player): HTMLElement[] {
+  const rows = new Map<string, Row>();
+  const groups = new Map<string, HTMLElement[]>();
+  const values = player.parameters();
+  for (const parameter of player.payload.parameters) {
+    const row = rowOf(parameter, (value) => player.change(parameter.name, value));
+    row.show(values[parameter.name]!);
+    rows.set(parameter.name, row);
+    groups.set(parameter.group, [...(groups.get(parameter.group) ?? []), row.element]);
+  }
+  player.on("parameter", ({ name, value }) => rows.get(name)?.show(value));
+  return [...groups].map(([title, elements]) => group(title, ...elements));
+}
+
+function pictureGroup(player: Player): HTMLElement {
+  const scales = SCALES.map(([value, text]) => [value, text] as const);
+  const [resolution] = menu("Resolution", scales, "auto", (value) =>
+    player.setResolution(value === "auto" ? value : +value),
+  );
+  const rows = [resolution];
+  if (player.payload.time.animated) {
+    const speeds = SPEEDS.map((speed) => [String(speed), `${speed}×`] as const);
+    rows.push(menu("Speed", speeds, "1", (value) => player.setSpeed(+value))[0]);
+  }
+  return group("Picture", ...rows);
+}
+
+function actions(player: Player): HTMLElement {
+  const button = (text: string, act: () => void) =>
+    make("button", { type: "button", className: "text", onclick: act }, text);
+  return make(
+    "footer",
+    {},
+    player.payload.parameters.length > 0 && button("Reset all", () => player.resetAll()),
+    player.payload.steering && button("Reset camera", () => player.resetCamera()),
+    button("Copy as code", () => void player.copyCode()),
+  );
+}

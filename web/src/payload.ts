@@ -1,0 +1,112 @@
+/**
+ * What a page says of a scene: the types of the payload, and how its programs are unpacked.
+ *
+ * In: the JSON that `distal export` writes. Out: plain objects. The one place that knows the format.
+ */
+
+export type Value = number | boolean | number[];
+export type Values = Record<string, Value>;
+
+export interface Parameter {
+  name: string;
+  label: string;
+  kind: "slider" | "integer" | "toggle" | "choice" | "color" | "point";
+  default: Value;
+  low: number | null;
+  high: number | null;
+  step: number | null;
+  log: boolean;
+  group: string;
+  help: string;
+  options: string[];
+}
+
+/** Lines `first` to `last` of a text, from 1, come from line `line` of file number `file`. */
+export type LineRange = [first: number, last: number, file: number, line: number];
+
+export interface UniformEntry {
+  name: string;
+  uniform: string;
+  type: string;
+  origin: "frame" | "parameter" | "number";
+  default: Value | number[][] | null;
+}
+
+export interface TextureEntry {
+  name: string;
+  uniform: string;
+  type: string;
+  wrap: string;
+}
+
+export interface BufferEntry {
+  name: string;
+  uniform: string;
+  count: string;
+  element: string;
+}
+
+export interface Program {
+  vertex: string;
+  fragment: string;
+  uniforms: UniformEntry[];
+  textures: TextureEntry[];
+  buffers: BufferEntry[];
+  lines: LineRange[];
+  vertex_lines: LineRange[];
+}
+
+export type Format = "rgba8" | "float16" | "float32" | "int32" | "uint32";
+
+export interface Resource {
+  type: string;
+  size: number[];
+  components: number;
+  format: Format;
+  data: string;
+}
+
+export interface View {
+  name: string;
+  label: string;
+  program: number;
+}
+
+export interface Payload {
+  format: number;
+  name: string;
+  description: string;
+  size: [number, number];
+  embed: boolean;
+  panel: boolean;
+  steering: { elevation: number } | null;
+  time: { start: number; duration: number | null; animated: boolean };
+  parameters: Parameter[];
+  values: Values;
+  views: View[];
+  poster: string | null;
+  files: string[];
+  programs: { encoding: "plain"; data: Program[] } | { encoding: "deflate-raw"; data: string };
+  resources: Record<string, Resource>;
+}
+
+/** The bytes of a base64 text. */
+export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+  return Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+}
+
+/**
+ * The programs of a payload, unpacked where they came packed: then field by field, all programs'
+ * vertex stages first, since what is alike packs well only where it stands close together.
+ */
+export async function programsOf(payload: Payload): Promise<Program[]> {
+  const { programs } = payload;
+  if (programs.encoding === "plain") return programs.data;
+  const packed = new Blob([bytesOf(programs.data)]).stream();
+  const text = packed.pipeThrough(new DecompressionStream("deflate-raw"));
+  const columns = (await new Response(text).json()) as { [K in keyof Program]: Program[K][] };
+  return columns.vertex.map((_, i) => {
+    const fields = Object.entries(columns).map(([key, all]) => [key, all[i]]);
+    return Object.fromEntries(fields) as Program;
+  });
+}

@@ -1,0 +1,419 @@
+/**
+ * A scene on a page: its state, and who is told when it changes.
+ *
+ * In: a host element and a payload; later what people and programs do. Out: the picture in the
+ * host's shadow root, events. Styles and names stay inside; nothing is asked of any network.
+ */
+
+import { Camera, type Steering } from "./camera";
+import { Clock } from "./clock";
+import { pythonOf } from "./code";
+import { Emitter, type Events } from "./events";
+import { Frame, type Theme } from "./frame";
+import type { Actions } from "./keyboard";
+import { Mouse } from "./mouse";
+import { failureOf } from "./notices";
+import { programsOf, type Payload, type Program, type Value, type Values } from "./payload";
+import { Renderer, type FrameReport, type Scale, type State, type Subject } from "./renderer";
+import { copy, save } from "./taking";
+import { checked, clamp, same } from "./values";
+
+export interface Options {
+  /** The bare canvas instead of the whole player; the payload's choice where not given. */
+  embed?: boolean;
+  /** Colors of the panel; as the system has them where not given. */
+  theme?: Theme;
+  /** What is transparent in the scene lets the page through. */
+  transparent?: boolean;
+  /** Whether time runs from the start; else it does where the scene moves and people like it. */
+  playing?: boolean;
+}
+
+export class Player {
+  readonly payload: Payload;
+  readonly camera: Camera | null;
+  #emitter = new Emitter();
+  #clock: Clock;
+  #mouse = new Mouse();
+  #values: Values = {};
+  #view: string;
+  #programs: Program[] = [];
+  #renderer: Renderer;
+  #frame: Frame;
+  #state: State = "waiting";
+  #ticked = 0;
+  #held = false;
+
+  constructor(
+    readonly host: HTMLElement,
+    payload: Payload,
+    options: Options = {},
+  ) {
+    this.payload = { ...payload, embed: options.embed ?? payload.embed };
+    const { time, steering, parameters, views } = payload;
+    this.#clock = new Clock(time.start, time.duration);
+    this.camera = steering && new Camera(steering.elevation);
+    this.#view = views[0]!.name;
+    for (const parameter of parameters) {
+      const given = checked(parameter, payload.values[parameter.name]);
+      this.#values[parameter.name] = given ?? parameter.default;
+    }
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.#clock.playing = time.animated && (options.playing ?? !calm);
+    this.#frame = new Frame(this, options.theme ?? "auto");
+    const { canvas } = this.#frame;
+    const transparent = options.transparent ?? false;
+    this.#renderer = new Renderer(this.#subject(), payload.resources, transparent, canvas);
+    this.#frame.follow(
+      (width, height) => this.#renderer.resize(width, height),
+      (isVisible) => this.#see(isVisible),
+      (isOpen) => this.#emitter.emit("panel", { isOpen }),
+    );
+  }
+
+  /** Calls `listener` at each event of the kind. Returns what ends that. */
+  on<K extends keyof Events>(event: K, listener: (detail: Events[K]) => void): () => void {
+    return this.#emitter.on(event, listener);
+  }
+
+  // Parameters
+
+  /** All values by name: numbers, a choice's number, linear colors, coordinates. */
+  parameters(): Values {
+    return structuredClone(this.#values);
+  }
+
+  /** Sets a parameter, within its range. Unknown names and values of another kind are refused. */
+  setParameter(name: string, value: Value): void {
+    const parameter = this.payload.parameters.find((p) => p.name === name);
+    const fit = parameter && checked(parameter, value);
+    if (fit === undefined || fit === null) throw new TypeError(`'${name}' cannot be that`);
+    if (same(fit, this.#values[name])) return;
+    this.#values[name] = fit;
+    this.#emitter.emit("parameter", { name, value: fit });
+    this.#renderer.change();
+  }
+
+  /** The same by a person's hand: whoever listens is told. */
+  change(name: string, value: Value): void {
+    if (same(value, this.#values[name])) return;
+    this.setParameter(name, value);
+    this.#emitter.emit("change", { name, value: this.#values[name]! });
+  }
+
+  /** Every parameter as the author wrote it. */
+  resetAll(): void {
+    for (const { name, default: value } of this.payload.parameters) this.change(name, value);
+  }
+
+  // Time
+
+  get time(): number {
+    return this.#clock.time;
+  }
+
+  get playing(): boolean {
+    return this.#clock.playing;
+  }
+
+  /** The ends of the time slider, in seconds. */
+  get timeRange(): [number, number] {
+    return this.#clock.range();
+  }
+
+  play(): void {
+    this.#run(this.payload.time.animated);
+  }
+
+  pause(): void {
+    this.#run(false);
+  }
+
+  toggle(): void {
+    this.#run(!this.playing && this.payload.time.animated);
+  }
+
+  /** Jumps to a time in seconds. */
+  setTime(time: number): void {
+    this.#clock.set(time);
+    this.#tellTime();
+    this.#renderer.change();
+  }
+
+  setSpeed(speed: number): void {
+    this.#clock.speed = clamp(speed, 0.01, 100);
+  }
+
+  /** The clock waits while a hand holds the slider. */
+  hold(isHeld: boolean): void {
+    this.#held = isHeld;
+    this.#renderer.change();
+  }
+
+  // View and camera
+
+  get view(): string {
+    return this.#view;
+  }
+
+  setView(name: string): void {
+    const view = this.payload.views.find((v) => v.name === name);
+    if (!view) throw new TypeError(`there is no view '${name}'`);
+    if (name !== this.#view) {
+      this.#view = name;
+      this.#emitter.emit("view", { name });
+    }
+    this.#compile();
+  }
+
+  steering(): Steering | null {
+    return this.camera?.steering ?? null;
+  }
+
+  /** Moves the camera: any of yaw, pitch, zoom, pan. */
+  setSteering(change: Partial<Steering>): void {
+    this.camera?.set(change);
+    this.#renderer.change();
+  }
+
+  /** The author's own picture again. */
+  resetCamera(): void {
+    this.camera?.reset();
+    this.#mouse.reset();
+    this.#steered();
+  }
+
+  // The picture
+
+  /** A factor on the canvas's pixels, or "auto": what the GPU can do in time. */
+  setResolution(scale: Scale): void {
+    this.#renderer.scale = scale;
+  }
+
+  /** A PNG of the picture at full scale; null where there is none. */
+  screenshot(): Promise<Blob | null> {
+    return this.#state === "ready" ? this.#renderer.capture() : Promise.resolve(null);
+  }
+
+  async saveScreenshot(): Promise<void> {
+    const picture = await this.screenshot();
+    if (!picture) return;
+    save(picture, `${this.payload.name}${this.#view === "color" ? "" : ` ${this.#view}`}`);
+    this.#frame.notices.brief("Picture saved");
+  }
+
+  /** The state as Python: what to hand to `render` for the same picture. */
+  code(): string {
+    const { parameters, time } = this.payload;
+    const hasMoved = time.animated && this.time !== time.start;
+    const steering = this.camera?.moved ? this.camera.steering : null;
+    return pythonOf(parameters, this.#values, hasMoved ? this.time : null, steering);
+  }
+
+  async copyCode(): Promise<void> {
+    const code = this.code();
+    const isCopied = await copy(code, this.#frame.root);
+    this.#frame.notices.brief(isCopied ? `Copied: ${code}` : code);
+  }
+
+  /** Resolves when the sharp picture of all that was asked for stands. */
+  settled(): Promise<void> {
+    return this.#renderer.rest();
+  }
+
+  // The frame around it
+
+  toggleFullScreen(): void {
+    // Refused where a page forbids it: then nothing happens, and nothing is to be said.
+    const done = document.fullscreenElement
+      ? document.exitFullscreen()
+      : this.host.requestFullscreen();
+    done.catch(() => {});
+  }
+
+  togglePanel(): void {
+    this.#frame.togglePanel();
+  }
+
+  showHelp(): void {
+    this.#frame.help.showModal();
+  }
+
+  /** Stops everything and gives the GPU's memory back. */
+  dispose(): void {
+    this.#renderer.dispose();
+    this.#frame.dispose();
+  }
+
+  /** What keys do; false where a key means nothing here and stays the page's. */
+  readonly actions: Actions = {
+    arrow: (right, up) => {
+      // The arrow is where the eye goes, and the hand would drag the other way.
+      if (this.camera) this.camera.orbit(-right, up);
+      else if (this.readsMouse) this.#mouse.nudge(right, up);
+      else return false;
+      return this.#steered();
+    },
+    zoom: (factor) => {
+      this.camera?.zoom(factor);
+      return !!this.camera && this.#steered();
+    },
+    toggle: () => this.payload.time.animated && done(this.toggle()),
+    reset: () => (!!this.camera || this.readsMouse) && done(this.resetCamera()),
+    nextView: () => {
+      const { views } = this.payload;
+      const next = views.findIndex(({ name }) => name === this.#view) + 1;
+      if (views.length > 1) this.setView(views[next % views.length]!.name);
+      return views.length > 1;
+    },
+    fullScreen: () => document.fullscreenEnabled && done(this.toggleFullScreen()),
+    screenshot: () => done(void this.saveScreenshot()),
+    panel: () => !this.payload.embed && done(this.togglePanel()),
+    help: () => done(this.showHelp()),
+  };
+
+  /** What the hand on the canvas does. */
+  readonly hand = {
+    drag: (right: number, down: number, pan: boolean) => {
+      if (pan) this.camera?.pan(right, down);
+      else this.camera?.orbit(right, down);
+      if (this.camera) this.#steered();
+    },
+    zoom: (factor: number) => void this.actions.zoom(factor),
+    press: (x: number, y: number) => this.#point(() => this.#mouse.press(x, y)),
+    move: (x: number, y: number) => this.#point(() => this.#mouse.move(x, y)),
+    release: () => this.#point(() => this.#mouse.release()),
+    reset: () => this.resetCamera(),
+  };
+
+  /** Whether the scene reads where the mouse is; only without a camera of its own. */
+  get readsMouse(): boolean {
+    const uniforms = this.camera ? [] : this.#programs.flatMap((program) => program.uniforms);
+    return uniforms.some(({ origin, name }) => origin === "frame" && name === "mouse");
+  }
+
+  #point(act: () => void): void {
+    if (!this.readsMouse) return;
+    act();
+    this.#renderer.change();
+  }
+
+  #steered(): true {
+    if (this.camera) this.#emitter.emit("steering", this.camera.steering);
+    this.#renderer.change();
+    return true;
+  }
+
+  #run(isPlaying: boolean): void {
+    this.#clock.playing = isPlaying;
+    this.#ticked = performance.now();
+    this.#tellTime();
+    this.#renderer.change();
+  }
+
+  #tellTime(): void {
+    this.#emitter.emit("time", { time: this.time, playing: this.playing });
+  }
+
+  /** In sight for the first time: now the work begins. */
+  #see(isVisible: boolean): void {
+    this.#ticked = performance.now();
+    this.#renderer.visible = isVisible;
+    if (isVisible && this.#state === "waiting") {
+      this.#state = "compiling";
+      void this.#start();
+    }
+  }
+
+  async #start(): Promise<void> {
+    try {
+      this.#programs = await programsOf(this.payload);
+    } catch (error) {
+      this.#enter("failed", error);
+      return;
+    }
+    this.#frame.listen(!!this.camera || this.readsMouse);
+    this.#renderer.start();
+    if (this.#state !== "unsupported") this.#compile();
+  }
+
+  #compile(): void {
+    const view = this.payload.views.find(({ name }) => name === this.#view)!;
+    const program = this.#programs[view.program];
+    if (program) void this.#renderer.use(program);
+  }
+
+  #retry(): void {
+    if (this.#state === "failed" && this.#programs.length) this.#compile();
+    else if (this.#programs.length) {
+      this.#renderer.start(this.#frame.newCanvas());
+      this.#frame.listen(!!this.camera || this.readsMouse);
+      this.#compile();
+    } else void this.#start();
+  }
+
+  #subject(): Subject {
+    const player = this;
+    return {
+      get playing() {
+        return player.playing && !player.#held;
+      },
+      tick(now) {
+        if (this.playing) {
+          player.#clock.advance((now - player.#ticked) / 1000);
+          player.#tellTime();
+        }
+        player.#ticked = now;
+      },
+      inputs: (width, height) => ({
+        frame: {
+          resolution: [width, height],
+          time: player.time,
+          mouse: player.#mouse.pixels(width, height),
+          index: player.#clock.index,
+        },
+        parameter: player.#values,
+        number: player.camera ? numbersOf(player.camera.steering) : {},
+      }),
+      drawn: (report) => player.#drawn(report),
+      state: (state, error) => player.#enter(state, error),
+    };
+  }
+
+  #drawn(report: FrameReport): void {
+    this.#frame.live = true;
+    if (this.#mouse.settle() && this.readsMouse) this.#renderer.change();
+    this.#emitter.emit("frame", { ...report, time: this.time, view: this.#view });
+  }
+
+  #enter(state: State, error?: unknown): void {
+    this.#state = state;
+    const { notices } = this.#frame;
+    this.#frame.state = state;
+    const { label } = this.payload.views.find(({ name }) => name === this.#view)!;
+    if (state === "compiling") notices.busy(`Compiling ${label} …`);
+    if (state === "ready") {
+      notices.clear();
+      notices.say(`${label} is shown`);
+    }
+    if (state === "lost") {
+      this.#frame.live = false;
+      const sentence = "The graphics driver let go of the picture. It returns when the driver does.";
+      notices.failure({ sentence, rows: [] }, () => this.#retry());
+    }
+    if (state === "failed" || state === "unsupported") {
+      const failure = failureOf(error, this.payload.files, state === "unsupported");
+      notices.failure(failure, () => this.#retry());
+      const log = failure.rows.map(({ place, text }) => `${place} ${text}`.trim()).join("\n");
+      this.#emitter.emit("error", { message: failure.sentence, log });
+    }
+  }
+}
+
+function numbersOf({ yaw, pitch, zoom, pan }: Steering) {
+  return { View_yaw: yaw, View_pitch: pitch, View_zoom: zoom, View_pan: pan };
+}
+
+function done(_: void): true {
+  return true;
+}

@@ -1,0 +1,293 @@
+/**
+ * When to draw what: the schedule of one canvas.
+ *
+ * In: "something changed", the view's program, whether anybody looks. Out: pictures, as sharp as
+ * time allows: small ones while things move, a full one, in bands, once they rest. Nothing is
+ * drawn when nothing changed, when the canvas is out of sight, or while the context is lost.
+ */
+
+import { Painter } from "./painter";
+import type { Payload, Program } from "./payload";
+import { LostError, type Linked } from "./program";
+import { PROBE_PIXELS, Resolution } from "./resolution";
+import type { Inputs } from "./uniforms";
+import { gpuDone, nextFrame } from "./waiting";
+
+export type State = "waiting" | "compiling" | "ready" | "lost" | "failed" | "unsupported";
+export type Scale = number | "auto";
+
+export interface FrameReport {
+  /** What the GPU took, in milliseconds. */
+  ms: number;
+  width: number;
+  height: number;
+  /** Pictures in a row, in a second; 0 for a still. */
+  fps: number;
+}
+
+/** What the schedule asks of the scene it draws. */
+export interface Subject {
+  readonly playing: boolean;
+  /** A new frame is about to be drawn; `now` in milliseconds. */
+  tick(now: number): void;
+  inputs(width: number, height: number): Inputs;
+  /** A picture was drawn from the inputs. */
+  drawn(report: FrameReport): void;
+  state(state: State, error?: unknown): void;
+}
+
+interface Plan {
+  scale: number;
+  size: [number, number];
+  revision: number;
+  /** A still nobody wants any more is dropped; a moving picture is shown whatever comes next. */
+  abortable: boolean;
+}
+
+/** After the last change things count as moving for so long. */
+const REST_MS = 180;
+
+export class Renderer {
+  canvas: HTMLCanvasElement;
+  #painter: Painter | null = null;
+  #wanted: Program | null = null;
+  #program: Linked | null = null;
+  #resolution = new Resolution();
+  #scale: Scale = "auto";
+  #visible = false;
+  #pumping = false;
+  #revision = 0;
+  #changed = 0;
+  #shown = { revision: -1, scale: 0 };
+  #captures: ((blob: Blob | null) => void)[] = [];
+  #resting: (() => void)[] = [];
+  #times: number[] = [];
+
+  constructor(
+    readonly subject: Subject,
+    readonly resources: Payload["resources"],
+    readonly transparent: boolean,
+    canvas: HTMLCanvasElement,
+  ) {
+    this.canvas = canvas;
+  }
+
+  /** Takes a context, on a fresh canvas after an earlier one failed. */
+  start(canvas = this.canvas): void {
+    this.canvas = canvas;
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault(); // Else it never comes back.
+      if (canvas === this.canvas && this.#painter) this.#lose();
+    });
+    canvas.addEventListener("webglcontextrestored", () => {
+      if (canvas === this.canvas) this.#begin();
+    });
+    this.#begin();
+  }
+
+  /** Shows a program's picture as soon as it is compiled; until then the old one stays. */
+  async use(source: Program): Promise<void> {
+    this.#wanted = source;
+    const painter = this.#painter;
+    if (!painter) return;
+    this.subject.state("compiling");
+    const isStale = () => this.#wanted !== source || this.#painter !== painter;
+    try {
+      const program = await painter.program(source);
+      if (isStale()) return;
+      this.#program = program;
+      this.#resolution.forget();
+      this.subject.state("ready");
+      this.change();
+    } catch (error) {
+      if (!isStale() && !(error instanceof LostError)) this.subject.state("failed", error);
+    }
+  }
+
+  /** Something that the picture shows has changed. */
+  change(): void {
+    this.#revision += 1;
+    this.#changed = performance.now();
+    void this.#pump();
+  }
+
+  set scale(scale: Scale) {
+    this.#scale = scale;
+    this.#shown.scale = 0;
+    void this.#pump();
+  }
+
+  get scale(): Scale {
+    return this.#scale;
+  }
+
+  set visible(visible: boolean) {
+    this.#visible = visible;
+    void this.#pump();
+  }
+
+  /** The canvas has another size in pixels; the last picture is stretched until a new one is. */
+  resize(width: number, height: number): void {
+    const { canvas } = this;
+    if (canvas.width === width && canvas.height === height) return;
+    canvas.width = width;
+    canvas.height = height;
+    this.#painter?.show();
+    this.change();
+  }
+
+  /** A PNG of what is to be seen, at the canvas's full scale. */
+  capture(): Promise<Blob | null> {
+    return new Promise((resolve) => {
+      this.#captures.push(resolve);
+      void this.#pump();
+    });
+  }
+
+  /** Resolves when the sharp picture of all that was asked for stands. */
+  rest(): Promise<void> {
+    return new Promise((resolve) => {
+      this.#resting.push(resolve);
+      void this.#pump();
+    });
+  }
+
+  dispose(): void {
+    const painter = this.#painter;
+    this.#painter = null;
+    this.#visible = false;
+    painter?.dispose();
+  }
+
+  #begin(): void {
+    this.#program = null;
+    this.#shown.scale = 0;
+    try {
+      this.#painter = new Painter(this.canvas, this.resources, this.transparent);
+    } catch (error) {
+      this.#painter = null;
+      this.subject.state("unsupported", error);
+      return;
+    }
+    if (this.#wanted) void this.use(this.#wanted);
+  }
+
+  #lose(): void {
+    this.#painter = null;
+    this.#program = null;
+    this.subject.state("lost");
+  }
+
+  get #stillScale(): number {
+    return this.#scale === "auto" ? 1 : this.#scale;
+  }
+
+  get #isSharp(): boolean {
+    const { revision, scale } = this.#shown;
+    return revision === this.#revision && scale >= this.#stillScale;
+  }
+
+  #wants(): boolean {
+    if (!this.#visible || !this.#painter || !this.#program) return false;
+    return this.subject.playing || !this.#isSharp || this.#captures.length > 0;
+  }
+
+  async #pump(): Promise<void> {
+    if (this.#pumping) return;
+    this.#pumping = true;
+    try {
+      while (this.#wants()) {
+        const now = await nextFrame();
+        if (!this.#wants()) break;
+        this.subject.tick(now);
+        const plan = this.#plan();
+        if (plan) await this.#picture(plan);
+      }
+    } catch (error) {
+      // Data that no texture can be made of: shown like a shader that fails, not tried each frame.
+      this.#program = null;
+      this.subject.state("failed", error);
+    } finally {
+      this.#pumping = false;
+    }
+    if (this.#isSharp) for (const resolve of this.#resting.splice(0)) resolve();
+  }
+
+  #plan(): Plan | null {
+    const painter = this.#painter!;
+    const revision = this.#revision;
+    const plan = (scale: number, abortable: boolean): Plan => {
+      return { scale, size: painter.size(scale), revision, abortable };
+    };
+    if (this.#captures.length) return plan(Math.max(1, this.#stillScale), false);
+    if (this.#scale !== "auto") return plan(this.#scale, false);
+    const playing = this.subject.playing;
+    if (!playing && performance.now() - this.#changed >= REST_MS) return plan(1, true);
+    if (!playing && revision === this.#shown.revision) return null; // It may come to rest.
+    if (this.#resolution.cost === null) return plan(1, true); // Settled after the probe.
+    return plan(this.#resolution.moving(this.canvas.width * this.canvas.height), false);
+  }
+
+  async #picture(plan: Plan): Promise<void> {
+    if (this.#resolution.cost === null) {
+      await this.#probe();
+      return; // The cost is known now: plan again.
+    }
+    const painter = this.#painter!;
+    const program = this.#program!;
+    const [width, height] = plan.size;
+    const inputs = this.subject.inputs(width, height);
+    let total = 0;
+    for (let row = 0; row < height; ) {
+      const rows = Math.min(this.#resolution.rows(width), height - row);
+      painter.draw(program, inputs, plan.size, row, rows);
+      row += rows;
+      // In the task of the last draw: the picture appears whole, and as early as it can.
+      if (row >= height) this.#present(painter, plan);
+      const ms = await gpuDone(painter.gl);
+      if (ms === null || painter !== this.#painter) return;
+      this.#resolution.measure(ms, width * rows);
+      total += ms;
+      const isOld = plan.revision !== this.#revision || program !== this.#program;
+      if (plan.abortable && isOld && row < height) return;
+    }
+    this.subject.drawn({ ms: total, width, height, fps: this.#fps() });
+  }
+
+  #present(painter: Painter, { revision, scale }: Plan): void {
+    painter.present();
+    this.#shown = { revision, scale };
+    for (const resolve of this.#captures.splice(0)) painter.canvas.toBlob(resolve);
+  }
+
+  /** What does a pixel cost? Nobody sees these draws; they grow until there is time to measure. */
+  async #probe(): Promise<void> {
+    const { canvas } = this;
+    const pixels = canvas.width * canvas.height;
+    // The very first draw is for what drivers put off until then.
+    for (let most = 64; ; most = most === 64 ? PROBE_PIXELS : most * 6) {
+      const painter = this.#painter;
+      const program = this.#program;
+      if (!painter || !program) return;
+      const size = painter.size(Math.min(1, Math.sqrt(most / pixels)));
+      painter.draw(program, this.subject.inputs(...size), size, 0, size[1]);
+      const ms = await gpuDone(painter.gl);
+      if (ms === null || program !== this.#program) return;
+      if (most === 64) continue;
+      this.#resolution.forget();
+      this.#resolution.measure(ms, size[0] * size[1]);
+      if (ms > 8 || most >= pixels) return;
+    }
+  }
+
+  #fps(): number {
+    if (!this.subject.playing) {
+      this.#times = [];
+      return 0;
+    }
+    const now = performance.now();
+    this.#times = [...this.#times.filter((time) => now - time < 1000), now];
+    const span = now - this.#times[0]!;
+    return span > 0 ? ((this.#times.length - 1) * 1000) / span : 0;
+  }
+}

@@ -1,0 +1,136 @@
+/**
+ * Textures and buffers of a scene on the GPU.
+ *
+ * In: the payload's resources (base64) and what a program reads. Out: texture units that are bound
+ * before each draw. A buffer is a texture of one texel an element, row by row.
+ */
+
+import { bytesOf, type BufferEntry, type Format, type Resource, type TextureEntry } from "./payload";
+import type { Linked } from "./program";
+
+type GL = WebGL2RenderingContext;
+type Numbers = Uint8Array | Uint16Array | Float32Array | Int32Array | Uint32Array;
+
+const BUFFER_WIDTH = 1024;
+const ARRAYS = {
+  rgba8: Uint8Array,
+  float16: Uint16Array,
+  float32: Float32Array,
+  int32: Int32Array,
+  uint32: Uint32Array,
+};
+
+export class Resources {
+  #textures = new Map<string, [target: number, texture: WebGLTexture]>();
+
+  constructor(
+    readonly gl: GL,
+    readonly sources: Record<string, Resource>,
+  ) {}
+
+  /** Binds what a program in use reads; uploads what is read for the first time. */
+  bind(program: Linked): void {
+    const { gl } = this;
+    const { textures, buffers } = program.source;
+    [...textures, ...buffers].forEach((entry, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      const [target, texture] = this.#texture(entry);
+      gl.bindTexture(target, texture);
+      gl.uniform1i(gl.getUniformLocation(program.handle, entry.uniform), unit);
+      if ("count" in entry) {
+        const count = this.sources[entry.name]?.size[0] ?? 0;
+        gl.uniform1i(gl.getUniformLocation(program.handle, entry.count), count);
+      }
+    });
+  }
+
+  #texture(entry: TextureEntry | BufferEntry): [number, WebGLTexture] {
+    // The same pixels may be read with two wraps: they are two textures.
+    const key = `${entry.name} ${"wrap" in entry ? entry.wrap : ""}`;
+    const known = this.#textures.get(key);
+    if (known) return known;
+    const source = this.sources[entry.name];
+    if (!source) throw new Error(`The page has no data for '${entry.name}'.`);
+    const made: [number, WebGLTexture] =
+      "count" in entry ? uploadBuffer(this.gl, source) : uploadTexture(this.gl, entry, source);
+    this.#textures.set(key, made);
+    return made;
+  }
+}
+
+/** The sized format, format and type of a texture of so many components. */
+function formats(gl: GL, format: Format, components: number): [number, number, number] {
+  const at = components - 1;
+  const plain = [gl.RED, gl.RG, gl.RGB, gl.RGBA][at]!;
+  const whole = [gl.RED_INTEGER, gl.RG_INTEGER, gl.RGB_INTEGER, gl.RGBA_INTEGER][at]!;
+  switch (format) {
+    case "rgba8":
+      return [[gl.R8, gl.RG8, gl.RGB8, gl.RGBA8][at]!, plain, gl.UNSIGNED_BYTE];
+    case "float16":
+      return [[gl.R16F, gl.RG16F, gl.RGB16F, gl.RGBA16F][at]!, plain, gl.HALF_FLOAT];
+    case "float32":
+      return [[gl.R32F, gl.RG32F, gl.RGB32F, gl.RGBA32F][at]!, plain, gl.FLOAT];
+    case "int32":
+      return [[gl.R32I, gl.RG32I, gl.RGB32I, gl.RGBA32I][at]!, whole, gl.INT];
+    case "uint32":
+      return [[gl.R32UI, gl.RG32UI, gl.RGB32UI, gl.RGBA32UI][at]!, whole, gl.UNSIGNED_INT];
+  }
+}
+
+function numbersOf({ format, data }: Resource): Numbers {
+  return new ARRAYS[format](bytesOf(data).buffer);
+}
+
+function newTexture(gl: GL, target: number, filter: number, wrap: number): WebGLTexture {
+  const texture = gl.createTexture()!;
+  gl.bindTexture(target, texture);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, filter);
+  gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, filter);
+  for (const axis of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) {
+    gl.texParameteri(target, axis, wrap);
+  }
+  return texture;
+}
+
+function uploadBuffer(gl: GL, source: Resource): [number, WebGLTexture] {
+  const target = gl.TEXTURE_2D;
+  const texture = newTexture(gl, target, gl.NEAREST, gl.CLAMP_TO_EDGE);
+  const height = Math.max(1, Math.ceil(source.size[0]! / BUFFER_WIDTH));
+  const numbers = numbersOf(source);
+  // The last row is filled up: a texture is a rectangle.
+  const full = new ARRAYS[source.format](BUFFER_WIDTH * height * source.components);
+  full.set(numbers);
+  const [sized, format, type] = formats(gl, source.format, source.components);
+  gl.texImage2D(target, 0, sized, BUFFER_WIDTH, height, 0, format, type, full);
+  return [target, texture];
+}
+
+function uploadTexture(gl: GL, entry: TextureEntry, source: Resource): [number, WebGLTexture] {
+  const [width, height, depth] = source.size as [number, number, number?];
+  const wrap = entry.wrap === "repeat" ? gl.REPEAT : gl.CLAMP_TO_EDGE;
+  const numbers = numbersOf(source);
+  let [sized, format, type] = formats(gl, source.format, source.components);
+  if (source.format === "float32" && !gl.getExtension("OES_texture_float_linear")) {
+    // Half floats are filtered everywhere; the driver rounds to them on the way in.
+    [sized] = formats(gl, "float16", source.components);
+  }
+  if (entry.type === "Texture3D") {
+    const texture = newTexture(gl, gl.TEXTURE_3D, gl.LINEAR, wrap);
+    gl.texImage3D(gl.TEXTURE_3D, 0, sized, width, height, depth ?? 1, 0, format, type, numbers);
+    return [gl.TEXTURE_3D, texture];
+  }
+  if (entry.type === "TextureCube") {
+    const texture = newTexture(gl, gl.TEXTURE_CUBE_MAP, gl.LINEAR, gl.CLAMP_TO_EDGE);
+    const face = width * height * source.components;
+    for (let side = 0; side < 6; side++) {
+      const part = numbers.subarray(side * face, (side + 1) * face);
+      const target = gl.TEXTURE_CUBE_MAP_POSITIVE_X + side;
+      gl.texImage2D(target, 0, sized, width, height, 0, format, type, part);
+    }
+    return [gl.TEXTURE_CUBE_MAP, texture];
+  }
+  const texture = newTexture(gl, gl.TEXTURE_2D, gl.LINEAR, wrap);
+  gl.texImage2D(gl.TEXTURE_2D, 0, sized, width, height, 0, format, type, numbers);
+  return [gl.TEXTURE_2D, texture];
+}
