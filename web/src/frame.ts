@@ -19,7 +19,7 @@ import { toolbarOf } from "./toolbar";
 export type Theme = "auto" | "light" | "dark";
 
 /** Below this width the panel is a sheet under the picture. */
-const NARROW_PX = 640;
+export const NARROW_PX = 640;
 /** More pixels than this for one of the page's are not seen. */
 const FINEST = 2;
 

@@ -7,6 +7,7 @@
  */
 
 import type { Steering } from "./camera";
+import { NARROW_PX } from "./frame";
 import type { Payload, Values } from "./payload";
 import { Player } from "./player";
 import { same } from "./values";
@@ -21,13 +22,13 @@ export interface Model {
 
 /** How long Python is left alone between two messages: time runs 60 frames a second. */
 const PAUSE_MS = 100;
+// As the style sheet has them.
+const PANEL_PX = 288;
+const TOOLBAR_PX = 44;
 
 export function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   const payload = model.get("payload") as Payload;
-  const host = document.createElement("div");
-  host.style.width = "100%";
-  host.style.maxWidth = `${payload.size[0] + (payload.panel ? 320 : 0)}px`;
-  host.style.aspectRatio = `${payload.size[0]} / ${payload.size[1]}`;
+  const host = hostOf(payload);
   el.append(host);
   const player = new Player(host, payload, { playing: model.get("playing") as boolean });
   const mine = new Outbox(model);
@@ -71,6 +72,20 @@ export function render({ model, el }: { model: Model; el: HTMLElement }): () => 
     mine.close();
     player.dispose();
   };
+}
+
+/** The element of the player: the picture has its size, and the panel stands beside it. */
+function hostOf({ size: [width, height], panel }: Payload): HTMLElement {
+  const host = document.createElement("div");
+  // No narrower than where the panel would go below the picture.
+  const full = panel ? Math.max(width + PANEL_PX, NARROW_PX) : width;
+  host.style.width = `min(100%, ${full}px)`;
+  host.style.height = `${height + (panel ? TOOLBAR_PX : 0)}px`;
+  // Keys meant for the player are not the notebook's: JupyterLab reads the mark before any listener
+  // here is asked, other notebooks listen to what bubbles up.
+  host.dataset.lmSuppressShortcuts = "true";
+  host.addEventListener("keydown", (event) => event.stopPropagation());
+  return host;
 }
 
 /** What is to be told to Python: the newest of each, a few times a second. */
