@@ -152,7 +152,7 @@ def _rendered(obj: Any, origin: Provenance, samples: int | None, options: Any) -
         return picture.told(view=origin.view)
     if isinstance(obj, Func) or not isinstance(obj, Field | Scene):
         raise ValueError(f"'{obj.name}' is no scene, no shape and no @image")
-    scene = obj if isinstance(obj, Scene) else stage(obj, origin.parameters, origin.time)
+    scene = obj if isinstance(obj, Scene) else stage(obj, *(origin.stage or ({}, 0.0)))
     if origin.exposure is not None or origin.tone_map is not None:
         scene = scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
     moved = None
@@ -232,12 +232,10 @@ def _source(origin: Provenance, path: Path) -> str:
     places = [folder / text for folder in (path.parent, Path())]
     found = [str(place) for place in dict.fromkeys(places) if _is_file(str(place))]
     if not found:
-        if not origin.source or "." not in text:
-            said = f"it says no file, only '{text}'" if text else "it says no file"
-            raise RerenderError(f"cannot rebuild {path}: {said}; name it: --source FILE[:NAME]")
-        raise RerenderError(
-            f"cannot rebuild {path}: there is no {text}, neither beside it nor here"
-        )
+        lacks = f"there is no {text}, neither beside it nor here"
+        if ".py" not in text or not text.isprintable():
+            lacks = f"it says no file, only {text!r:.60}" if text else "it says no file"
+        raise RerenderError(f"cannot rebuild {path}: {lacks}; name it: --source FILE[:NAME]")
     same = [s for s in found if _digest_or_none(s, origin) == origin.source_hash]
     return (same or found)[0]
 

@@ -50,6 +50,8 @@ class Provenance:
         exposure: The factor on all light that was asked for; None: the scene's own.
         tone_map: The tone map that was asked for; None: the scene's own.
         steering: How the camera was moved by hand: yaw, pitch, zoom, pan x and y; None: not.
+        stage: The parameters and the time that a lone shape's stage was made for; None of a scene
+            of its own.
         layers: The layers that were rendered with it.
         freeze: Whether the scene's numbers were constants.
         device: What rendered it.
@@ -70,6 +72,7 @@ class Provenance:
     exposure: float | None = None
     tone_map: str | None = None
     steering: tuple[float, ...] | None = None
+    stage: tuple[Mapping[str, Any], float] | None = None
     layers: tuple[str, ...] = ()
     freeze: bool = False
     device: str = ""
@@ -124,6 +127,9 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         found["distal:tone-map"] = origin.tone_map
     if origin.steering is not None:
         found["distal:steering"] = json.dumps(list(origin.steering))
+    if origin.stage is not None:
+        values, time = origin.stage
+        found["distal:stage"] = json.dumps([dict(values), float(time)], sort_keys=True)
     if origin.layers:
         found["distal:layers"] = ",".join(origin.layers)
     if origin.freeze:
@@ -144,6 +150,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
     try:
         plane = json_of("distal:plane", None)
         steering = json_of("distal:steering", None)
+        stage = json_of("distal:stage", None)
         exposure = found.get("distal:exposure")
         read = Provenance(
             source=found.get("distal:source", ""),
@@ -161,6 +168,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             exposure=None if exposure is None else float(exposure),
             tone_map=found.get("distal:tone-map"),
             steering=None if steering is None else _numbers(steering, 5),
+            stage=None if stage is None else (dict(stage[0]), _numbers(stage[1:], 1)[0]),
             layers=tuple(filter(None, found.get("distal:layers", "").split(","))),
             freeze=found.get("distal:freeze") == "true",
             device=found.get("distal:device", ""),

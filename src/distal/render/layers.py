@@ -10,16 +10,19 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.claims import Bounds
-from distal.lang import Field3, func, vec2, vec3, vec4
+from distal.lang import Field3, abs, clamp, dot, func, gradient, vec2, vec3, vec4
 from distal.render.bounce import differences_step, just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import STRIDE, Stride
-from distal.render.march import March
+from distal.render.march import FORGIVING, Hit, March
 from distal.render.material import Surface
 from distal.render.normals import EXACT, normal
 from distal.render.trace import first_surface
 
 NOTHING = vec4(0.0)
+# The largest error of a depth of 4 (a sphere, 160x120, where it is not grazed) after 0, 1 and 2
+# steps: 4e-3, 6e-7, 6e-7; where a ray meets it at 6 degrees 2e-2, 1e-3, 5e-6.
+NEWTON_STEPS = 2
 
 
 @func
@@ -31,6 +34,23 @@ def through_middle(
 ) -> vec4:
     """What the ray through a pixel's middle brings back, as it is."""
     return radiance(camera((2.0 * coord - resolution) / resolution.y))
+
+
+@func
+def refined(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
+    """How far the surface is, closer than a march ends: a picture needs a share of a pixel only.
+
+    Newton's steps along the ray, no farther than a hit may be off; a ray that passes by within the
+    march's threshold has no better answer.
+    """
+    t = hit.t
+    room = FORGIVING * numbers.threshold * hit.t
+    for _ in range(NEWTON_STEPS):
+        p = ray.origin + t * ray.direction
+        slope = dot(gradient(field, p), ray.direction)
+        step = -field(p) / slope if abs(slope) > 1e-3 else 0.0
+        t = clamp(t + step, hit.t - room, hit.t + room)
+    return t
 
 
 @func
@@ -47,7 +67,7 @@ def layer_depth(
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
-    return vec4(hit.t, 0.0, 0.0, 1.0)
+    return vec4(refined(field, ray, hit, numbers), 0.0, 0.0, 1.0)
 
 
 @func

@@ -75,6 +75,7 @@ def rendered(
         transparent=wish.transparent,
         plane=tuple(sliced.values()) or None,
         steering=None if wish.steering is None else wish.steering.numbers,
+        stage=scene.staged,
         layers=layers,
         **scene.asked_display,
     )

@@ -146,7 +146,9 @@ class Scene(Composed, Presentable):
             place=place,
         )
         self.display = Display(self)
+        # What pictures tell: what ``developed`` was asked for, and what ``stage`` made it for.
         self.asked_display: Mapping[str, Any] = {}
+        self.staged: tuple[Mapping[str, Any], float] | None = None
         self._pictures: dict[tuple[Any, ...], Composed] = {}
         self._whole = True
 

@@ -65,6 +65,9 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
         name=shape.name,
     )
     hand_on(given, scene)
+    known = {key: p for p in given.parameters() for key in (p.label, p.name)}
+    said = {known[key].name: known[key].check(value) for key, value in (params or {}).items()}
+    object.__setattr__(scene, "staged", (said, float(time)))  # its pictures tell it
     return scene
 
 

@@ -118,7 +118,8 @@ class Viewable:
         settings = {} if steering is None else self.settings(steering, view)
         picture = executor().render(image, settings=settings, **options)
         moved = steering.numbers if steering is not None and self.steers else None
-        return picture.told(view=view, steering=moved)
+        staged = None if self.scene is None else self.scene.staged
+        return picture.told(view=view, steering=moved, stage=staged)
 
     def _has(self, view: str) -> bool:
         try:

@@ -61,7 +61,11 @@ class Program:
             params=self.parameters,
             **self._options,
         )
-        return made.told(view=self._view, samples=self._options["settings"].get("Samples", 1))
+        return made.told(
+            view=self._view,
+            samples=self._options["settings"].get("Samples", 1),
+            stage=None if self._scene is None else self._scene.staged,
+        )
 
     def doubt(self, picture: Picture, time: float) -> None:
         """Warn of a first picture that shows nothing, as a still would."""
