@@ -608,7 +608,7 @@ def test_a_shader_that_fails_names_the_authors_line_and_the_poster_stays(tmp_pat
         notice.wait_for()
         assert "scene.py:42" in notice.locator("p").inner_text()
         assert page.page.locator("[data-distal] img").is_visible()
-        notice.get_by_text("What the driver said").click()
+        notice.get_by_text("Details").click()
         assert "'nothing' : undeclared identifier" in notice.inner_text()
         page.ask("player.setView('normal')")
         page.settle()

@@ -64,7 +64,7 @@ export class Notices {
         return make("div", {}, place && make("strong", {}, `${place}  `), text);
       });
       const words = make("div", { className: "words", tabIndex: 0 }, ...lines);
-      card.append(make("details", {}, make("summary", {}, "What the driver said"), words));
+      card.append(make("details", {}, make("summary", {}, "Details"), words));
     }
     card.append(again);
     this.element.append(card);

@@ -159,10 +159,9 @@ export class Player {
   setView(name: string): void {
     const view = this.payload.views.find((v) => v.name === name);
     if (!view) throw new TypeError(`there is no view '${name}'`);
-    if (name !== this.#view) {
-      this.#view = name;
-      this.#emitter.emit("view", { name });
-    }
+    if (name === this.#view) return;
+    this.#view = name;
+    this.#emitter.emit("view", { name });
     this.#compile();
   }
 
@@ -216,8 +215,8 @@ export class Player {
     this.#frame.notices.brief(isCopied ? `Copied: ${code}` : code);
   }
 
-  /** Resolves when the sharp picture of all that was asked for stands. */
-  settled(): Promise<void> {
+  /** Resolves when the sharp picture of all that was asked for stands: to false where none can. */
+  settled(): Promise<boolean> {
     return this.#renderer.rest();
   }
 
@@ -358,6 +357,7 @@ export class Player {
       get playing() {
         return player.playing && !player.#held;
       },
+      hasPoster: !!this.payload.poster || !!this.host.querySelector("img"),
       tick(now) {
         if (this.playing) {
           player.#clock.advance((now - player.#ticked) / 1000);

@@ -28,6 +28,8 @@ export interface FrameReport {
 /** What the schedule asks of the scene it draws. */
 export interface Subject {
   readonly playing: boolean;
+  /** A sharp picture stands in until ours does: no coarse one may come between. */
+  readonly hasPoster: boolean;
   /** A new frame is about to be drawn; `now` in milliseconds. */
   tick(now: number): void;
   inputs(width: number, height: number): Inputs;
@@ -46,6 +48,14 @@ interface Plan {
 
 /** After the last change things count as moving for so long. */
 const REST_MS = 180;
+/** Who waits longer for a still wants to see something meanwhile. */
+const LONG_MS = 300;
+/** Pixels that cost nothing. */
+const FEW = 64;
+/** The way to the GPU and back takes a few milliseconds; what takes longer is something else. */
+const LONGEST_WAY_MS = 8;
+/** So much longer than the way a draw must take to tell of its pixels. */
+const CLEAR_MS = 6;
 
 export class Renderer {
   canvas: HTMLCanvasElement;
@@ -60,7 +70,8 @@ export class Renderer {
   #changed = 0;
   #shown = { revision: -1, scale: 0 };
   #captures: ((blob: Blob | null) => void)[] = [];
-  #resting: (() => void)[] = [];
+  #resting: ((isSharp: boolean) => void)[] = [];
+  #isBroken = false;
   #times: number[] = [];
 
   constructor(
@@ -90,17 +101,17 @@ export class Renderer {
     this.#wanted = source;
     const painter = this.#painter;
     if (!painter) return;
-    this.subject.state("compiling");
+    this.#enter("compiling");
     const isStale = () => this.#wanted !== source || this.#painter !== painter;
     try {
       const program = await painter.program(source);
       if (isStale()) return;
       this.#program = program;
       this.#resolution.forget();
-      this.subject.state("ready");
+      this.#enter("ready");
       this.change();
     } catch (error) {
-      if (!isStale() && !(error instanceof LostError)) this.subject.state("failed", error);
+      if (!isStale() && !(error instanceof LostError)) this.#enter("failed", error);
     }
   }
 
@@ -144,8 +155,8 @@ export class Renderer {
     });
   }
 
-  /** Resolves when the sharp picture of all that was asked for stands. */
-  rest(): Promise<void> {
+  /** Whether the sharp picture of all that was asked for stands, as soon as that is known. */
+  rest(): Promise<boolean> {
     return new Promise((resolve) => {
       this.#resting.push(resolve);
       void this.#pump();
@@ -156,17 +167,19 @@ export class Renderer {
     const painter = this.#painter;
     this.#painter = null;
     this.#visible = false;
+    this.#isBroken = true;
+    this.#endRest();
     painter?.dispose();
   }
 
   #begin(): void {
     this.#program = null;
-    this.#shown.scale = 0;
+    this.#shown = { revision: -1, scale: 0 };
     try {
       this.#painter = new Painter(this.canvas, this.resources, this.transparent);
     } catch (error) {
       this.#painter = null;
-      this.subject.state("unsupported", error);
+      this.#enter("unsupported", error);
       return;
     }
     if (this.#wanted) void this.use(this.#wanted);
@@ -175,7 +188,7 @@ export class Renderer {
   #lose(): void {
     this.#painter = null;
     this.#program = null;
-    this.subject.state("lost");
+    this.#enter("lost");
   }
 
   get #stillScale(): number {
@@ -206,11 +219,27 @@ export class Renderer {
     } catch (error) {
       // Data that no texture can be made of: shown like a shader that fails, not tried each frame.
       this.#program = null;
-      this.subject.state("failed", error);
+      this.#enter("failed", error);
     } finally {
       this.#pumping = false;
     }
-    if (this.#isSharp) for (const resolve of this.#resting.splice(0)) resolve();
+    this.#endRest();
+  }
+
+  #endRest(): void {
+    // The old view's picture is not what was asked for while the new one compiles.
+    const isThere = this.#isSharp && this.#program?.source === this.#wanted;
+    if (!isThere && !this.#isBroken) return;
+    for (const resolve of this.#resting.splice(0)) resolve(isThere);
+  }
+
+  /** Tells of the state; nobody is kept waiting for a picture that does not come. */
+  #enter(state: State, error?: unknown): void {
+    this.#isBroken = state === "failed" || state === "unsupported";
+    this.subject.state(state, error);
+    if (state === "compiling" || state === "ready") return;
+    for (const resolve of this.#captures.splice(0)) resolve(null);
+    this.#endRest();
   }
 
   #plan(): Plan | null {
@@ -221,11 +250,17 @@ export class Renderer {
     };
     if (this.#captures.length) return plan(Math.max(1, this.#stillScale), false);
     if (this.#scale !== "auto") return plan(this.#scale, false);
+    const { cost } = this.#resolution;
+    if (cost === null) return plan(1, true); // Settled after the probe.
+    const pixels = this.canvas.width * this.canvas.height;
     const playing = this.subject.playing;
-    if (!playing && performance.now() - this.#changed >= REST_MS) return plan(1, true);
-    if (!playing && revision === this.#shown.revision) return null; // It may come to rest.
-    if (this.#resolution.cost === null) return plan(1, true); // Settled after the probe.
-    return plan(this.#resolution.moving(this.canvas.width * this.canvas.height), false);
+    const isNews = revision !== this.#shown.revision;
+    if (!playing && performance.now() - this.#changed >= REST_MS) {
+      // A still that takes long is heralded by a coarse picture.
+      const isAwaited = this.#shown.revision >= 0 || !this.subject.hasPoster;
+      if (!isNews || !isAwaited || cost * pixels < LONG_MS) return plan(1, true);
+    } else if (!playing && !isNews) return null; // It may come to rest.
+    return plan(this.#resolution.moving(pixels), false);
   }
 
   async #picture(plan: Plan): Promise<void> {
@@ -262,22 +297,30 @@ export class Renderer {
 
   /** What does a pixel cost? Nobody sees these draws; they grow until there is time to measure. */
   async #probe(): Promise<void> {
-    const { canvas } = this;
-    const pixels = canvas.width * canvas.height;
-    // The very first draw is for what drivers put off until then.
-    for (let most = 64; ; most = most === 64 ? PROBE_PIXELS : most * 6) {
-      const painter = this.#painter;
-      const program = this.#program;
-      if (!painter || !program) return;
-      const size = painter.size(Math.min(1, Math.sqrt(most / pixels)));
-      painter.draw(program, this.subject.inputs(...size), size, 0, size[1]);
-      const ms = await gpuDone(painter.gl);
-      if (ms === null || program !== this.#program) return;
-      if (most === 64) continue;
+    const all = this.canvas.width * this.canvas.height;
+    await this.#try(FEW); // What drivers put off until the first draw.
+    const way = await this.#try(FEW); // The way to the GPU and back.
+    if (!way) return;
+    this.#resolution.floor = Math.min(way.ms, LONGEST_WAY_MS);
+    for (let most = PROBE_PIXELS; ; most *= 6) {
+      const tried = await this.#try(most);
+      if (!tried) return;
       this.#resolution.forget();
-      this.#resolution.measure(ms, size[0] * size[1]);
-      if (ms > 8 || most >= pixels) return;
+      this.#resolution.measure(tried.ms, tried.pixels);
+      if (tried.ms > way.ms + CLEAR_MS || most >= all) return;
     }
+  }
+
+  /** Draws about so many pixels for the clock alone; null where the program went away. */
+  async #try(most: number): Promise<{ ms: number; pixels: number } | null> {
+    const painter = this.#painter;
+    const program = this.#program;
+    if (!painter || !program) return null;
+    const { width, height } = this.canvas;
+    const size = painter.size(Math.min(1, Math.sqrt(most / (width * height))));
+    painter.draw(program, this.subject.inputs(...size), size, 0, size[1]);
+    const ms = await gpuDone(painter.gl);
+    return ms === null || program !== this.#program ? null : { ms, pixels: size[0] * size[1] };
   }
 
   #fps(): number {

@@ -24,12 +24,14 @@ export const PROBE_PIXELS = 3072;
 export class Resolution {
   /** Milliseconds per pixel; null until something was measured. */
   cost: number | null = null;
+  /** Milliseconds that asking and answering take, whatever is drawn. */
+  floor = 1.5;
   #scale = 1;
 
   /** Learns from a draw. */
   measure(ms: number, pixels: number): void {
-    // Waiting for the answer itself takes a millisecond or two; small draws would look dear.
-    const now = Math.max(ms - 1.5, 0.05) / pixels;
+    // Without the way to the GPU and back small draws would look dear.
+    const now = Math.max(ms - this.floor, 0.05) / pixels;
     const known = this.cost;
     this.cost = known === null ? now : known + (now - known) * (now > known ? 0.5 : 0.25);
   }
