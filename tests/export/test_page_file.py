@@ -1,0 +1,322 @@
+"""What an exported page is made of, without a browser: its parts, its size, what it never says."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import json
+import re
+import zlib
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+import distal
+from distal.cli.application import application
+from distal.diagnostics import CompileError, LoadError
+from distal.export import payload as payload_room
+from distal.export import resources
+from distal.film.replacement import SaveError
+from distal.ir.types import Buffer, Texture, TextureShape
+from distal.lang import resources as lang
+
+# The issue's measure.
+MOST_KB = 60
+
+RINGS = '''
+"""Rings, one in another.
+
+More of them than one sees."""
+
+from distal.lang import *
+
+softness = slider("Softness", 0.3)
+tint = color("Tint", "#ff8040")
+
+
+@func
+def ring(p: vec2) -> float:
+    return abs(length(p) - 0.5) - softness
+
+
+@image
+def picture(frame: Frame) -> vec3:
+    d = ring(2.0 * frame.coord / frame.resolution - 1.0)
+    return tint * d
+'''
+
+
+class Parts(HTMLParser):
+    """The elements of a page and the texts of its scripts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.scripts: list[str] = []
+        self._inside = False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        self._inside = tag == "script"
+        if self._inside:
+            self.scripts.append("")
+
+    def handle_endtag(self, tag):
+        self._inside = False
+
+    def handle_data(self, data):
+        if self._inside:
+            self.scripts[-1] += data
+
+    @property
+    def payload(self):
+        return json.loads(self.scripts[0])
+
+
+@pytest.fixture
+def rings(tmp_path):
+    file = tmp_path / "a_file.py"
+    file.write_text(RINGS, encoding="utf-8")
+    return file
+
+
+def exported(obj, path: Path, **options) -> Parts:
+    distal.export(obj, path, **options)
+    return Parts(path.read_text(encoding="utf-8"))
+
+
+def programs(told):
+    if told["programs"]["encoding"] == "plain":
+        return told["programs"]["data"]
+    packed = base64.b64decode(told["programs"]["data"])
+    columns = json.loads(zlib.decompress(packed, -zlib.MAX_WBITS))
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def test_the_raymarchers_page_is_small(tmp_path):
+    path = tmp_path / "page.html"
+    made = distal.export(distal.load("example:raymarcher"), path)
+    assert path.stat().st_size <= MOST_KB * 1000, str(made)
+    assert set(made.parts) == {"player", "shaders", "textures", "poster"}
+    assert 0.9 * path.stat().st_size < sum(made.parts.values()) < path.stat().st_size
+    assert re.fullmatch(
+        r".*page\.html: \d+ kB \(player \d+, shaders [\d.]+, poster [\d.]+\)", str(made)
+    )
+
+
+def test_the_payload_is_what_the_player_is_promised(rings, tmp_path):
+    obj = distal.load(rings)
+    told = exported(obj, tmp_path / "p.html", params={"softness": 0.5}, duration=4.0).payload
+    assert told["format"] == 1
+    assert told["name"] == "a file"  # "picture" says nothing
+    assert told["description"] == "Rings, one in another."
+    assert told["time"] == {"start": 0.0, "duration": 4.0, "animated": False}
+    assert told["steering"] is None
+    assert told["values"] == {"softness": 0.5}
+    assert [view["name"] for view in told["views"]] == ["color", "coordinate", "signal"]
+    assert told["files"] == ["a_file.py"]
+    by_name = {parameter["name"]: parameter for parameter in told["parameters"]}
+    assert by_name["softness"] | {"default": 0.3, "low": 0.0, "high": 1.0} == by_name["softness"]
+    assert by_name["tint"]["kind"] == "color" and len(by_name["tint"]["default"]) == 3
+    color = programs(told)[told["views"][0]["program"]]
+    assert color["fragment"].startswith("#version 300 es\n") and "//" not in color["fragment"]
+    lines = color["fragment"].splitlines()
+    found = [
+        line
+        for first, last, _, line in color["lines"]
+        for text in lines[first - 1 : last]
+        if "0.5" in text and "length" in text
+    ]
+    source = rings.read_text(encoding="utf-8").splitlines()
+    assert found and all("return abs(length(p)" in source[line - 1] for line in found)
+
+
+def test_a_page_says_no_path_and_asks_for_nothing(rings, tmp_path):
+    path = tmp_path / "p.html"
+    parts = exported(distal.load(rings), path)
+    text = path.read_text(encoding="utf-8")
+    assert str(tmp_path) not in text and str(Path(distal.__file__).parent) not in text
+    addresses = [
+        value for _, attrs in parts.tags for name, value in attrs.items() if name in ("src", "href")
+    ]
+    assert addresses and all(value.startswith("data:") for value in addresses)
+    (policy,) = [
+        attrs["content"]
+        for tag, attrs in parts.tags
+        if attrs.get("http-equiv") == "Content-Security-Policy"
+    ]
+    assert policy.startswith("default-src 'none'; script-src 'sha256-")
+    assert "connect-src" not in policy and "http" not in policy and "unsafe-eval" not in policy
+
+
+def test_names_are_texts_everywhere(rings, tmp_path):
+    title = "</script></title><!-- \"x\" 'y' & \u2028 \ud800 🦄"
+    path = tmp_path / "p.html"
+    parts = exported(distal.load(rings), path, title=title)
+    shown = title.replace("\ud800", "?")
+    assert parts.payload["name"] == title
+    assert len(parts.scripts) == 2 and "<!--" not in parts.scripts[1]
+    (og,) = [attrs["content"] for _, attrs in parts.tags if attrs.get("property") == "og:title"]
+    assert og == shown
+    text = path.read_text(encoding="utf-8")
+    assert html.escape(shown, quote=True) in text
+    assert text.count("</script>") == 2
+
+
+def test_the_poster_is_the_picture(tmp_path):
+    obj = distal.load("example:raymarcher")
+    parts = exported(obj, tmp_path / "p.html", size=(320, 160), time=1.0)
+    (image,) = [attrs for tag, attrs in parts.tags if tag == "img"]
+    data = base64.b64decode(image["src"].partition(",")[2])
+    assert len(data) <= 12_000
+    shown = np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(float)
+    expected = obj.render((320, 160), time=1.0).array[..., :3] * 255.0
+    assert np.abs(shown - np.clip(expected, 0.0, 255.0)).mean() < 6.0
+    assert image["alt"] == parts.payload["description"] != ""
+
+
+def test_what_is_left_out_on_request(rings, tmp_path):
+    obj = distal.load(rings)
+    parts = exported(obj, tmp_path / "p.html", poster=False, panel=False, views=["signal"])
+    assert [tag for tag, _ in parts.tags if tag == "img"] == []
+    assert parts.payload["panel"] is False
+    assert [view["name"] for view in parts.payload["views"]] == ["color", "signal"]
+
+
+def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch):
+    compiled = payload_room._compiled
+
+    def refusing(image):
+        if "signal" in image.name or image.name.endswith(bad):
+            raise CompileError.at("it cannot be said", None)
+        return compiled(image)
+
+    bad = "nothing"
+    monkeypatch.setattr(payload_room, "_compiled", refusing)
+    path = tmp_path / "p.html"
+    obj = distal.load(rings)
+    obj_view = distal.scene.viewable.viewable(obj).image("signal").name
+    bad = obj_view
+    made = distal.export(obj, path)
+    assert dict(made.omitted) == {"signal": "it cannot be said"}
+    views = Parts(path.read_text(encoding="utf-8")).payload["views"]
+    assert [view["name"] for view in views] == ["color", "coordinate"]
+    result = CliRunner().invoke(application, ["export", str(rings), "-o", str(path)])
+    assert result.exit_code == 0
+    assert result.stderr == "warning: the view 'signal' is left out: it cannot be said\n"
+    bad = obj.name
+    with pytest.raises(CompileError, match="it cannot be said"):
+        distal.export(obj, path)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        (["{file}:ring", "-o", "{out}/a.html"], 1, "error: 'ring' is a @func; "),
+        (["{file}", "-o", "{out}/a.pdf"], 1, "error: cannot write {out}/a.pdf: it has the suffix"),
+        (
+            ["{file}", "-o", "{out}/a"],
+            1,
+            "error: cannot write {out}/a: it has no suffix; known are",
+        ),
+        (
+            ["{file}", "-o", "{out}/no/a.html"],
+            1,
+            "error: cannot write {out}/no/a.html: there is no f",
+        ),
+        (
+            ["{file}", "-o", "{out}/a.html", "--view", "nose"],
+            2,
+            "error: an @image has no view 'nose'",
+        ),
+        (
+            ["{file}", "-o", "{out}/a.html", "--set", "soft=1"],
+            2,
+            "error: there is no parameter 'soft'",
+        ),
+        (["{file}", "-o", "{out}/a.html", "--size", "big"], 2, "error: a size is WIDTHxHEIGHT"),
+        (
+            ["{file}", "-o", "{out}/a.html", "--duration", "0"],
+            2,
+            "error: a duration is more than 0",
+        ),
+        (["{file}", "-o", "{out}/a.html", "--views", "color,,"], 2, "error: --views takes names"),
+        (
+            ["{file}", "-o", "{out}/a.fs", "--embed"],
+            2,
+            "error: --embed is for pages, and {out}/a.fs",
+        ),
+        (
+            ["{file}", "-o", "{out}/a.fs", "--target", "metal"],
+            2,
+            "error: there is no target 'metal'",
+        ),
+        (["{file}", "-o", "{file}", "--target", "isf"], 2, "error: '{file}' is the scene itself"),
+    ],
+)
+def test_mistakes_are_one_clear_line_and_leave_no_file(rings, tmp_path, words, code, message):
+    place = {"file": str(rings), "out": str(tmp_path)}
+    result = CliRunner().invoke(application, ["export", *(w.format(**place) for w in words)])
+    assert result.exit_code == code, result.output
+    assert result.stderr.startswith(message.format(**place))
+    assert sorted(tmp_path.iterdir()) == [rings]
+
+
+def test_a_mistake_in_python_too(rings, tmp_path):
+    obj = distal.load(rings)
+    with pytest.raises(LoadError, match="is a @func"):
+        distal.export(distal.load(rings, "ring"), tmp_path / "a.html")
+    with pytest.raises(SaveError, match="suffix"):
+        distal.export(obj, tmp_path / "a.xyz")
+    with pytest.raises(TypeError, match="'embed' is no option of shadertoy; options: params, "):
+        distal.export(obj, tmp_path / "a.glsl", embed=True)
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        distal.export(obj, tmp_path / "a.html", params={"softness": 9.0})
+    with pytest.raises(ValueError, match="no parameter 'nose'"):
+        distal.export(obj, tmp_path / "a.glsl", params={"nose": 1})
+    assert sorted(tmp_path.iterdir()) == [rings]
+
+
+def texture(data):
+    made = lang.Texture2D(data)
+    return resources.resource(made, Texture(TextureShape.FLAT))
+
+
+@pytest.mark.parametrize(
+    ("data", "format", "components"),
+    [
+        (np.arange(48, dtype=np.uint8).reshape(4, 4, 3), "rgba8", 3),
+        (np.full((2, 2, 4), 0.5, np.float32), "float16", 4),
+        ((np.arange(48).reshape(4, 4, 3) / 47.0) ** 2.2, "float16", 3),
+        (np.random.default_rng(0).random((20, 20)), "float32", 3),
+        (np.full((2, 2, 3), 1e6), "float32", 3),
+    ],
+)
+def test_a_texture_is_as_narrow_as_it_can_be(data, format, components):
+    told = texture(data)
+    assert (told["format"], told["components"]) == (format, components)
+    kinds = {"rgba8": np.uint8, "float16": np.float16, "float32": np.float32}
+    numbers = np.frombuffer(base64.b64decode(told["data"]), kinds[format]).astype(np.float64)
+    numbers = numbers.reshape(told["size"][1], told["size"][0], components)[::-1]
+    if format == "rgba8":
+        numbers = numbers / 255.0
+    wide = np.asarray(data, np.float64) / (255.0 if np.asarray(data).dtype == np.uint8 else 1.0)
+    wide = wide if wide.ndim == 3 else np.repeat(wide[..., None], 3, axis=-1)
+    assert np.allclose(numbers, wide[..., :components], rtol=6e-4, atol=1e-7)
+
+
+def test_buffers_keep_every_bit():
+    for numbers, kind in (([1, -2, 2**31 - 1], "int32"), ([0.1, 1e30], "float32")):
+        buffer = lang.Buffer(numbers)
+        told = resources.resource(buffer, Buffer(buffer.element))
+        assert (told["size"], told["components"], told["format"]) == ([len(numbers)], 1, kind)
+        back = np.frombuffer(base64.b64decode(told["data"]), kind)
+        assert back.tolist() == np.array(numbers, kind).tolist()
+    told = resources.resource(lang.Buffer([(1.0, 2.0, 3.0)]), Buffer(distal.ir.types.VEC3))
+    assert (told["size"], told["components"]) == ([1], 3)
