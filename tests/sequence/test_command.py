@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+import distal
 from distal.cli.application import application
 from tests.sequence.moving import decode, scene_file
 
@@ -69,3 +70,10 @@ def test_without_pyav_it_says_what_to_install(run, monkeypatch):
     )
     result = run("-o", "frames/%02d.png", "--duration", "0.1", "--fps", "10", "--size", "16x12")
     assert result.exit_code == 0, result.output
+
+
+def test_python_knows_it_by_one_name(moving, tmp_path):
+    made = distal.video(moving, tmp_path / "%d.png", duration=0.2, fps=10, size=(16, 12))
+    assert str(made).startswith(f"{tmp_path / '%d.png'}: 2 frames, 16x12, 0.2 s, ")
+    again = moving.video(tmp_path / "%d.png", duration=0.2, fps=10, size=(16, 12))
+    assert (again.frames, again.rendered) == (2, 0)

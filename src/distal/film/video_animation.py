@@ -188,8 +188,7 @@ def _tag(context: Any) -> None:
 
 def _frames(made: Animation) -> Iterator[Any]:
     """The frames in one format: with alpha if any has it."""
-    modes = {_mode(file) for file in made.files}
-    alpha = made.quality is not None and "RGBA" in modes
+    alpha = any(_mode(file) == "RGBA" for file in made.files)
     for i, file in enumerate(made.files):
         yield _frame(file, i, alpha=alpha)
 
