@@ -112,6 +112,8 @@ def test_a_start_value_is_drawn_and_a_slider_changes_the_picture(tmp_path: Path)
         assert close(page.color(10, 10), (255, 0, 255))
         assert page.ask("window.told.at(-1)") == {"name": "red", "value": 1}
         assert page.page.get_by_role("spinbutton", name="Red").input_value() == "1"
+        slider.press("ArrowLeft")
+        assert page.ask("player.parameters()") == {"red": 0.995}
         page.page.get_by_role("button", name="Reset Red").click()
         page.settle()
         assert close(page.color(10, 10), (128, 0, 255))
@@ -576,6 +578,25 @@ def test_code_is_copied(tmp_path: Path) -> None:
 
 
 # Accidents
+
+
+def test_while_the_driver_compiles_the_page_says_so_and_lives(tmp_path: Path) -> None:
+    # A driver that is done when the test says so; the question of the extension is 0x91B1.
+    before = (
+        "window.done = false; const real = WebGL2RenderingContext.prototype.getProgramParameter;"
+        "WebGL2RenderingContext.prototype.getProgramParameter = function (program, what) {"
+        " return what === 0x91b1 && !window.done ? false : real.call(this, program, what) }"
+    )
+    with opened(tmp_path, reddish(), quiet=False, before=before, viewport=WIDE) as page:
+        page.page.get_by_text("Compiling Color …").first.wait_for()
+        assert page.page.get_by_role("status").inner_text() == "Compiling Color …"
+        assert page.page.locator("[data-distal] img").is_visible()
+        page.page.get_by_role("slider", name="Red").press("End")  # nothing is held up
+        assert page.ask("await player.screenshot()") is None
+        page.page.evaluate("window.done = true")
+        page.settle()
+        assert page.page.get_by_text("Compiling").count() == 0
+        assert close(page.color(10, 10), (255, 0, 255))
 
 
 def test_a_lost_context_is_told_and_mended(tmp_path: Path) -> None:
