@@ -48,7 +48,9 @@ export async function link(gl: WebGL2RenderingContext, source: Program): Promise
       await pause(4);
     }
   } else {
-    await nextFrame(); // The question below blocks: let the page say first what it waits for.
+    // The question below blocks: let the page first show what it waits for.
+    await nextFrame();
+    await pause(0);
   }
   const linked = gl.getProgramParameter(handle, gl.LINK_STATUS) as boolean;
   if (gl.isContextLost()) throw new LostError();
