@@ -118,14 +118,19 @@ class Window:
         return shown
 
     def settled(self) -> dict[str, Any]:
-        """What is on the screen once nothing was drawn for a while."""
-        count = -1
-        while count != len(self.events) or not self.events:
-            count = len(self.events)
-            time.sleep(0.7)
+        """What is on the screen once it is sharp and nothing was drawn for a while."""
+        end = time.monotonic() + PATIENCE_S
+        before: list[dict[str, Any]] = []
+        while time.monotonic() < end:
+            time.sleep(0.5)
             assert self.process.poll() is None, self.errors
-        shown: dict[str, Any] = next(e for e in reversed(self.events) if e["event"] == "drawn")
-        return shown["shown"]  # type: ignore[no-any-return]
+            events = self.events
+            drawn = [event["shown"] for event in events if event["event"] == "drawn"]
+            if drawn and drawn[-1]["share"] == 1.0 and events == before:
+                shown: dict[str, Any] = drawn[-1]
+                return shown
+            before = events
+        raise AssertionError(f"it does not come to rest; {self.errors}")
 
     def hands(self, *words: str | int) -> None:
         """Move the pointer, press buttons and keys."""

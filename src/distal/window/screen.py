@@ -7,6 +7,7 @@ that knows glfw.
 from __future__ import annotations
 
 import os
+import re
 import sys
 import tempfile
 import warnings
@@ -15,12 +16,13 @@ from typing import Any, Final
 import glfw
 from rendercanvas.glfw import RenderCanvas  # type: ignore[import-untyped, unused-ignore]
 
-from distal.devices.adapters import chosen, opened, wgpu_module
+from distal.devices.adapters import adapters, chosen, opened, wgpu_module
 from distal.diagnostics import DeviceError
 from distal.window.presenters import Maker, PixelMaker, TextureMaker
 from distal.window.surface import Surface
 
 _NO_WINDOW: Final = "no window can be opened here"
+_MEND: Final = "install the GPU's driver, or in software: apt-get install mesa-vulkan-drivers"
 LARGEST_SIDE: Final = 8192
 
 
@@ -38,9 +40,14 @@ def check_display() -> None:
         warnings.simplefilter("always")
         ready = glfw.init()
     if not ready:
-        reason = str(said[-1].message) if said else "the display cannot be reached"
-        name = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-        raise DeviceError(f"{_NO_WINDOW}: {reason}" + (f" (display '{name}')" if name else ""))
+        reason = _words_of_glfw(str(said[-1].message)) if said else "the display does not answer"
+        raise DeviceError(f"{_NO_WINDOW}: {reason}")
+
+
+def _words_of_glfw(message: str) -> str:
+    """What glfw says, without its number: "(65550) b'X11: …'"."""
+    found = re.fullmatch(r"\(\d+\) b?(['\"])(.*)\1", message)
+    return found[2] if found else message
 
 
 def open_canvas(size: tuple[int, int], title: str) -> Any:
@@ -56,6 +63,9 @@ def open_surface(canvas: Any, device: str) -> tuple[Surface, Maker]:
     Raises:
         DeviceError: There is no adapter, or it cannot draw on this window.
     """
+    # Asked first: without any driver wgpu does not fail on a window, it ends the process.
+    if not adapters():
+        raise DeviceError(f"{_NO_WINDOW}: no graphics driver; {_MEND}")
     if device.startswith("gpu"):
         return _on_gpu(canvas, device)
     return Surface(canvas, _any_device(canvas)), PixelMaker(device)
@@ -87,8 +97,7 @@ def _any_device(canvas: Any) -> Any:
         return adapter.request_device_sync()
     except (RuntimeError, wgpu.GPUError) as error:
         raise DeviceError(
-            f"{_NO_WINDOW}: no graphics driver draws on it ({_first_line(error)}); in software:"
-            " apt-get install mesa-vulkan-drivers"
+            f"{_NO_WINDOW}: no graphics driver draws on it ({_first_line(error)}); {_MEND}"
         ) from error
 
 
