@@ -78,9 +78,9 @@ def test_materials_are_numbered_in_the_order_of_the_tree():
     parts = [
         red.translate(-1.5, 0, 0),
         Sphere(0.3),  # unpainted: the scene's own material, counted where it is met first
-        blue.translate(1.5, 0, 0),
         twice.translate(0, 1.2, 0),
         twice.translate(0, -1.2, 0),
+        blue.translate(1.5, 0, 0),
     ]
     scene = Scene(parts, camera=Camera((0, 0, 5), fov=FOV))
     found = scene.render(size=(WIDTH, HEIGHT), layers=["material"]).layers["material"]
@@ -92,8 +92,8 @@ def test_materials_are_numbered_in_the_order_of_the_tree():
 
     assert at(-1.5, 0) == 1
     assert at(0, 0) == 2
-    assert at(1.5, 0) == 3
-    assert at(0, 1.2) == at(0, -1.2) == 4
+    assert at(0, 1.2) == at(0, -1.2) == 3
+    assert at(1.5, 0) == 4
     assert at(-1.8, 1.4) == 0
     assert set(np.unique(found)) == {0, 1, 2, 3, 4}
 
