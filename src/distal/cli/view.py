@@ -47,7 +47,7 @@ def view(
     paused: Annotated[bool, typer.Option("--paused", help="Begin with the time standing.")] = False,
 ) -> None:
     """Show a scene in a window; saving its file shows it anew. H in the window tells the keys."""
-    from distal.window.app import view as show
+    from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display
 
     width_height, seconds = read_size(size, LARGEST_SIDE), read_time(at)

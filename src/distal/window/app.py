@@ -1,13 +1,12 @@
 """The window: joins what a person does, what is made, and what is on the screen.
 
-What flows in: a scene, where it came from, a device. What flows out: an exit code when the window
-is closed. The parts that can be thought about alone stand in the other modules; here are events,
-timers and the order of things.
+What flows in: events of a canvas, timers, what the worker has done. What flows out: orders to the
+worker, drawings. The parts that can be thought about alone stand in the other modules; here is the
+order of things.
 """
 
 from __future__ import annotations
 
-import signal
 import sys
 import time
 import traceback
@@ -18,16 +17,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
-from distal.lang.parameter_values import Value
-from distal.loading import EXAMPLE_PREFIX, loaded_from
-from distal.scene.viewable import viewable
+from distal.loading import EXAMPLE_PREFIX
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
 from distal.window.making import Making, Order
 from distal.window.overlay import Overlay, Reading, reading
 from distal.window.presenters import Made, Maker, picture
 from distal.window.reload import PERIOD_S, Watch, files_in, load_again
-from distal.window.screen import check_display, open_canvas, open_surface, set_full_screen
+from distal.window.screen import set_full_screen
 from distal.window.session import Session, Shot
 from distal.window.worker import Worker
 
@@ -40,7 +37,6 @@ _SLOW_S: Final = 0.4  # after which a person is told what is being waited for
 _REPEAT_AFTER_S: Final = 0.35
 _REPEAT_S: Final = 1 / 15
 _WHEEL_NOTCH: Final = 100.0
-_PATIENCE_S: Final = 0.5
 _KIND_MISTAKES: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
 
 
@@ -404,86 +400,3 @@ def _facts(order: Order) -> dict[str, Any]:
         "pixels": order.pixels,
         "share": order.share,
     }
-
-
-def view(
-    obj: Any,
-    path: str,
-    name: str | None,
-    *,
-    size: tuple[int, int],
-    device: str,
-    time_s: float = 0.0,
-    params: Mapping[str, Value] | None = None,
-    seen_as: str = "color",
-    scale: float = 1.0,
-    paused: bool = False,
-) -> tuple[int, bool]:
-    """Show what was loaded until the window is closed.
-
-    Args:
-        obj: What ``distal.load(path, name)`` gave.
-        path: Where it came from, to load it again when it is saved.
-        name: Which object of the file.
-        size: The window's width and height in its own units.
-        device: What renders, as ``render`` takes it; "auto" is resolved already.
-        time_s: Seconds to begin at.
-        params: Values of parameters by name.
-        seen_as: The view to begin with.
-        scale: Pixels that are rendered for each of the window's, along a side.
-        paused: Whether the time stands at first.
-
-    Returns:
-        The exit code, 0 or 130, and whether everything has ended: what is still being compiled
-        cannot be stopped, and the process should end without waiting for it.
-
-    Raises:
-        CompileError, LoadError: It cannot be shown.
-        DeviceError: No window can be opened here, or the device is missing.
-        ValueError: There is no such view.
-    """
-    check_display()
-    known = loaded_from(obj)
-    origin = Origin(path, name, known.files if known is not None else ())
-    shown = viewable(obj, params, time_s)
-    if seen_as not in shown.views:
-        raise ValueError(f"there is no view '{seen_as:.40}'; views: {', '.join(shown.views)}")
-    canvas = open_canvas(size, f"{origin.title} - distal")
-    try:
-        surface, maker = open_surface(canvas, device)
-        session = Session(
-            shown, time=time_s, values=params, view=seen_as, paused=paused, now=time.monotonic()
-        )
-        loop = canvas._rc_canvas_group.get_loop()
-        application = Application(session, origin, maker, canvas, surface, loop, scale=scale)
-        interrupted = _run(application, canvas, loop)
-    finally:
-        canvas.close()
-    ended = application.stop(_PATIENCE_S)
-    return (130 if interrupted else 0), ended
-
-
-def _run(application: Application, canvas: Any, loop: Any) -> bool:
-    """Run until the window is closed; whether that was ctrl-C."""
-    interrupted = False
-
-    def interrupt(_signal: int, _frame: object) -> None:
-        nonlocal interrupted
-        if interrupted:  # asked twice: whatever it is that does not end
-            raise KeyboardInterrupt
-        interrupted = True
-        # Not closed here: this may be in the middle of drawing on it.
-        loop.call_soon_threadsafe(canvas.close)
-
-    def begin() -> None:
-        # The loop has set its own by now, which would tell of it on the terminal.
-        signal.signal(signal.SIGINT, interrupt)
-        application.start()
-
-    before = signal.getsignal(signal.SIGINT)
-    loop.call_soon(begin)
-    try:
-        loop.run()
-    finally:
-        signal.signal(signal.SIGINT, before)
-    return interrupted

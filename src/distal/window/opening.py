@@ -1,0 +1,105 @@
+"""Opens a window on a scene and keeps it until it is closed.
+
+What flows in: what ``distal.load`` gave and where it came from, a device. What flows out: an exit
+code.
+"""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Mapping
+from typing import Any, Final
+
+from distal.lang.parameter_values import Value
+from distal.loading import loaded_from
+from distal.scene.viewable import viewable
+from distal.window.app import Application, Origin
+from distal.window.screen import check_display, open_canvas, open_surface
+from distal.window.session import Session
+
+# What is in the middle of compiling is not waited for any longer than a person would.
+_PATIENCE_S: Final = 0.5
+
+
+def view(
+    obj: Any,
+    path: str,
+    name: str | None,
+    *,
+    size: tuple[int, int],
+    device: str,
+    time_s: float = 0.0,
+    params: Mapping[str, Value] | None = None,
+    seen_as: str = "color",
+    scale: float = 1.0,
+    paused: bool = False,
+) -> tuple[int, bool]:
+    """Show what was loaded until the window is closed.
+
+    Args:
+        obj: What ``distal.load(path, name)`` gave.
+        path: Where it came from, to load it again when it is saved.
+        name: Which object of the file.
+        size: The window's width and height in its own units.
+        device: What renders, as ``render`` takes it; "auto" is resolved already.
+        time_s: Seconds to begin at.
+        params: Values of parameters by name.
+        seen_as: The view to begin with.
+        scale: Pixels that are rendered for each of the window's, along a side.
+        paused: Whether the time stands at first.
+
+    Returns:
+        The exit code, 0 or 130, and whether everything has ended: what is still being compiled
+        cannot be stopped, and the process should end without waiting for it.
+
+    Raises:
+        CompileError, LoadError: It cannot be shown.
+        DeviceError: No window can be opened here, or the device is missing.
+        ValueError: There is no such view.
+    """
+    check_display()
+    known = loaded_from(obj)
+    origin = Origin(path, name, known.files if known is not None else ())
+    shown = viewable(obj, params, time_s)
+    if seen_as not in shown.views:
+        raise ValueError(f"there is no view '{seen_as:.40}'; views: {', '.join(shown.views)}")
+    canvas = open_canvas(size, f"{origin.title} - distal")
+    try:
+        surface, maker = open_surface(canvas, device)
+        session = Session(
+            shown, time=time_s, values=params, view=seen_as, paused=paused, now=time.monotonic()
+        )
+        loop = canvas._rc_canvas_group.get_loop()
+        application = Application(session, origin, maker, canvas, surface, loop, scale=scale)
+        interrupted = _run(application, canvas, loop)
+    finally:
+        canvas.close()
+    ended = application.stop(_PATIENCE_S)
+    return (130 if interrupted else 0), ended
+
+
+def _run(application: Application, canvas: Any, loop: Any) -> bool:
+    """Run until the window is closed; whether that was ctrl-C."""
+    interrupted = False
+
+    def interrupt(_signal: int, _frame: object) -> None:
+        nonlocal interrupted
+        if interrupted:  # asked twice: whatever it is that does not end
+            raise KeyboardInterrupt
+        interrupted = True
+        # Not closed here: this may be in the middle of drawing on it.
+        loop.call_soon_threadsafe(canvas.close)
+
+    def begin() -> None:
+        # The loop has set its own by now, which would tell of it on the terminal.
+        signal.signal(signal.SIGINT, interrupt)
+        application.start()
+
+    before = signal.getsignal(signal.SIGINT)
+    loop.call_soon(begin)
+    try:
+        loop.run()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    return interrupted
