@@ -33,7 +33,7 @@ _STYLE: Final = (
     "font:14px/1.5 system-ui,sans-serif}"
     ".distal{display:block;position:relative;height:100vh;height:100dvh}"
     ".distal>img{display:block;width:100%;height:100%;object-fit:contain}"
-    ".distal>p,noscript{position:absolute;inset:auto 0 1em;text-align:center}"
+    "noscript{position:absolute;inset:auto 0 0;padding:.6em;text-align:center;background:Canvas}"
 )
 # A circle with a ring around it, so that no browser asks for /favicon.ico.
 _ICON: Final = (

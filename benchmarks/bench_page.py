@@ -1,0 +1,63 @@
+"""How large the raymarcher's page is, and how soon it shows its first picture.
+
+The goals: at most 60 kB; the first frame in headless Chromium on SwiftShader within 1.5 s of the
+navigation, at 320x240. The page itself marks the moment its first picture is finished
+(``distal:first-frame``); times count from the start of the navigation. Each run is a context of its
+own, so that no compiled shader is left from the run before.
+
+    .venv/bin/python benchmarks/bench_page.py [EXAMPLE …]
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+# The tests' browser is looked for where the repository is, wherever this is started from.
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import distal
+from tests.browser import BrowserUnavailableError, offline_page
+
+RUNS = 7
+SIZE = {"width": 320, "height": 240}
+MOST_KB, MOST_S = 60.0, 1.5
+LIMIT_MS = 60_000
+MARK = "() => performance.getEntriesByName('distal:first-frame')[0]?.startTime"
+
+
+def first_frame_s(page: Path) -> float:
+    """From the start of the navigation to a finished first picture."""
+    with offline_page(page, viewport=SIZE) as watched:
+        found = watched.page.wait_for_function(MARK, timeout=LIMIT_MS)
+        return float(found.json_value()) / 1000.0
+
+
+def main() -> int:
+    """Measure and print; 1 where a goal is missed."""
+    names = sys.argv[1:] or ["raymarcher"]
+    reached = True
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            page = Path(folder, f"{name}.html")
+            made = distal.export(distal.load(f"example:{name}"), page)
+            print(made)
+            try:
+                first_frame_s(page)  # starts the browser
+                times = sorted(first_frame_s(page) for _ in range(RUNS))
+            except BrowserUnavailableError as error:
+                print(f"  no browser: {error}")
+                return 1
+            median = statistics.median(times)
+            size = page.stat().st_size / 1000.0
+            print(f"  first frame: median {median:.2f} s, {times[0]:.2f} to {times[-1]:.2f} s")
+            if name == "raymarcher":
+                reached = size <= MOST_KB and median <= MOST_S
+                print(f"  goals: {size:.1f} of {MOST_KB:.0f} kB, {median:.2f} of {MOST_S:.1f} s")
+    return 0 if reached else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
