@@ -22,10 +22,33 @@ struct Nearest {
 
 const float[3] table = float[3](0.2, 0.9, 0.4);
 
+// elementary.py:50
+float sine_near_zero(float r) {
+    float s = r * r;
+    float p = -0.00019809778 + s * 2.606103e-6;
+    p = 0.008333069 + s * p;
+    p = -0.1666666 + s * p;
+    return r + r * s * p;
+}
+
+// careful.py:21
+float sine(float x) {
+    float n = floor(x * 0.15915494 + 0.25) + 0.25;
+    float rest = x - n * 6.28125 - n * 0.0019353072;
+    return sine_near_zero(1.5707964 - abs(rest));
+}
+
+// careful.py:30
+float cosine(float x) {
+    float n = floor(x * 0.15915494 + 0.5);
+    float rest = x - n * 6.28125 - n * 0.0019353072;
+    return sine_near_zero(1.5707964 - abs(rest));
+}
+
 // scene.py:39
 vec2 rotated(vec2 p, float angle) {
-    float shared_0 = cos(angle);
-    float shared_1 = sin(angle);
+    float shared_0 = cosine(angle);
+    float shared_1 = sine(angle);
     return mat2(vec2(shared_0, shared_1), vec2(-shared_1, shared_0)) * p;
 }
 

@@ -1,8 +1,9 @@
-"""The CPU's elementary functions against NumPy in 64 bits: the errors that their texts promise."""
+"""Our elementary functions against NumPy in 64 bits: the errors that their texts promise."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from distal.frontend import lower_overload
 from distal.ir.nodes import EntryKind, Module
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import FLOAT
-from distal.lang.prelude import elementary
+from distal.lang.prelude import careful, elementary
 from distal.passes import decompose
 from distal.passes.context import Context
 from distal.prelude_library import PreludeLibrary
@@ -43,9 +44,9 @@ EXACT: dict[str, Callable[..., Reals]] = {
 }
 
 
-def run(name: str, *args: Reals) -> Reals:
+def run(name: str, *args: Reals, room: ModuleType = elementary) -> Reals:
     """A prelude function of floats, as the vector backend gets it, in 32 bits."""
-    functions = lower_overload(getattr(elementary, name), (FLOAT,) * len(args))
+    functions = lower_overload(getattr(room, name), (FLOAT,) * len(args))
     module = Module(functions, functions[-1].name, EntryKind.FUNCTION)
     module = decompose.run(module, Context(VECTOR_CPU, PreludeLibrary()))
     values = [a.astype(np.float32) for a in args]
@@ -90,6 +91,20 @@ def test_error_in_units_of_the_last_place(name: str, low: float, high: float, ul
 def test_absolute_error_far_from_zero(name: str, reach: float, error: float) -> None:
     x = spread(-reach, reach)
     assert np.max(np.abs(run(name, x) - EXACT[name](x))) <= error
+
+
+@pytest.mark.parametrize("name", ["sine", "cosine"])
+@pytest.mark.parametrize(("reach", "error"), [(10.0, 2.5e-7), (100.0, 2.5e-7), (1e4, 1e-6)])
+def test_absolute_error_of_the_careful_ones(name: str, reach: float, error: float) -> None:
+    x = spread(-reach, reach)
+    assert np.max(np.abs(run(name, x, room=careful) - EXACT[name](x))) <= error
+
+
+def test_error_of_the_careful_tangent() -> None:
+    x = spread(-1.4, 1.4)
+    exact = np.tan(x)
+    off = np.abs(run("tangent", x, room=careful) - exact) / (1.0 + np.abs(exact))
+    assert np.max(off) <= 1e-6
 
 
 def test_power() -> None:

@@ -66,6 +66,8 @@ class Intrinsic:
         glsl100: Spelling for GLSL ES 1.00 where it differs from ``glsl``.
         wgsl: Spelling.
         llvm: Spelling.
+        careful: The prelude function that stands in on targets whose drivers are rough
+            (``Target.rough``); else they spell the row as their family does.
         derivative: The rule in ``distal.ir.derivatives``; every row that gives floats has one.
         hidden: Not a name of the language: only prelude code and passes use it.
     """
@@ -83,6 +85,7 @@ class Intrinsic:
     glsl100: str | None = None
     wgsl: str | None = None
     llvm: str | None = None
+    careful: str | None = None
     hidden: bool = False
     derivative: derivatives.Rule | None = None
 
@@ -189,16 +192,21 @@ _ELEMENTARY = (
          glsl="pow({0}, {1})", wgsl="pow({0}, {1})", scene="elementary.power", llvm=SCENE,
          rtol=4e-6, atol=1e-6, hidden=True, derivative=derivatives.power),
     _row("sin", "Sine.", _ONE, (UNARY,), (_R,), lambda xp, x: xp.sin(x),
-         llvm="@elementary.sine", **_CLOSE, derivative=derivatives.sine),
+         llvm="@elementary.sine", careful="careful.sine",
+         **_CLOSE, derivative=derivatives.sine),
     _row("cos", "Cosine.", _ONE, (UNARY,), (_R,), lambda xp, x: xp.cos(x),
-         llvm="@elementary.cosine", **_CLOSE, derivative=derivatives.cosine),
+         llvm="@elementary.cosine", careful="careful.cosine",
+         **_CLOSE, derivative=derivatives.cosine),
     _row("tan", "Tangent.", _ONE, (UNARY,), ((-1.4, 1.4),), lambda xp, x: xp.tan(x),
-         llvm="@elementary.tangent", rtol=1e-6, atol=1e-6, derivative=derivatives.tangent),
+         llvm="@elementary.tangent", careful="careful.tangent",
+         rtol=1e-6, atol=1e-6, derivative=derivatives.tangent),
     _row("asin", "Arc sine, from -pi/2 to pi/2.", _ONE, (UNARY,), (_UNIT,),
-         lambda xp, x: xp.arcsin(x), llvm="@elementary.arc_sine", rtol=5e-4, atol=5e-4,
+         lambda xp, x: xp.arcsin(x), llvm="@elementary.arc_sine", careful="elementary.arc_sine",
+         rtol=5e-4, atol=5e-4,
          derivative=derivatives.arc_sine),
     _row("acos", "Arc cosine, from 0 to pi.", _ONE, (UNARY,), (_UNIT,),
-         lambda xp, x: xp.arccos(x), llvm="@elementary.arc_cosine", rtol=5e-4, atol=5e-4,
+         lambda xp, x: xp.arccos(x), llvm="@elementary.arc_cosine", careful="elementary.arc_cosine",
+         rtol=5e-4, atol=5e-4,
          derivative=derivatives.arc_cosine),
     _row("atan", "Arc tangent, from -pi/2 to pi/2.", _ONE, (UNARY,), (_R,),
          lambda xp, x: xp.arctan(x), llvm="@elementary.arc_tangent", rtol=3e-5, atol=5e-6,

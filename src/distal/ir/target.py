@@ -30,6 +30,8 @@ class Target:
         saturating_cast: Its float to int conversion saturates and gives 0 for NaN.
         texel_fetch: Reads single texels and sizes.
         samples: Filters textures itself (else the prelude's filter over single texels).
+        rough: Its drivers' own sine and the like may be off by what a picture shows; the table's
+            ``careful`` functions stand in. Texts for people and their sites keep the short names.
         inline: Wants small functions inlined.
         predicated: Wants loops without break, continue and return inside (see passes.predicate).
     """
@@ -44,5 +46,6 @@ class Target:
     saturating_cast: bool = False
     texel_fetch: bool = True
     samples: bool = True
+    rough: bool = False
     inline: bool = False
     predicated: bool = False

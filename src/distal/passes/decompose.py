@@ -223,6 +223,8 @@ class _Body:
     def _builtin(self, e: Builtin) -> Expr:
         row = INTRINSICS[e.name]
         family = self._target.family
+        if self._target.rough and row.careful is not None:
+            return self._scene(e, row.careful, e.args, e.name)
         spelling = row.spelling(family)
         # GLSL ES 1.00 has the functions of numbers for floats only.
         if family == "glsl100" and row.scene and kind_of(e.args[0].type) in _WHOLE:
