@@ -1,7 +1,7 @@
 // A hand-written rival of the raymarcher example for WebGPU: the same scene, algorithm and constants,
 // written the way a shader author would. What only changes from frame to frame is computed once per
 // pixel, outside the marching loops; the ground's material is asked for once, at the hit.
-// Draw three vertices without a buffer; row 0 of the target is the top of the picture.
+// Draw three vertices without a buffer, or dispatch a group for each 8x8 pixels; row 0 is the top.
 
 struct Frame {
     resolution: vec2f,
@@ -9,6 +9,7 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read_write> pixels: array<vec4f>; // of compute_main alone
 
 const MARCH_STEPS = 96;
 const SHADOW_STEPS = 48;
@@ -97,20 +98,13 @@ fn shade(origin: vec3f, ray: vec3f, t: f32) -> vec3f {
     return mix(lit, sky(ray), saturate(1.0 - exp(-0.02 * t * t)));
 }
 
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(corner * 4.0 - 1.0, 0.0, 1.0);
-}
-
-@fragment
-fn fragment_main(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+fn picture(pixel: vec2f) -> vec4f {
     ball_y = 0.2 * sin(frame.time * 1.5);
     let c = cos(frame.time * 0.8);
     let s = sin(frame.time * 0.8);
     ring_spin = mat2x2f(c, s, -s, c);
 
-    let centered = (2.0 * pixel.xy - frame.resolution) / frame.resolution.y;
+    let centered = (2.0 * pixel - frame.resolution) / frame.resolution.y;
     let uv = vec2f(centered.x, -centered.y);
     let orbit = frame.time * 0.4;
     let eye = vec3f(3.0 * cos(orbit), 0.8 + 0.2 * sin(frame.time * 0.3), 3.0 * sin(orbit));
@@ -127,4 +121,24 @@ fn fragment_main(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         color = sky(ray);
     }
     return vec4f(color / (1.0 + color), 1.0);
+}
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
+    return vec4f(corner * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment_main(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+    return picture(pixel.xy);
+}
+
+@compute @workgroup_size(8, 8)
+fn compute_main(@builtin(global_invocation_id) id: vec3u) {
+    let size = vec2u(frame.resolution);
+    if (any(id.xy >= size)) {
+        return;
+    }
+    pixels[id.y * size.x + id.x] = picture(vec2f(id.xy) + 0.5);
 }

@@ -6,14 +6,16 @@ struct Uniforms {
     tile: vec4u,  // the part to compute: corner, size; zeros: the whole picture
 }
 
-@group(0) @binding(0) var<uniform> uniforms: Uniforms;
+@group(0) @binding(0) var<uniform> uniforms_input: Uniforms;
+var<private> uniforms: Uniforms;
 
 // Values that are the same in all pixels, computed by frame_main.
 struct Frame {
     frame_0: f32,
 }
 
-@group(0) @binding(1) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> frame_input: Frame;
+var<private> frame: Frame;
 @group(0) @binding(2) var<storage, read_write> frame_output: Frame;
 
 @group(0) @binding(3) var<storage, read_write> pixels: array<vec4f>;
@@ -73,6 +75,8 @@ fn pixel(coord: vec2f) -> vec4f {
 
 @compute @workgroup_size(8, 8)
 fn compute_main(@builtin(global_invocation_id) id: vec3u) {
+    uniforms = uniforms_input;
+    frame = frame_input;
     let part = uniforms.tile;
     let size = select(vec2u(uniforms.resolution), part.zw, part.z > 0u);
     if (id.x >= size.x || id.y >= size.y) {
@@ -87,6 +91,7 @@ fn compute_main(@builtin(global_invocation_id) id: vec3u) {
 // Run once for each picture, before the pixels.
 @compute @workgroup_size(1)
 fn frame_main() {
+    uniforms = uniforms_input;
     let frame_0 = 1.0 + 0.25 * sin(uniforms.time);
     frame_output.frame_0 = frame_0;
 }

@@ -6,14 +6,16 @@ struct Uniforms {
     tile: vec4u,  // the part to compute: corner, size; zeros: the whole picture
 }
 
-@group(0) @binding(0) var<uniform> uniforms: Uniforms;
+@group(0) @binding(0) var<uniform> uniforms_input: Uniforms;
+var<private> uniforms: Uniforms;
 
 // Values that are the same in all pixels, computed by frame_main.
 struct Frame {
     frame_0: f32,
 }
 
-@group(0) @binding(1) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> frame_input: Frame;
+var<private> frame: Frame;
 @group(0) @binding(2) var<storage, read_write> frame_output: Frame;
 
 struct Nearest {
@@ -78,6 +80,8 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    uniforms = uniforms_input;
+    frame = frame_input;
     // Positions count from the top, coordinates from the bottom.
     let center = position.xy + vec2f(uniforms.tile.xy);
     return pixel(vec2f(center.x, uniforms.resolution.y - center.y));
@@ -86,6 +90,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
 // Run once for each picture, before the pixels.
 @compute @workgroup_size(1)
 fn frame_main() {
+    uniforms = uniforms_input;
     let frame_0 = 1.0 + 0.25 * sin(uniforms.time);
     frame_output.frame_0 = frame_0;
 }

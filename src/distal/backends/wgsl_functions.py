@@ -8,7 +8,7 @@ points: ``arguments`` holds a run of words for each leaf of the arguments, one w
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Final, assert_never
 
 from distal.backends.module_names import ModuleNames
@@ -127,8 +127,10 @@ def function_binding_lines(function: Function) -> list[str]:
     return lines
 
 
-def function_entry_lines(function: Function, writer: WgslWriter, names: ModuleNames) -> list[str]:
-    """The entry point; none for a function that no host can call."""
+def function_entry_lines(
+    function: Function, writer: WgslWriter, names: ModuleNames, first: Sequence[str]
+) -> list[str]:
+    """The entry point, ``first`` its first lines; none for a function that no host can call."""
     mapping = maps_pixels(function)
     if not mapping and not _is_callable(function):
         return []
@@ -139,6 +141,7 @@ def function_entry_lines(function: Function, writer: WgslWriter, names: ModuleNa
         f"fn {'pixels_main' if mapping else 'points_main'}(",
         "    @builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u",
         ") {",
+        *first,
         f"    let {here} = id.x + id.y * groups.x * {WORKGROUP}u;",
     ]
     leaves = 1 if mapping else leaf_count(function.result)
