@@ -34,6 +34,8 @@ QUAD: Final = {
 SHAPES: Final = {"Texture2D": "flat", "TextureCube": "cube", "Texture3D": "volume"}
 DRIVERS: Final[dict[str, tuple[str, ...]]] = {"swiftshader": (), "mesa": MESA}
 LIMIT_S: Final = 60.0
+GRACE_S: Final = 5.0  # for a page that answers late, because its driver holds it up
+POLLING_MS: Final = 10
 
 
 class WebGLError(RuntimeError):
@@ -107,7 +109,7 @@ def drawn(
         "size": size,
         "limit_s": limit_s,
     }
-    answer = _asked(driver, "drawWithin", request)
+    answer = _answer(driver, request)
     pixels = np.frombuffer(base64.b64decode(answer["pixels"]), np.float32)
     picture = pixels.reshape(size[1], size[0], 4)[::-1].copy()
     return Drawn(picture, answer["compile_s"], answer["draw_s"])
@@ -115,7 +117,8 @@ def drawn(
 
 def renderer(driver: str = "swiftshader", context: str = "webgl2") -> str:
     """What draws, as the browser tells it: ``ANGLE (…, SwiftShader driver)``."""
-    return str(_asked(driver, "rendererOf", context))
+    _, page = _page(driver)
+    return str(page.evaluate("(context) => rendererOf(context)", context))
 
 
 _pages: dict[str, tuple[Any, Any]] = {}
@@ -132,19 +135,27 @@ def _page(driver: str) -> tuple[Any, Any]:
     return known
 
 
-def _asked(driver: str, function: str, argument: Any) -> Any:
-    """What a function of the page returns.
+def _answer(driver: str, request: dict[str, Any]) -> Any:
+    """What the page makes of a request, within its limit and a little.
 
     After a fault the next call gets a fresh browser: one that is still busy with a program would
     keep all others waiting, and Chromium refuses WebGL to a page that lost it too often.
     """
     running, page = _page(driver)
+    limit_s = request["limit_s"]
     try:
-        return page.evaluate(f"(argument) => {function}(argument)", argument)
+        page.evaluate("(request) => start(request)", request)
+        page.wait_for_function("answer", timeout=(limit_s + GRACE_S) * 1e3, polling=POLLING_MS)
+        answer = page.evaluate("answer")
     except Exception as error:
         running.close()
-        message = str(error).removeprefix("Page.evaluate: ").removeprefix("Error: ")
-        raise WebGLError(message.split("\n    at ")[0]) from None
+        if type(error).__name__ == "TimeoutError":
+            raise WebGLError(f"the browser is held up for more than {limit_s:g} s") from None
+        raise WebGLError(str(error)) from None
+    if "error" in answer:
+        running.close()
+        raise WebGLError(answer["error"])
+    return answer["drawn"]
 
 
 def _bound(

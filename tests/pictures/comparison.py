@@ -6,10 +6,13 @@ In: float pictures or 8-bit arrays, (height, width, 3 or 4), top row first. Out:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+MOST_MEAN: Final = 1.0
+MOST_FAR_OFF: Final = 0.002
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +25,7 @@ class Difference:
     @property
     def is_agreement(self) -> bool:
         """Mean at most 1/255, at most 0.2 % of the pixels off by more than 2/255."""
-        return self.mean <= 1.0 and self.far_off <= 0.002
+        return self.mean <= MOST_MEAN and self.far_off <= MOST_FAR_OFF
 
 
 def difference(a: NDArray[Any], b: NDArray[Any]) -> Difference:

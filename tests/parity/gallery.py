@@ -1,0 +1,196 @@
+"""The gallery on every way of drawing it, held against the CPU's pictures.
+
+What flows in: an example's name and a way's. What flows out: a ``Measured``: how far the worst of
+its pictures is off, or a ``Skipped`` with the reason why there is none. ``tools/gen_parity.py``
+writes all of them down, the tests look at some.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+import distal
+from distal.backends.base import Artifact
+from tests import webgl
+from tests.pictures.comparison import MOST_FAR_OFF, MOST_MEAN, as_bytes, difference
+
+TIMES: Final = (0.0, 2.9, 11.3)
+LARGE: Final = (160, 120)
+MIDDLE: Final = (96, 72)
+SMALL: Final = (48, 36)
+
+# SwiftShader had none of these compiled after 15 to 25 s, and takes gigabytes for it: the browser
+# lost ``bunny`` after 110 s and 10.7 GB, and drew ``sdfray_csg_on_checker`` after 114 s.
+TOO_LARGE_FOR_SWIFTSHADER: Final = frozenset(
+    [
+        *("bunny", "catalogue", "city", "gyroid_part", "room_door", "still_life"),
+        *("sdfray_csg_on_checker", "sdfray_distortion", "sdfray_refraction"),
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """How far an example's pictures are off, each number the worst of all times.
+
+    Attributes:
+        size: Width and height.
+        pictures: How many, at the first of ``TIMES``.
+        mean: Mean difference in 1/255.
+        far_off: Share of the pixels off by more than 2/255.
+        worst: The largest difference, in 1/255.
+    """
+
+    size: tuple[int, int]
+    pictures: int
+    mean: float
+    far_off: float
+    worst: int
+
+    @property
+    def is_agreement(self) -> bool:
+        """Within SEEDS' tolerance, as ``Difference.is_agreement``."""
+        return self.mean <= MOST_MEAN and self.far_off <= MOST_FAR_OFF
+
+
+@dataclass(frozen=True, slots=True)
+class Skipped:
+    """An example that a way of drawing cannot be asked for."""
+
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way of drawing.
+
+    Attributes:
+        title: Its heading.
+        draw: The picture of an example at a size and a time.
+        runs_on: What draws, in words that are the same on every machine with that driver.
+        size: Of a scene of objects' picture; functions of a pixel are drawn ``LARGE``.
+        times: At how many of ``TIMES`` a scene that moves is drawn.
+        refused: Examples that it cannot draw.
+        reason: Why.
+    """
+
+    title: str
+    draw: Callable[[str, tuple[int, int], float], NDArray[Any]]
+    runs_on: Callable[[], str]
+    size: tuple[int, int] = LARGE
+    times: int = len(TIMES)
+    refused: frozenset[str] = frozenset()
+    reason: str = ""
+
+
+def measure(example: str, way: Way) -> Measured | Skipped:
+    """Draw an example on one way and on the CPU, at each of its times."""
+    if example in way.refused:
+        return Skipped(way.reason)
+    size = LARGE if is_function_of_a_pixel(example) else way.size
+    times = TIMES[: way.times] if is_moving(example) else TIMES[:1]
+    mean = far_off = worst = 0.0
+    for seconds in times:
+        picture, wanted = way.draw(example, size, seconds), cpu_picture(example, size, seconds)
+        found = difference(picture, wanted)
+        off = np.abs(as_bytes(picture).astype(int) - as_bytes(wanted)).max()
+        mean, far_off = max(mean, found.mean), max(far_off, found.far_off)
+        worst = max(worst, int(off))
+    return Measured(size, len(times), mean, far_off, int(worst))
+
+
+@cache
+def image(example: str) -> Any:
+    """The scene or ``@image``."""
+    return distal.load(f"example:{example}")
+
+
+def is_function_of_a_pixel(example: str) -> bool:
+    """Whether it is an ``@image``: quick on every way of drawing."""
+    return not isinstance(image(example), distal.Scene)
+
+
+@cache
+def program(example: str, target: str = "glsl-es300") -> Artifact:
+    """The text for a target."""
+    return distal.compile(image(example), target=target)
+
+
+def is_moving(example: str) -> bool:
+    """Whether its picture reads the time."""
+    return "time" in {u["name"] for u in program(example).interface["uniforms"]}
+
+
+@cache
+def cpu_picture(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
+    """The middle that all ways are held against."""
+    picture: NDArray[Any] = image(example).render(size=size, time=seconds).array
+    return picture
+
+
+def by_device(device: str) -> Callable[[str, tuple[int, int], float], NDArray[Any]]:
+    """Draws on one of distal's own devices."""
+
+    def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
+        picture: NDArray[Any]
+        picture = image(example).render(size=size, time=seconds, device=device).array
+        return picture
+
+    return draw
+
+
+def by_browser(driver: str) -> Callable[[str, tuple[int, int], float], NDArray[Any]]:
+    """Draws on WebGL 2 in Chromium."""
+
+    def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
+        values = {"time": seconds} if is_moving(example) else {}
+        return webgl.run_webgl(program(example), size, values, driver=driver)
+
+    return draw
+
+
+def _gpu() -> str:
+    # Mesa complains on stderr without one; any folder that exists will do.
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    stats = image("course_1_rays").render(size=(8, 8), device="gpu").stats
+    return f"{generic(stats['adapter'])}, {stats['backend']}"
+
+
+def generic(driver: str) -> str:
+    """A driver's name without what differs from machine to machine."""
+    if "SwiftShader" in driver:
+        return "SwiftShader"
+    if known := re.search(r"llvmpipe \(LLVM (\d+)", driver):
+        return f"llvmpipe (LLVM {known[1]})"
+    return driver
+
+
+WAYS: Final[dict[str, Way]] = {
+    "reference": Way(
+        "The NumPy reference", by_device("reference"), lambda: "NumPy", size=SMALL, times=1
+    ),
+    "gpu": Way("GPU, compute shader", by_device("gpu"), _gpu),
+    "gpu-fragment": Way("GPU, fragment shader", by_device("gpu-fragment"), _gpu),
+    "webgl2": Way(
+        "WebGL 2 in Chromium, on Mesa",
+        by_browser("mesa"),
+        lambda: generic(webgl.renderer("mesa")),
+    ),
+    "webgl2-swiftshader": Way(
+        "WebGL 2 in Chromium, on SwiftShader",
+        by_browser("swiftshader"),
+        lambda: generic(webgl.renderer("swiftshader")),
+        size=MIDDLE,
+        refused=TOO_LARGE_FOR_SWIFTSHADER,
+        reason="SwiftShader runs out of memory or time compiling it",
+    ),
+}
