@@ -31,6 +31,7 @@ export function render({ model, el }: { model: Model; el: HTMLElement }): () => 
   const host = hostOf(payload);
   el.append(host);
   const player = new Player(host, payload, { playing: model.get("playing") as boolean });
+  Object.assign(host, { distal: player }); // as a page's host keeps it
   const mine = new Outbox(model);
 
   const take: Record<string, () => void> = {
@@ -83,6 +84,7 @@ function hostOf({ size: [width, height], panel }: Payload): HTMLElement {
   host.style.height = `${height + (panel ? TOOLBAR_PX : 0)}px`;
   // Keys meant for the player are not the notebook's: JupyterLab reads the mark before any listener
   // here is asked, other notebooks listen to what bubbles up.
+  host.dataset.distal = "";
   host.dataset.lmSuppressShortcuts = "true";
   host.addEventListener("keydown", (event) => event.stopPropagation());
   return host;
@@ -97,7 +99,7 @@ class Outbox {
   constructor(readonly model: Model) {}
 
   put(name: string, value: unknown): void {
-    if ((this.#waiting.get(name) ?? this.#sent.get(name)) === value) return;
+    if ((this.#waiting.get(name) ?? this.model.get(name)) === value) return;
     this.#waiting.set(name, value);
     this.#timer ??= setTimeout(() => this.#send(), PAUSE_MS);
   }

@@ -42,7 +42,7 @@ class LiveView(anywidget.AnyWidget):
     time = traitlets.Float(0.0).tag(sync=True)
     playing = traitlets.Bool(False).tag(sync=True)
     view = traitlets.Unicode("color").tag(sync=True)
-    steering = traitlets.Dict().tag(sync=True)
+    steering = traitlets.Any().tag(sync=True)  # a Steering is taken too
     error = traitlets.Unicode("").tag(sync=True)
 
     def __init__(

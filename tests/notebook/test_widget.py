@@ -1,0 +1,146 @@
+"""The notebook's live picture: its model from Python's side, and from that of a browser."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("anywidget")
+
+import numpy as np
+from traitlets import TraitError
+
+import distal
+from distal import Camera, Scene, Sphere, Torus, time
+from distal.lang import Frame, choice, color, func, image, slider, vec3
+from distal.scene.steering import Steering
+
+softness = slider("Softness", 0.05, high=0.2)
+tint = color("Tint", "#ff8040")
+style = choice("Style", ["plain", "striped"], 0)
+
+
+@image
+def drawn(frame: Frame) -> vec3:
+    return tint * softness * frame.coord.x * 0.1 + float(style)
+
+
+@func
+def distance(p: vec3) -> float:
+    return p.x
+
+
+def ball():
+    return Scene(
+        Sphere(0.6).union(Torus(0.7, 0.2), smooth=softness), camera=Camera((2.0, 1.0, 2.0))
+    )
+
+
+def from_browser(widget, **state):
+    """A message of the browser, as the widget's channel hands it on."""
+    widget.set_state(state)
+
+
+def test_it_begins_with_the_authors_picture():
+    widget = ball().show(size=(64, 48))
+    assert widget.params == {"softness": 0.05}
+    assert (widget.time, widget.playing, widget.view) == (0.0, False, "color")
+    assert widget.steering == {"yaw": 0.0, "pitch": 0.0, "zoom": 1.0, "pan": [0.0, 0.0]}
+    assert widget.payload["format"] == 1 and widget.payload["size"] == [64, 48]
+    assert [p["name"] for p in widget.payload["parameters"]] == ["softness"]
+
+
+def test_images_and_shapes_are_shown_too():
+    assert drawn.show().payload["steering"] is None
+    assert Sphere().show().payload["steering"] is not None
+    with pytest.raises(distal.LoadError, match="'distance' is a @func"):
+        distal.presenter.Presenter().show(distance)
+
+
+def test_what_moves_plays_unless_told_otherwise():
+    moving = Scene(Sphere().translate(y=0.2 * np.sin(time)))
+    assert moving.show().playing
+    assert not moving.show(playing=False).playing
+
+
+def test_python_hears_what_a_hand_did():
+    widget = drawn.show()
+    heard = []
+    widget.observe(lambda change: heard.append(change["new"]), "params")
+    from_browser(widget, params={"softness": 0.1, "tint": [0.1, 0.2, 0.3], "style": 1})
+    assert heard == [{"softness": 0.1, "tint": [0.1, 0.2, 0.3], "style": 1}]
+    from_browser(widget, time=2.5, playing=True, view="coordinate")
+    assert (widget.time, widget.playing, widget.view) == (2.5, True, "coordinate")
+
+
+def test_the_browser_is_told_what_python_sets():
+    widget = drawn.show()
+    widget.set(softness=0.15)
+    # A color as people write it becomes linear numbers, a choice's name its number.
+    widget.params = {"tint": "#ffffff", "style": "striped"}
+    state = widget.get_state()
+    assert state["params"] == {"softness": 0.15, "tint": [1.0, 1.0, 1.0], "style": 1}
+    widget.steering = Steering(yaw=0.5)
+    assert widget.get_state()["steering"]["yaw"] == 0.5
+
+
+@pytest.mark.parametrize(
+    ("values", "error", "message"),
+    [
+        ({"softness": 3.0}, ValueError, "'Softness' lies between 0 and 0.2, not 3"),
+        ({"softness": "x"}, TypeError, "'Softness'"),
+        ({"soft": 0.1}, ValueError, "there is no parameter 'soft'; parameters: "),
+    ],
+)
+def test_a_wrong_value_is_refused_and_nothing_changes(values, error, message):
+    widget = drawn.show()
+    before = dict(widget.params)
+    with pytest.raises(error, match=message):
+        widget.set(**values)
+    assert widget.params == before
+    with pytest.raises(error, match=message):
+        drawn.show(params=values)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("view", "norml", "there is no view 'norml'; views: color, coordinate"),
+        ("steering", {"zoom": 0.0}, "a steering is yaw, pitch, zoom and pan"),
+        ("steering", {"roll": 1.0}, "a steering is yaw, pitch, zoom and pan"),
+        ("steering", {"pan": [1.0]}, "a steering is yaw, pitch, zoom and pan"),
+    ],
+)
+def test_a_wrong_state_is_refused(name, value, message):
+    widget = ball().show()
+    with pytest.raises(TraitError, match=message):
+        setattr(widget, name, value)
+
+
+def test_the_picture_as_it_stands_is_computed_by_python():
+    scene = ball()
+    widget = scene.show(size=(48, 36))
+    from_browser(
+        widget,
+        params={"softness": 0.2},
+        steering={"yaw": 0.7, "pitch": 0.2, "zoom": 0.8, "pan": [0.1, 0.0]},
+    )
+    found = widget.render()
+    wanted = distal.scene.viewable.viewable(scene).render(
+        size=(48, 36), params={"softness": 0.2}, steering=Steering(0.7, 0.2, 0.8, (0.1, 0.0))
+    )
+    assert (found.array == wanted.array).all()
+    assert not np.allclose(found.array, scene.render(size=(48, 36)).array, atol=0.05)
+
+
+def test_a_notebook_is_given_a_widget():
+    bundle = ball().show()._repr_mimebundle_()
+    data = bundle[0] if isinstance(bundle, tuple) else bundle
+    assert "application/vnd.jupyter.widget-view+json" in data
+
+
+def test_without_the_extra_the_mend_is_named(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "anywidget", None)
+    monkeypatch.delitem(__import__("sys").modules, "distal.notebook.widget", raising=False)
+    with pytest.raises(ModuleNotFoundError) as caught:
+        ball().show()
+    assert str(caught.value) == "anywidget is missing: pip install 'distal[notebook]'"
