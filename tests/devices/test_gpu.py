@@ -30,7 +30,9 @@ from distal.lang import (
     sample,
     size,
     slider,
+    struct,
     texel,
+    uint,
     vec3,
     vec4,
 )
@@ -148,6 +150,46 @@ def test_pixels_are_mapped_as_on_the_cpu() -> None:
     np.testing.assert_allclose(kernel.map_pixels(pixels, uniforms, {}), expected, atol=1e-6)
     kernel.pace = Pace(50, 50)
     np.testing.assert_allclose(kernel.map_pixels(pixels, uniforms, {}), expected, atol=1e-6)
+
+
+@struct
+class Mixed:
+    flag: bool
+    count: int
+    bits: uint
+    turn: mat3
+    way: vec3
+
+
+@func
+def mixed(given: Mixed, x: float, steps: int) -> Mixed:
+    return Mixed(
+        not given.flag,
+        given.count * steps,
+        given.bits ^ uint(steps),
+        given.turn @ given.turn,
+        given.turn @ given.way * x,
+    )
+
+
+@pytest.mark.parametrize("first", [10**6, 100])
+def test_a_function_of_all_kinds_of_values_is_called_for_points(first: int) -> None:
+    random, n = np.random.default_rng(5), 1001
+    given = (
+        random.random(n) < 0.5,
+        random.integers(-(10**6), 10**6, n, np.int32),
+        random.integers(0, 2**32, n, np.uint32),
+        random.random((n, 3, 3)).astype(np.float32),
+        random.random((n, 3)).astype(np.float32),
+    )
+    args = [given, random.random(n).astype(np.float32), np.array([7], np.int32)]
+    module = lower(mixed)
+    kernel = gpu.prepare(module)
+    kernel.pace = Pace(first, first)
+    values, expected = (k.evaluate(args, {}, {}) for k in (kernel, cpu.prepare(module)))
+    for value, right in zip(values, expected, strict=True):
+        assert value.dtype == right.dtype
+        np.testing.assert_allclose(value, right, rtol=1e-5)
 
 
 def test_a_parameter_or_the_time_makes_no_new_pipeline(path: str) -> None:
