@@ -3,6 +3,7 @@
 # make bench     measures; make sweep runs thousands of random programs and draws every example
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
+# make parity    draws every example in every place and writes docs/parity.md
 # make versions  runs the tests on every other supported Python that is installed
 #
 # Needs Python 3.11 or newer (with venv) and make. Everything else goes into .venv. System packages
@@ -21,7 +22,7 @@ SAMPLES ?= 40
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test lint units system bench sweep sweep-fields versions clean
+.PHONY: picture test lint units system bench sweep sweep-fields parity versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -49,6 +50,10 @@ sweep: $(VENV)/.setup-test
 
 sweep-fields: $(VENV)/.setup-test
 	DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
+
+# Every example in every place it can be drawn in, against the CPU; writes docs/parity.md.
+parity: system $(VENV)/.setup-test
+	$(BIN)/python tools/gen_parity.py
 
 # Python 3.11 is what `make test` uses; the others are tried where they are installed.
 versions: system

@@ -30,6 +30,7 @@ from distal.ir.nodes import (
     Var,
 )
 from distal.ir.types import BOOL, FLOAT, INT, MAT2, VEC2, VEC4, Array, Type
+from distal.lang import slider
 
 TEXT_TARGETS = [name for name in target_names() if name not in ("llvm", "numpy")]
 
@@ -148,7 +149,8 @@ def uniform(name: str, type: Type, default: object, origin: Origin = Origin.PARA
 
 @pytest.mark.parametrize("target", TEXT_TARGETS)
 def test_interface_is_json(target: str) -> None:
-    filter_ = uniform("filter", FLOAT, 0.5)
+    asked = slider("Filter", 0.5)
+    filter_ = UniformDeclaration("filter", FLOAT, Origin.PARAMETER, 0.5, interface=asked.interface)
     value = build.splat(Uniform("filter", FLOAT), VEC4)
     artifact = emit(image(value, uniforms=(filter_,)), get_target(target))
     interface = json.loads(json.dumps(artifact.interface))
