@@ -42,7 +42,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             page = Path(folder, f"{name}.html")
-            made = distal.export(distal.load(f"example:{name}"), page)
+            made = distal.load(f"example:{name}").export(page)
             print(made)
             try:
                 first_frame_s(page)  # starts the browser

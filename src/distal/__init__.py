@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from distal.compiler import compile as compile
     from distal.diagnostics import CompileError as CompileError
     from distal.diagnostics import LoadError as LoadError
-    from distal.export.registry import export as export
     from distal.film.picture import Picture as Picture
     from distal.lang.expressions import time as time
     from distal.loading import gallery as gallery
@@ -67,13 +66,11 @@ if TYPE_CHECKING:
     from distal.scene.shape import Shape as Shape
     from distal.scene.shape import Shape2D as Shape2D
     from distal.scene.shapes import *  # noqa: F403 (a stub lists them)
-    from distal.sequence import video as video
 
 _ROOMS = {
     "distal.backends.base": ("Artifact",),
     "distal.compiler": ("compile",),
     "distal.diagnostics": ("CompileError", "LoadError"),
-    "distal.export": ("export",),
     "distal.film.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.loading": ("gallery", "load"),
@@ -95,7 +92,6 @@ _ROOMS = {
     "distal.scene.scene": ("Scene",),
     "distal.scene.shape": ("Shape", "Shape2D"),
     "distal.scene.shapes": SHAPE_NAMES,
-    "distal.sequence": ("video",),
 }
 _HOMES = {name: room for room, names in _ROOMS.items() for name in names}
 
@@ -134,9 +130,7 @@ def _unknown(name: str) -> str:
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(_unknown(name))
-    room = importlib.import_module(_HOMES[name])
-    # The room "export" is itself what is called: Python binds a room's name here when it loads one.
-    value = room if room.__name__ == f"{__name__}.{name}" else getattr(room, name)
+    value = getattr(importlib.import_module(_HOMES[name]), name)
     globals()[name] = value
     return value
 

@@ -27,7 +27,7 @@ class Presenter:
 
     def export(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
         """A page, or a text."""
-        return importlib.import_module("distal.export").export(obj, path, **options)
+        return importlib.import_module("distal.export.registry").export(obj, path, **options)
 
     def video(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
         """A video, or a sequence of pictures."""

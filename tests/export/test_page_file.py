@@ -21,6 +21,7 @@ from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError
 from distal.export import payload as payload_room
 from distal.export import resources
+from distal.export.registry import export
 from distal.film.replacement import SaveError
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang import resources as lang
@@ -87,7 +88,7 @@ def rings(tmp_path):
 
 
 def exported(obj, path: Path, **options) -> Parts:
-    distal.export(obj, path, **options)
+    obj.export(path, **options)
     return Parts(path.read_text(encoding="utf-8"))
 
 
@@ -101,7 +102,7 @@ def programs(told):
 
 def test_the_raymarchers_page_is_small(tmp_path):
     path = tmp_path / "page.html"
-    made = distal.export(distal.load("example:raymarcher"), path)
+    made = distal.load("example:raymarcher").export(path)
     assert path.stat().st_size <= MOST_KB * 1000, str(made)
     assert set(made.parts) == {"player", "shaders", "textures", "poster"}
     assert 0.9 * path.stat().st_size < sum(made.parts.values()) < path.stat().st_size
@@ -203,7 +204,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
     obj = distal.load(rings)
     obj_view = distal.scene.viewable.viewable(obj).image("signal").name
     bad = obj_view
-    made = distal.export(obj, path)
+    made = obj.export(path)
     assert dict(made.omitted) == {"signal": "it cannot be said"}
     views = Parts(path.read_text(encoding="utf-8")).payload["views"]
     assert [view["name"] for view in views] == ["color", "coordinate"]
@@ -212,7 +213,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
     assert result.stderr == "warning: the view 'signal' is left out: it cannot be said\n"
     bad = obj.name
     with pytest.raises(CompileError, match="it cannot be said"):
-        distal.export(obj, path)
+        obj.export(path)
 
 
 @pytest.mark.parametrize(
@@ -271,15 +272,15 @@ def test_mistakes_are_one_clear_line_and_leave_no_file(rings, tmp_path, words, c
 def test_a_mistake_in_python_too(rings, tmp_path):
     obj = distal.load(rings)
     with pytest.raises(LoadError, match="is a @func"):
-        distal.export(distal.load(rings, "ring"), tmp_path / "a.html")
+        export(distal.load(rings, "ring"), tmp_path / "a.html")
     with pytest.raises(SaveError, match="suffix"):
-        distal.export(obj, tmp_path / "a.xyz")
+        obj.export(tmp_path / "a.xyz")
     with pytest.raises(TypeError, match="'embed' is no option of shadertoy; options: params, "):
-        distal.export(obj, tmp_path / "a.glsl", embed=True)
+        obj.export(tmp_path / "a.glsl", embed=True)
     with pytest.raises(ValueError, match="between 0 and 1"):
-        distal.export(obj, tmp_path / "a.html", params={"softness": 9.0})
+        obj.export(tmp_path / "a.html", params={"softness": 9.0})
     with pytest.raises(ValueError, match="no parameter 'nose'"):
-        distal.export(obj, tmp_path / "a.glsl", params={"nose": 1})
+        obj.export(tmp_path / "a.glsl", params={"nose": 1})
     assert sorted(tmp_path.iterdir()) == [rings]
 
 

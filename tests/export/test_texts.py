@@ -81,7 +81,7 @@ def scene(tmp_path):
 
 def exported(obj, tmp_path: Path, target: str, **options) -> str:
     path = tmp_path / f"out{TEXTS[target]}"
-    distal.export(obj, path, target=target, **options)
+    obj.export(path, target=target, **options)
     return path.read_text(encoding="utf-8")
 
 
@@ -184,7 +184,7 @@ def test_isf_imports_files_alone(scene, tmp_path):
     data = data.replace('Texture2D("dots.png", wrap="clamp")', "Texture2D([[[0.0, 0.5, 1.0]]])")
     picture = scene(data, "dots.py")
     with pytest.raises(distal.CompileError, match="the texture 'dots' is made of data"):
-        distal.export(picture, tmp_path / "a.fs")
+        picture.export(tmp_path / "a.fs")
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_isf_imports_files_alone(scene, tmp_path):
 def test_the_head_says_how_to_use_it_and_no_path(scene, tmp_path, target):
     picture = scene(CONTROLS)
     path = tmp_path / "out.txt"
-    made = distal.export(picture, path, target=target)
+    made = picture.export(path, target=target)
     text = path.read_text(encoding="utf-8")
     head = "".join(re.findall(r"/\*.*?\*/", text, re.DOTALL))
     assert "rings.py, written by distal" in head

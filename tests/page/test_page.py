@@ -118,7 +118,7 @@ def example(name):
 @cache
 def exported(name):
     path = Path(FOLDER.name, f"{name}.html")
-    distal.export(loaded(name), path)
+    loaded(name).export(path)
     return path
 
 
@@ -135,7 +135,7 @@ def written(tmp_path):
         source, path = tmp_path / "odd.py", tmp_path / "odd.html"
         source.write_text(text, encoding="utf-8")
         obj = distal.load(source)
-        distal.export(obj, path, **options)
+        obj.export(path, **options)
         return path, viewable(obj)
 
     return write
@@ -313,7 +313,7 @@ def test_every_kind_of_control(written):
 def test_values_view_and_time_at_the_start(tmp_path):
     path = tmp_path / "page.html"
     start = {"params": {"softness": 0.2}, "view": "normal", "time": 2.5}
-    distal.export(loaded(SCENE), path, views=["color"], **start)
+    loaded(SCENE).export(path, views=["color"], **start)
     with looked_at(path) as looked:
         state = looked.state()
         assert state["parameters"]["softness"] == pytest.approx(0.2)
@@ -333,7 +333,7 @@ def test_two_fragments_in_another_page(tmp_path):
     fragments = []
     for name in (IMAGE, SCENE):
         path = tmp_path / f"{name}.html"
-        distal.export(loaded(name), path, embed=True)
+        loaded(name).export(path, embed=True)
         fragments.append(path.read_text(encoding="utf-8"))
     assert "<html" not in fragments[0]
     box = '<div class="box" style="width:160px;height:120px">'

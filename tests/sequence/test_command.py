@@ -73,7 +73,7 @@ def test_without_pyav_it_says_what_to_install(run, monkeypatch):
 
 
 def test_python_knows_it_by_one_name(moving, tmp_path):
-    made = distal.video(moving, tmp_path / "%d.png", duration=0.2, fps=10, size=(16, 12))
+    made = moving.video(tmp_path / "%d.png", duration=0.2, fps=10, size=(16, 12))
     assert str(made).startswith(f"{tmp_path / '%d.png'}: 2 frames, 16x12, 0.2 s, ")
     again = moving.video(tmp_path / "%d.png", duration=0.2, fps=10, size=(16, 12))
     assert (again.frames, again.rendered) == (2, 0)

@@ -60,7 +60,7 @@ def write(
     views: Sequence[str] | None = None,
     device: str = "cpu",
 ) -> Exported:
-    """Write the page; the options are those of ``distal.export``."""
+    """Write the page; the options are those of ``scene.export``."""
     size, time = checked_size(size), checked_time(time)
     if duration is not None and not checked_time(duration) > 0.0:
         raise ValueError(f"a duration is more than 0 seconds, not {duration}")

@@ -1,4 +1,4 @@
-"""``distal.video``: a sequence rendered and written, from beginning to end.
+"""``scene.video(…)``: a sequence rendered and written, from beginning to end.
 
 What flows in: a picture that moves, a path, how long and how fast. What flows out: the file, or
 numbered pictures. Frames are rendered on the caller's thread while others encode them; what is
