@@ -1,7 +1,8 @@
 """Every Python block of the front page and the guides runs as it is printed.
 
 Blocks of one page run in order in one folder, each as a file of its own. One that loads "scene.py"
-finds the block before it there. Pictures are made small; nothing else is changed.
+finds the block before it there. Those about notebooks are cells: they know the names of the cells
+before. Pictures are made small; nothing else is changed.
 """
 
 from __future__ import annotations
@@ -29,10 +30,14 @@ def blocks(page: Path) -> list[str]:
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda page: page.name)
 def test_its_blocks_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    are_cells = page.name == "notebook.md"
+    if are_cells:
+        pytest.importorskip("anywidget", reason="widgets need it: pip install 'distal[notebook]'")
+    made = {}
     for number, text in enumerate(blocks(page)):
         file = tmp_path / f"block_{number}.py"
         file.write_text(text, encoding="utf-8")
-        made = runpy.run_path(str(file))
+        made = runpy.run_path(str(file), made if are_cells else None)
         if "scene.py" not in text:
             (tmp_path / "scene.py").write_text(text, encoding="utf-8")
         for value in made.values():
