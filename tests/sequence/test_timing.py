@@ -65,6 +65,12 @@ def test_rates_of_broadcast_are_recognised():
         ((0, 1, -24), "a frame rate is more than 0 a second, not -24"),
         ((0, 1, "fast"), "a frame rate is a number like 30, 29.97 or 30000/1001, not fast"),
         ((0, 1, 1001), "a frame rate is at most 1000 a second, not 1001"),
+        ((0, 1, "1e-9"), "a frame rate is at least 0.001 a second, not 1e-9"),
+        (
+            (0, 1, "1e-999999999"),
+            "a frame rate is a number like 30, 29.97 or 30000/1001, not 1e-999999999",
+        ),
+        ((0, "1e999999999", 30), "a duration is a number of seconds, not 1e999999999"),
         (
             (0, 1e6, 60),
             "60000000 frames are too many: 1e+06 s at 60 fps; a sequence has at most 1000000",

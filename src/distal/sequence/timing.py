@@ -7,6 +7,7 @@ and times. Fractions throughout: 30000/1001 is no decimal number.
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
@@ -16,6 +17,8 @@ from distal.film.video import WishError
 # More is a mistake of units: three hours at 90 frames a second are fewer.
 MOST_FRAMES: Final = 1_000_000
 PIECE_S: Final = 2
+# Numbers further from 1 are a mistake, and as fractions they would fill the memory: 1e999999999.
+_MOST_DIGITS: Final = 40
 # Broadcast rates as people write them.
 _BROADCAST: Final = {
     "23.976": Fraction(24000, 1001),
@@ -91,6 +94,8 @@ def frame_rate(rate: object) -> Fraction:
         raise WishError(f"a frame rate is more than 0 a second, not {text:.40}")
     if found > 1000:
         raise WishError(f"a frame rate is at most 1000 a second, not {text:.40}")
+    if found < Fraction(1, 1000):
+        raise WishError(f"a frame rate is at least 0.001 a second, not {text:.40}")
     return found.limit_denominator(100_000)
 
 
@@ -107,8 +112,12 @@ def _fraction(value: object) -> Fraction | None:
     """The number as it is written: 0.1 is a tenth."""
     if isinstance(value, Fraction):
         return value
+    text = _plain(value)
+    exponent = re.search(r"[eE]([+-]?\d+)$", text)
+    if len(text) > _MOST_DIGITS or (exponent and abs(int(exponent[1])) > _MOST_DIGITS):
+        return None
     try:
-        return Fraction(_plain(value))
+        return Fraction(text)
     except (ValueError, ZeroDivisionError):
         return None
 
