@@ -40,15 +40,16 @@ def test_only_a_few_wait():
 
 
 def test_both_sides_work_at_once():
-    def take(item):
-        time.sleep(0.02)
+    working, go_on = threading.Event(), threading.Event()
 
-    begin = time.perf_counter()
+    def take(item):
+        working.set()
+        assert go_on.wait(10), "who puts waits for who takes"
+
     with taking(take) as taker:
-        for i in range(10):
-            time.sleep(0.02)
-            taker.put(i)
-    assert time.perf_counter() - begin < 0.34  # one after the other: 0.4
+        taker.put(0)
+        assert working.wait(10)
+        go_on.set()  # said by who puts, amid the other's work
 
 
 def test_a_failure_of_the_taker_reaches_who_puts():
