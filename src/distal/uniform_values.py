@@ -14,6 +14,7 @@ from typing import Any, Final
 
 from distal.ir.nodes import Module, Origin, UniformDeclaration
 from distal.ir.types import BOOL, FLOAT, INT, Vector
+from distal.lang.chosen_values import checked_values
 from distal.lang.parameter_values import LARGEST_FLOAT, as_bool, as_float, as_int, as_point
 from distal.lang.parameters import Parameter
 from distal.passes.entry import renamed_parameters
@@ -48,16 +49,8 @@ class Declared:
             ValueError: A name is unknown, or a value outside its range.
             TypeError: A value is of another kind.
         """
-        if not isinstance(params, Mapping):
-            raise TypeError(f"params are values by name, not {type(params).__name__}")
-        values = {p.name: p.default for p in self.parameters}
-        by_name = {key: p for p in self.parameters for key in (p.label, p.name)}
-        for key, value in params.items():
-            if key not in by_name:
-                known = ", ".join(values) or "none"
-                raise ValueError(f"there is no parameter '{key}'; parameters: {known}")
-            values[by_name[key].name] = by_name[key].check(value)
-        return values
+        defaults: dict[str, Any] = {p.name: p.default for p in self.parameters}
+        return {**defaults, **checked_values(self.parameters, params)}
 
     def number_values(self, settings: Mapping[str, Any]) -> dict[str, Any]:
         """The value of each number of a scene: its own, or that of a setting.

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-import distal
 from distal.cli.application import application
 from tests.sequence.moving import decode, scene_file
 

@@ -14,11 +14,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from distal.export.payload import COLOR, payload
+from distal.export.exported import Exported
+from distal.export.payload import payload
 from distal.export.poster import poster as poster_bytes
-from distal.export.registry import Exported
 from distal.film.replacement import replacement
-from distal.scene.viewable import Viewable
+from distal.scene.viewable import COLOR, Viewable
 from distal.uniform_values import checked_size, checked_time
 from distal.version import __version__
 

@@ -11,7 +11,7 @@ import base64
 import json
 import re
 import zlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, Final
 
@@ -24,16 +24,16 @@ from distal.export.resources import resource
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.types import Buffer, Texture
+from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
-from distal.scene.viewable import Viewable
+from distal.scene.viewable import COLOR, Viewable
 from distal.version import __version__
 
 PACKAGE: Final = PurePath(distal.__file__).parent
 FORMAT: Final = 1
 TARGET: Final = "glsl-es300"
-COLOR: Final = "color"
 # Names that say nothing about a scene: its file's says more.
 _PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main"})
 _COMMENT: Final = re.compile(r"\s*//.*$")
@@ -102,7 +102,7 @@ def payload(
         "steering": {"elevation": seen.elevation} if seen.steers else None,
         "time": {"start": time, "duration": duration, "animated": seen.animated},
         "parameters": [_parameter(p) for p in seen.parameters],
-        "values": start_values(seen.parameters, params or {}),
+        "values": _start_values(seen.parameters, params),
         "views": shown,
         "poster": poster,
         "files": programs.files,
@@ -139,23 +139,18 @@ def _documentation(seen: Viewable) -> str:
         return ""
 
 
-def start_values(parameters: Iterable[Parameter], params: Mapping[str, Any]) -> dict[str, Any]:
-    """The values that are not the defaults, by name.
+def _start_values(
+    parameters: Sequence[Parameter], params: Mapping[str, Any] | None
+) -> dict[str, Any]:
+    """The values that are not the defaults, by name, as JSON has them.
 
     Raises:
         ValueError: There is no such parameter, or a value is out of range.
         TypeError: A value is of another kind.
     """
-    known = {key: p for p in parameters for key in (p.label, p.name)}
-    values = {}
-    for key, value in params.items():
-        if key not in known:
-            names = ", ".join(dict.fromkeys(p.name for p in known.values())) or "none"
-            raise ValueError(f"there is no parameter '{key:.60}'; parameters: {names}")
-        checked = known[key].check(value)
-        if checked != known[key].default:
-            values[known[key].name] = _plain(checked)
-    return values
+    defaults = {p.name: p.default for p in parameters}
+    chosen = checked_values(parameters, params)
+    return {name: _plain(v) for name, v in chosen.items() if v != defaults[name]}
 
 
 def _parameter(parameter: Parameter) -> dict[str, Any]:

@@ -7,12 +7,13 @@ kind: one module with ``write``, and one row here.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
+from distal.export.exported import Exported
 from distal.film.replacement import SaveError, check_destination
 from distal.scene.viewable import viewable
 
@@ -30,34 +31,6 @@ class Kind:
     module: str
     suffix: str | None
     options: frozenset[str]
-
-
-@dataclass(frozen=True, slots=True)
-class Exported:
-    """What was written.
-
-    Attributes:
-        path: The file.
-        parts: What it is made of: bytes by name.
-        beside: Further files.
-        omitted: Views that the place cannot show, and why.
-    """
-
-    path: Path
-    parts: Mapping[str, int]
-    beside: tuple[Path, ...] = ()
-    omitted: Mapping[str, str] = field(default_factory=dict)
-
-    def __str__(self) -> str:
-        """One line: the file, its size, and that of its parts in kB."""
-        total = self.path.stat().st_size
-        parts = ", ".join(f"{name} {_kilobytes(size)}" for name, size in self.parts.items() if size)
-        beside = f", and {', '.join(p.name for p in self.beside)}" if self.beside else ""
-        return f"{self.path}: {_kilobytes(total)} kB{f' ({parts})' if parts else ''}{beside}"
-
-
-def _kilobytes(size: int) -> str:
-    return f"{size / 1000:.1f}" if size < 10_000 else f"{size / 1000:.0f}"
 
 
 _TEXT: Final = frozenset({"params", "view", "time"})

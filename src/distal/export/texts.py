@@ -16,14 +16,15 @@ from distal.backends import emit, get_target
 from distal.backends.base import Artifact
 from distal.backends.module_text import comment_text
 from distal.compiler import run_passes
+from distal.export.exported import Exported
 from distal.film.replacement import replacement
 from distal.frontend import lower
 from distal.ir.nodes import EntryKind, Module, Origin
+from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.version import __version__
 
 if TYPE_CHECKING:
-    from distal.export.registry import Exported
     from distal.scene.viewable import Viewable
 
 PLACES: Final = {
@@ -133,10 +134,7 @@ def write(
     time: float = 0.0,
 ) -> Exported:
     """Write the text, what it needs beside it, and its interface where a host has to be told."""
-    from distal.export.payload import start_values  # noqa: PLC0415 (needs NumPy)
-    from distal.export.registry import Exported  # noqa: PLC0415 (imports this module by name)
-
-    values = start_values(seen.parameters, params or {})
+    values = checked_values(seen.parameters, params)
     image = seen.image(view, encoded=True)
     module = lower(image.text() if isinstance(image, Composed) else image)
     description = get_target(target)
@@ -162,13 +160,9 @@ def write_files(path: Path, artifact: Artifact, text: str) -> tuple[Path, ...]:
 def _set(module: Module, values: Mapping[str, Any]) -> Module:
     """The module with these as the defaults of its parameters."""
     uniforms = tuple(
-        replace(u, default=_tuple(values[u.name]))
+        replace(u, default=values[u.name])
         if u.origin is Origin.PARAMETER and u.name in values
         else u
         for u in module.uniforms
     )
     return replace(module, uniforms=uniforms)
-
-
-def _tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value

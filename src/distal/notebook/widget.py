@@ -8,18 +8,16 @@ change. Knows nothing of how the browser draws.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import anywidget
 import traitlets
 
+from distal.export.page import PLAYER
 from distal.export.payload import payload
-from distal.lang.parameters import Parameter
+from distal.lang.chosen_values import checked_values
 from distal.scene.steering import Steering
 from distal.scene.viewable import Viewable, viewable
-
-_PLAYER: Final = Path(__file__).parents[1] / "export" / "player.js"
 
 
 class LiveView(anywidget.AnyWidget):
@@ -35,7 +33,7 @@ class LiveView(anywidget.AnyWidget):
         error: What the browser's driver said of the shader, or "".
     """
 
-    _esm = _PLAYER
+    _esm = PLAYER
 
     payload = traitlets.Dict(read_only=True).tag(sync=True)
     params = traitlets.Dict().tag(sync=True)
@@ -72,10 +70,9 @@ class LiveView(anywidget.AnyWidget):
             ValueError: A value lies outside its parameter's range, or there is no such view.
         """
         self._seen: Viewable = viewable(obj, params, time)
-        self._parameters: Mapping[str, Parameter] = {p.name: p for p in self._seen.parameters}
         if view not in self._seen.views:
             raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
-        values = self._checked(params or {})
+        values = self._checked(params)
         made = payload(self._seen, size=size, params=values, time=time, panel=panel)
         super().__init__(
             params={**{p.name: _plain(p.default) for p in self._seen.parameters}, **values},
@@ -113,12 +110,9 @@ class LiveView(anywidget.AnyWidget):
             **options,
         )
 
-    def _checked(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        unknown = set(values) - set(self._parameters)
-        if unknown:
-            known = ", ".join(self._parameters) or "none"
-            raise ValueError(f"there is no parameter '{min(unknown)}'; parameters: {known}")
-        return {name: _plain(self._parameters[name].check(v)) for name, v in values.items()}
+    def _checked(self, values: Mapping[str, Any] | None) -> dict[str, Any]:
+        chosen = checked_values(self._seen.parameters, values)
+        return {name: _plain(value) for name, value in chosen.items()}
 
     @traitlets.validate("params")
     def _check_params(self, proposal: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -20,13 +20,12 @@ from distal.executor_hook import executor
 from distal.film.picture import Picture
 from distal.film.video import WishError
 from distal.ir.nodes import Origin
+from distal.lang.chosen_values import checked_values
 from distal.lowered import Lowered
 from distal.scene.doubts import doubt_black, doubt_functions
 from distal.scene.scene import MOST_SAMPLES
-from distal.scene.viewable import Viewable, viewable
+from distal.scene.viewable import COLOR, Viewable, viewable
 from distal.version import __version__
-
-COLOR: Final = "color"
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,26 +133,16 @@ def _image(shown: Viewable, view: str, samples: int) -> tuple[Any, dict[str, Any
 
 def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters that the view reads; one that only another view reads is no mistake."""
-    if not isinstance(params, Mapping):
-        raise WishError(f"params are values by name, not {type(params).__name__}")
     read = {
         u.source.name: u.source
         for u in lowered.module.uniforms
         if u.origin is Origin.PARAMETER and u.source is not None
     }
-    known = {key: p for p in shown.parameters for key in (p.label, p.name)}
-    values = {name: parameter.default for name, parameter in read.items()}
-    for key, value in params.items():
-        if key not in known:
-            names = ", ".join(p.name for p in shown.parameters) or "none"
-            raise WishError(f"there is no parameter '{key}'; parameters: {names}")
-        try:
-            checked = known[key].check(value)
-        except (ValueError, TypeError) as error:
-            raise WishError(str(error)) from None
-        if known[key].name in read:
-            values[known[key].name] = checked
-    return values
+    try:
+        chosen = checked_values(shown.parameters, params)
+    except (ValueError, TypeError) as error:
+        raise WishError(str(error)) from None
+    return {name: chosen.get(name, parameter.default) for name, parameter in read.items()}
 
 
 def _fingerprint(lowered: Lowered, settings: Mapping[str, Any]) -> str:
