@@ -153,7 +153,41 @@ def test_a_full_disk_is_one_line(moving, tmp_path, suffix):
     assert "File too large" in str(caught.value)
     assert "\n" not in str(caught.value)
     assert not out.exists()
+    # Half a file would fill a full disk for good.
+    assert not [*(tmp_path / f".{out.name}.distal").glob("*.partial*")]
     assert video(moving, out, **wishes).bytes == size
+
+
+@pytest.mark.parametrize("damage", ["", "half"])
+def test_a_damaged_piece_is_made_again(moving, tmp_path, monkeypatch, damage):
+    out, whole = tmp_path / "out.mp4", Program.picture
+
+    def picture(self, index, at, size=None):
+        if index == 130:
+            raise distal.LoadError("broken off")
+        return whole(self, index, at, size)
+
+    monkeypatch.setattr(Program, "picture", picture)
+    with pytest.raises(distal.LoadError):
+        video(moving, out, **WISHES)
+    monkeypatch.undo()
+    piece = tmp_path / ".out.mp4.distal" / "000040-000079.mp4"
+    content = piece.read_bytes()
+    piece.write_bytes(content[: len(content) // 2] if damage else b"")
+    with pytest.raises(SaveError) as caught:
+        video(moving, out, **WISHES)
+    words = "was damaged: 0 frames, not 40; the same command makes it again"
+    assert str(caught.value) == f"{piece} {words}"
+    assert video(moving, out, **WISHES).rendered == 40
+    assert len(decode(out).frames) == 180
+
+
+@pytest.mark.parametrize("suffix", ["mp4", "webm", "gif", "apng", "webp"])
+def test_one_video_is_one_file(moving, tmp_path, suffix):
+    one, other = tmp_path / f"one.{suffix}", tmp_path / f"other.{suffix}"
+    for path in (one, other):
+        video(moving, path, duration=1, fps=10, size=(96, 64))
+    assert one.read_bytes() == other.read_bytes()
 
 
 def test_a_folder_that_is_not_writable(moving, tmp_path):

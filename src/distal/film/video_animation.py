@@ -19,7 +19,7 @@ from PIL import Image
 from distal.film.replacement import SaveError
 from distal.film.video import LOSSLESS, Kind, library
 from distal.film.video_pixels import BT709, FULL, RGB, SRGB
-from distal.film.video_segments import writing
+from distal.film.video_segments import whole_or_nothing
 from distal.film.video_texts import with_texts
 
 Progress = Callable[[int], Any]
@@ -71,7 +71,7 @@ def animate(made: Animation, path: Path, kind: Kind, progress: Progress) -> None
         SaveError: A frame cannot be read, or the file not be written.
     """
     write = {"gif": _gif, "apng": _apng, "webp": _webp}[kind.name]
-    with writing(path):
+    with whole_or_nothing(path):
         write(made, path, progress)
         with_texts(path, kind, made.texts)
 

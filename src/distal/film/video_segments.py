@@ -14,12 +14,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from distal.film.replacement import SaveError
 from distal.film.video import Codec, Kind, library
-from distal.film.video_pixels import Converter, tag
+from distal.film.video_pixels import tag
 
 # MP4 takes the packets of both codecs and any clock; Matroska's counts milliseconds only.
 PIECE_SUFFIX: Final = ".mp4"
@@ -43,7 +40,6 @@ class Piece:
         self._partial = partial(path)
         self._rate = rate
         self._count = 0
-        self._converter = Converter(codec)
         with writing(path):
             self._container = library().open(str(self._partial), "w", format="mp4")
             stream = self._container.add_stream(codec.encoder, rate=rate)
@@ -55,9 +51,8 @@ class Piece:
             tag(stream.codec_context, codec)
         self._stream = stream
 
-    def add(self, array: NDArray[np.float32]) -> None:
-        """Encode the next picture."""
-        frame = self._converter.frame(array)
+    def add(self, frame: Any) -> None:
+        """Encode the next picture, as a ``Converter`` made it."""
         frame.pts, frame.time_base = self._count, 1 / self._rate
         self._count += 1
         with writing(self._path):
@@ -97,25 +92,50 @@ def join(
     Raises:
         SaveError: A piece cannot be read or the file not be written.
     """
-    options = {"movflags": "+faststart"} if kind.name == "mp4" else {}
-    with writing(path):
+    # Without this flag Matroska's files carry a random number: one video would be two files.
+    options = {"fflags": "+bitexact"}
+    if kind.name == "mp4":
+        options["movflags"] = "+faststart"
+    with whole_or_nothing(path):
         out = library().open(str(path), "w", format=kind.name, options=options)
-        out.metadata.update(texts)
-        stream, first = None, 0
-        for file, count in pieces:
-            with library().open(str(file)) as source:
-                if stream is None:
-                    stream = out.add_stream_from_template(source.streams.video[0])
-                    stream.time_base = 1 / rate
-                found = 0
-                for packet in _shifted(source, first, rate):
-                    packet.stream = stream
-                    out.mux(packet)
-                    found += 1
-            if found != count:
-                raise SaveError(f"cannot join {path}: {file} has {found} frames, not {count}")
-            first += count
+        try:
+            out.metadata.update(texts)
+            _copy(pieces, out, rate)
+        except BaseException:
+            with suppress(Exception):  # what broke off is told, not that the end is missing
+                out.close()
+            raise
         out.close()
+
+
+def _copy(pieces: Sequence[tuple[Path, int]], out: Any, rate: Fraction) -> None:
+    stream, first = None, 0
+    for file, count in pieces:
+        source, packets = _read(file, first, count, rate)
+        with source:
+            if stream is None:
+                stream = out.add_stream_from_template(source.streams.video[0])
+                stream.time_base = 1 / rate
+            for packet in packets:
+                packet.stream = stream
+                out.mux(packet)
+        first += count
+
+
+def _read(file: Path, first: int, count: int, rate: Fraction) -> tuple[Any, list[Any]]:
+    """A piece and its packets; one that is damaged goes, so that it is made again."""
+    packets = []
+    with suppress(OSError, library().FFmpegError):
+        source = library().open(str(file))
+        packets = list(_shifted(source, first, rate))
+        if len(packets) == count:
+            return source, packets
+        source.close()
+    with suppress(OSError):
+        file.unlink()
+    raise SaveError(
+        f"{file} was damaged: {len(packets)} frames, not {count}; the same command makes it again"
+    )
 
 
 def _shifted(source: Any, first: int, rate: Fraction) -> Iterator[Any]:
@@ -152,3 +172,15 @@ def writing(path: Path) -> Iterator[None]:
         raise SaveError(f"cannot write {path}: {error.strerror or error}") from error
     except library().FFmpegError as error:
         raise SaveError(f"cannot write {path}: {error}") from error
+
+
+@contextmanager
+def whole_or_nothing(path: Path) -> Iterator[None]:
+    """Tell failures as ``writing`` does, and leave nothing: half a file may fill a disk."""
+    try:
+        with writing(path):
+            yield
+    except BaseException:
+        with suppress(OSError):
+            path.unlink()
+        raise
