@@ -14,7 +14,7 @@ from distal.executor_hook import executor
 from distal.scene import doubts
 from distal.scene.layers import checked_layers, values
 from distal.scene.refusals import refuse
-from distal.scene.scene import MOST_SAMPLES, slice_settings
+from distal.scene.scene_arguments import checked_samples, slice_settings
 from distal.scene.steering import Steering
 
 if TYPE_CHECKING:
@@ -45,9 +45,7 @@ def rendered(
         progress: Called with the finished share.
         options: Those of ``executor().render``: size, time, params and the like.
     """
-    samples, view = wish.samples, wish.view
-    if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
-        raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
+    samples, view = checked_samples(wish.samples), wish.view
     layers = checked_layers(wish.layers)
     steered = wish.steering is not None
     moved = {} if wish.steering is None else wish.steering.settings

@@ -9,44 +9,35 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar
 
-from distal.diagnostics import Span
 from distal.fields.claims import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
-from distal.ir.types import FLOAT, FRAME, INT, VEC3, VEC4
-from distal.lang import func, vec3
+from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
 from distal.loading import hand_on
 from distal.render import tonemap, views
 from distal.scene.backgrounds import as_background
-from distal.scene.cameras import BaseCamera, Camera
 from distal.scene.cells import check_cells
-from distal.scene.conversion import Asked, choice, number
-from distal.scene.field import Field
 from distal.scene.layers import Layer
-from distal.scene.lights import DistantLight, HemisphereLight, Light
 from distal.scene.materials import as_material
-from distal.scene.numbers import arguments
 from distal.scene.picture import NORMALS, Picturing
 from distal.scene.places import author_place
-from distal.scene.refusals import refuse, refuse_kind
+from distal.scene.scene_arguments import (
+    all_lights,
+    checked_camera,
+    checked_exposure,
+    checked_lights,
+    checked_numbers,
+    one_of,
+    one_shape,
+    whole,
+)
 from distal.scene.steepness import check_slopes
 from distal.scene.steering import Steering
-
-MOST_SAMPLES: Final = 65536
-_LIMITS: Final = {
-    "exposure": Limit.NOT_NEGATIVE,
-    "fog_density": Limit.NOT_NEGATIVE,
-    "ambient_occlusion": Limit.NOT_NEGATIVE,
-    "near": Limit.NOT_NEGATIVE,
-    "far": Limit.POSITIVE,
-    "stride": Limit.POSITIVE,
-    "stride_growth": Limit.POSITIVE,
-}
 
 
 class Scene(Composed, Presentable):
@@ -115,9 +106,7 @@ class Scene(Composed, Presentable):
         given_lights = checked_lights(lights, place)
         self.background = as_background(background, given_lights, place)
         self.lights = all_lights(lights is None, given_lights, self.background.light)
-        if camera is not None and not isinstance(camera, BaseCamera):
-            refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
-        self.camera = camera if camera is not None else Camera((3.0, 2.0, 5.0))
+        self.camera = checked_camera(camera, place)
         self.material = as_material(default_material)
         self.tone_map = one_of("tone map", tone_map, tonemap.NAMES, place)
         self.normals = one_of("way to find normals", normals, NORMALS, place)
@@ -125,25 +114,16 @@ class Scene(Composed, Presentable):
         self.shadows = bool(shadows)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
         self.steps = whole("steps", steps, Limit.POSITIVE, place)
-        given = {
-            "exposure": exposure,
-            "fog": fog,
-            "fog_density": fog_density,
-            "ambient_occlusion": ambient_occlusion,
-            "near": near,
-            "far": far,
-            "stride": stride,
-            "stride_growth": stride_growth,
-        }
-        self.numbers: Mapping[str, Any] = arguments(
-            scene_numbers,
-            (),
-            given,
-            what="Scene",
-            limits=_LIMITS,
-            requires=_ends,
-            colors=("fog",),
-            place=place,
+        self.numbers = checked_numbers(
+            place,
+            exposure=exposure,
+            fog=fog,
+            fog_density=fog_density,
+            ambient_occlusion=ambient_occlusion,
+            near=near,
+            far=far,
+            stride=stride,
+            stride_growth=stride_growth,
         )
         self.display = Display(self)
         # What pictures tell: what ``developed`` was asked for, and what ``stage`` made it for.
@@ -278,8 +258,7 @@ class Scene(Composed, Presentable):
         made = Scene.__new__(Scene)
         made.__dict__.update({n: v for n, v in self.__dict__.items() if n != "_whole"})
         if exposure is not None:
-            asked = Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=self.place)
-            made.numbers = {**self.numbers, "exposure": number(exposure, asked)}
+            made.numbers = {**self.numbers, "exposure": checked_exposure(exposure, self.place)}
         if tone_map is not None:
             made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
         made.display = Display(made)
@@ -362,87 +341,3 @@ class Display(Composed):
         made = Picturing(assembly, self._scene)
         value = made.displayed(Read("color", VEC4))
         return assembly.define("display_color", (Param("color", VEC4),), VEC4, (Return(value),))
-
-
-@func
-def scene_numbers(
-    exposure: float,
-    fog: vec3,
-    fog_density: float,
-    ambient_occlusion: float,
-    near: float,
-    far: float,
-    stride: float,
-    stride_growth: float,
-) -> float:
-    """The numbers of a scene by name; never called."""
-    return exposure
-
-
-def _ends(near: float, far: float) -> str | None:
-    return None if near < far else f"rays begin at near {near:g} and end before it, at far {far:g}"
-
-
-def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
-    """A count of the scene."""
-    return choice(value, Asked(name, "Scene", INT, limit, place=place))
-
-
-def slice_settings(plane: Any) -> dict[str, Any]:
-    """Which plane a slice shows, as settings of a picture."""
-    place = author_place()
-    try:
-        normal, offset = plane
-    except (TypeError, ValueError):
-        hint = "plane=((0, 0, 1), 0.5)"
-        refuse_kind(f"a plane is a normal and an offset, not {plane!r:.60}", hint, place)
-    direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
-    distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
-    return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
-
-
-def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
-    """A choice by its name."""
-    if name not in known:
-        refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
-    return str(name)
-
-
-def one_shape(shape: Any, place: Span | None) -> Field:
-    """One solid of what the author gave: a shape, or several."""
-    shapes = listed(shape)
-    if not shapes:
-        refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
-    for one in shapes:
-        if not isinstance(one, Field):
-            refuse_kind(f"a scene shows shapes, not {one!r:.60}", None, place)
-        if one.flat:
-            hint = "make it solid: .extrude(height) or .revolve()"
-            refuse(f"'{one.name}' is a flat shape; a scene shows solids", hint, place)
-    first: Field = shapes[0]
-    return first.union(*shapes[1:]) if len(shapes) > 1 else first
-
-
-def listed(given: Any) -> list[Any]:
-    """What was given as a list, a generator, an array of objects, or alone."""
-    return list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
-
-
-def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
-    """The lights that the author gave; one light may stand for a list of one."""
-    if lights is None:
-        return ()
-    given = tuple(listed(lights))
-    for light in given:
-        if not isinstance(light, Light):
-            refuse_kind(f"a light is wanted, not {light!r:.60}", "PointLight((2, 3, 4))", place)
-    return given
-
-
-def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
-    """The lights of a scene: those given, what is around if that shines, else a sun and a sky."""
-    if around is not None:  # among the lights too, it is still one light
-        return (*given, around) if around not in given else tuple(given)
-    if unsaid:
-        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
-    return tuple(given)

@@ -23,7 +23,7 @@ from distal.ir.nodes import Origin
 from distal.lang.chosen_values import checked_values
 from distal.lowered import Lowered
 from distal.scene.doubts import doubt_black, doubt_functions
-from distal.scene.scene import MOST_SAMPLES
+from distal.scene.scene_arguments import checked_samples
 from distal.scene.viewable import COLOR, Viewable, viewable
 from distal.version import __version__
 
@@ -117,18 +117,14 @@ def program(
 
 def _image(shown: Viewable, view: str, samples: int) -> tuple[Any, dict[str, Any]]:
     """One program that gives display values: a second pass over each frame costs more."""
-    if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
-        raise WishError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
-    if samples > 1 and shown.scene is None:
-        raise WishError(f"samples are for scenes and shapes; '{shown.name}' is an @image")
     try:
+        if checked_samples(samples) > 1 and shown.scene is None:
+            raise WishError(f"samples are for scenes and shapes; '{shown.name}' is an @image")
         if samples == 1 or shown.scene is None:
             return shown.image(view, encoded=True), {}
+        return shown.scene.view(view, sampled=True, encoded=True), {"Samples": samples}
     except ValueError as error:
         raise WishError(str(error)) from None
-    if view not in shown.views:
-        raise WishError(f"there is no view '{view}'; views: {', '.join(shown.views)}")
-    return shown.scene.view(view, sampled=True, encoded=True), {"Samples": samples}
 
 
 def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dict[str, Any]:

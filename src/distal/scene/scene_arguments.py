@@ -1,0 +1,156 @@
+"""What an author gives a scene, checked: shapes, lights, counts, choices and numbers.
+
+What flows in: arguments of ``Scene`` as they were given, and where. What flows out: objects of the
+library, or a ``CompileError`` at the author's line. Knows nothing of how a scene is rendered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from distal.diagnostics import Span
+from distal.fields.claims import Limit
+from distal.ir.types import FLOAT, INT, VEC3
+from distal.lang import func, vec3
+from distal.scene.cameras import BaseCamera, Camera
+from distal.scene.conversion import Asked, choice, number
+from distal.scene.field import Field
+from distal.scene.lights import DistantLight, HemisphereLight, Light
+from distal.scene.numbers import arguments
+from distal.scene.places import author_place
+from distal.scene.refusals import refuse, refuse_kind
+
+MOST_SAMPLES: Final = 65536
+_LIMITS: Final = {
+    "exposure": Limit.NOT_NEGATIVE,
+    "fog_density": Limit.NOT_NEGATIVE,
+    "ambient_occlusion": Limit.NOT_NEGATIVE,
+    "near": Limit.NOT_NEGATIVE,
+    "far": Limit.POSITIVE,
+    "stride": Limit.POSITIVE,
+    "stride_growth": Limit.POSITIVE,
+}
+
+
+@func
+def scene_numbers(
+    exposure: float,
+    fog: vec3,
+    fog_density: float,
+    ambient_occlusion: float,
+    near: float,
+    far: float,
+    stride: float,
+    stride_growth: float,
+) -> float:
+    """The numbers of a scene by name; never called."""
+    return exposure
+
+
+def checked_numbers(place: Span | None, **given: Any) -> Mapping[str, Any]:
+    """The numbers of a scene by name; ``given`` are the arguments of ``scene_numbers``."""
+    return arguments(
+        scene_numbers,
+        (),
+        given,
+        what="Scene",
+        limits=_LIMITS,
+        requires=_ends,
+        colors=("fog",),
+        place=place,
+    )
+
+
+def checked_exposure(exposure: Any, place: Span | None) -> Any:
+    """The number of a scene that its exposure is."""
+    return number(exposure, Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=place))
+
+
+def _ends(near: float, far: float) -> str | None:
+    return None if near < far else f"rays begin at near {near:g} and end before it, at far {far:g}"
+
+
+def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
+    """A count of the scene."""
+    return choice(value, Asked(name, "Scene", INT, limit, place=place))
+
+
+def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
+    """A choice by its name."""
+    if name not in known:
+        refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
+    return str(name)
+
+
+def one_shape(shape: Any, place: Span | None) -> Field:
+    """One solid of what the author gave: a shape, or several."""
+    shapes = listed(shape)
+    if not shapes:
+        refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
+    for one in shapes:
+        if not isinstance(one, Field):
+            refuse_kind(f"a scene shows shapes, not {one!r:.60}", None, place)
+        if one.flat:
+            hint = "make it solid: .extrude(height) or .revolve()"
+            refuse(f"'{one.name}' is a flat shape; a scene shows solids", hint, place)
+    first: Field = shapes[0]
+    return first.union(*shapes[1:]) if len(shapes) > 1 else first
+
+
+def listed(given: Any) -> list[Any]:
+    """What was given as a list, a generator, an array of objects, or alone."""
+    return list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
+
+
+def checked_camera(camera: Any, place: Span | None) -> BaseCamera:
+    """The camera that the author gave; one that looks down at the origin where there is none."""
+    if camera is None:
+        return Camera((3.0, 2.0, 5.0))
+    if not isinstance(camera, BaseCamera):
+        refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
+    return camera
+
+
+def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
+    """The lights that the author gave; one light may stand for a list of one."""
+    if lights is None:
+        return ()
+    given = tuple(listed(lights))
+    for light in given:
+        if not isinstance(light, Light):
+            refuse_kind(f"a light is wanted, not {light!r:.60}", "PointLight((2, 3, 4))", place)
+    return given
+
+
+def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
+    """The lights of a scene: those given, what is around if that shines, else a sun and a sky."""
+    if around is not None:  # among the lights too, it is still one light
+        return (*given, around) if around not in given else tuple(given)
+    if unsaid:
+        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
+    return tuple(given)
+
+
+def checked_samples(samples: object) -> int:
+    """Rays for each pixel.
+
+    Raises:
+        ValueError: It is no such number.
+    """
+    if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
+        raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
+    return samples
+
+
+def slice_settings(plane: Any) -> dict[str, Any]:
+    """Which plane a slice shows, as settings of a picture."""
+    place = author_place()
+    try:
+        normal, offset = plane
+    except (TypeError, ValueError):
+        hint = "plane=((0, 0, 1), 0.5)"
+        refuse_kind(f"a plane is a normal and an offset, not {plane!r:.60}", hint, place)
+    direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
+    distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
+    return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
