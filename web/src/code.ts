@@ -31,17 +31,20 @@ function literal(parameter: Parameter, value: Value): string {
   return tuple(value);
 }
 
-/** `params={...}` of what differs from the defaults, the time and the camera where they moved. */
+/** `params={...}` of what differs from the defaults, and what else `render` must be told. */
 export function pythonOf(
   parameters: readonly Parameter[],
   values: Values,
-  time: number | null,
+  time: number,
+  view: string,
   steering: Steering | null,
 ): string {
   const changed = parameters.filter(({ name, default: fallback }) => !same(values[name], fallback));
   const rows = changed.map((p) => `${text(p.name)}: ${literal(p, values[p.name]!)}`);
   const parts = [`params={${rows.join(", ")}}`];
-  if (time !== null) parts.push(`time=${number(+time.toFixed(3))}`);
+  const seconds = number(+time.toFixed(3));
+  if (seconds !== "0") parts.push(`time=${seconds}`);
+  if (view !== "color") parts.push(`view=${text(view)}`);
   if (steering) {
     const { yaw, pitch, zoom, pan } = steering;
     const said = [

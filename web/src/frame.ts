@@ -42,9 +42,10 @@ export class Frame {
   constructor(player: Player, theme: Theme) {
     const { host, payload } = player;
     this.#player = player;
-    this.root = host.shadowRoot ?? host.attachShadow({ mode: "open" });
+    // First what an old browser lacks: a poster in a host without a root stays to be seen.
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(style);
+    this.root = host.shadowRoot ?? host.attachShadow({ mode: "open" });
     this.root.adoptedStyleSheets = [sheet];
     host.style.setProperty("--distal-shape", `${payload.size[0]} / ${payload.size[1]}`);
     this.canvas = this.#newCanvas();

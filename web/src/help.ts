@@ -15,7 +15,7 @@ export function helpOf(has: (action: keyof Actions) => boolean, turns: boolean):
   for (const [keys, meaning, needs] of KEYS) if (has(needs)) rows.push([keys, meaning]);
   const list = make("dl");
   for (const [keys, meaning] of rows) list.append(make("dt", {}, keys), make("dd", {}, meaning));
-  const close = make("button", { type: "submit", className: "text", autofocus: true }, "Close");
+  const close = make("button", { type: "submit", className: "text" }, "Close");
   const title = make("h2", {}, "Mouse and keys");
   const form = make("form", { method: "dialog" }, title, list, close);
   const dialog = make("dialog", { "aria-label": "Mouse and keys" }, form);

@@ -26,7 +26,11 @@ function mountAll(): void {
   for (const script of document.querySelectorAll('script[type="application/distal+json"]')) {
     const host = script.previousElementSibling;
     if (!(host instanceof HTMLElement) || !host.matches("[data-distal]") || "distal" in host) continue;
-    mount(host, JSON.parse(script.textContent ?? "") as Payload);
+    try {
+      mount(host, JSON.parse(script.textContent ?? "") as Payload);
+    } catch (error) {
+      reportError(error); // One that is broken, or for a newer player, is not the others' end.
+    }
   }
 }
 

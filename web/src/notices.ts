@@ -32,10 +32,9 @@ export class Notices {
   readonly element = make("div", { className: "notices" });
   /** Hidden from the eye, read aloud. */
   readonly status = make("div", { className: "aloud", role: "status", "aria-live": "polite" });
-  #fading = 0;
+  #word: HTMLElement | undefined;
 
   clear(): void {
-    clearTimeout(this.#fading);
     this.element.replaceChildren();
   }
 
@@ -46,12 +45,13 @@ export class Notices {
     this.say(text);
   }
 
-  /** A few words that go away by themselves. */
+  /** A few words that go away by themselves; what is wrong or under way stays beside them. */
   brief(text: string): void {
-    this.clear();
-    this.element.append(make("div", { className: "chip" }, text));
+    const word = make("div", { className: "chip" }, text);
+    this.#word?.remove();
+    this.element.append((this.#word = word));
     this.say(text);
-    this.#fading = window.setTimeout(() => this.clear(), 2500);
+    setTimeout(() => word.remove(), 2500);
   }
 
   /** Something is wrong, and stays until it is mended. */

@@ -43,6 +43,7 @@ export class Player {
   #state: State = "waiting";
   #ticked = 0;
   #held = false;
+  #isGone = false;
 
   constructor(
     readonly host: HTMLElement,
@@ -204,9 +205,10 @@ export class Player {
   /** The state as Python: what to hand to `render` for the same picture. */
   code(): string {
     const { parameters, time } = this.payload;
-    const hasMoved = time.animated && this.time !== time.start;
     const steering = this.camera?.moved ? this.camera.steering : null;
-    return pythonOf(parameters, this.#values, hasMoved ? this.time : null, steering);
+    // `render` begins at 0, wherever the page does; that of an `@image` knows no views.
+    const view = this.camera ? this.#view : "color";
+    return pythonOf(parameters, this.#values, time.animated ? this.time : 0, view, steering);
   }
 
   async copyCode(): Promise<void> {
@@ -240,6 +242,7 @@ export class Player {
 
   /** Stops everything and gives the GPU's memory back. */
   dispose(): void {
+    this.#isGone = true;
     this.#renderer.dispose();
     this.#frame.dispose();
   }
@@ -331,6 +334,7 @@ export class Player {
       this.#enter("failed", error);
       return;
     }
+    if (this.#isGone) return;
     this.#frame.listen(!!this.camera || this.readsMouse);
     this.#renderer.start();
     if (this.#state !== "unsupported") this.#compile();

@@ -53,8 +53,12 @@ function timeline(player: Player): HTMLElement[] {
   const slider = make("input", { type: "range", className: "time", min: 0, max: STEPS, step: 1 });
   slider.setAttribute("aria-label", "Time");
   const text = make("span", { className: "seconds" });
+  let isHeld = false;
+  let range = player.timeRange;
   const show = () => {
-    const [low, high] = player.timeRange;
+    // Under the hand the ends stay: its right end would else be the next window's left, and so on.
+    if (!isHeld) range = player.timeRange;
+    const [low, high] = range;
     const part = (player.time - low) / (high - low);
     slider.valueAsNumber = part * STEPS;
     slider.style.setProperty("--part", `${100 * Math.min(Math.max(part, 0), 1)}%`);
@@ -63,12 +67,13 @@ function timeline(player: Player): HTMLElement[] {
     slider.setAttribute("aria-valuetext", seconds);
   };
   slider.oninput = () => {
-    const [low, high] = player.timeRange;
+    const [low, high] = range;
     player.setTime(low + (high - low) * (slider.valueAsNumber / STEPS));
   };
   // While a hand holds the slider, the clock waits.
-  slider.onpointerdown = () => player.hold(true);
-  slider.onpointerup = slider.onpointercancel = slider.onblur = () => player.hold(false);
+  const hold = (held: boolean) => player.hold((isHeld = held));
+  slider.onpointerdown = () => hold(true);
+  slider.onpointerup = slider.onpointercancel = slider.onblur = () => hold(false);
   player.on("time", show);
   show();
   return [slider, text];

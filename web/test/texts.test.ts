@@ -24,7 +24,7 @@ test("what differs from the defaults is said, as Python", () => {
     ...{ softness: 0.3, count: 5, soft: true, finish: 1 },
     ...{ tint: [1, 0, 0], sun: [0.5, -1, 2] },
   };
-  const code = pythonOf(PARAMETERS, values, null, null);
+  const code = pythonOf(PARAMETERS, values, 0, "color", null);
   assert.equal(
     code,
     'params={"count": 5, "soft": True, "finish": "so \\"shiny\\"", "tint": "#ff0000", ' +
@@ -34,15 +34,16 @@ test("what differs from the defaults is said, as Python", () => {
 
 test("an untouched scene says no more than that", () => {
   const values = Object.fromEntries(PARAMETERS.map((p) => [p.name, p.default]));
-  assert.equal(pythonOf(PARAMETERS, values, null, null), "params={}");
+  assert.equal(pythonOf(PARAMETERS, values, 0, "color", null), "params={}");
 });
 
-test("a color that no hexadecimal says stays linear; time and camera are said where moved", () => {
+test("a color that no hexadecimal says stays linear; time, view and camera are said where they are not the first", () => {
   const [tint] = [PARAMETERS[4]!];
   const steering = { yaw: 0.123456, pitch: 0, zoom: 0.5, pan: [0, -1] as [number, number] };
   assert.equal(
-    pythonOf([tint], { tint: [0.1, 0.2, 0.3] }, 1.23456, steering),
-    'params={"tint": (0.1, 0.2, 0.3)}, time=1.235, steering=Steering(yaw=0.1235, zoom=0.5, pan=(0, -1))',
+    pythonOf([tint], { tint: [0.1, 0.2, 0.3] }, 1.23456, "normal", steering),
+    'params={"tint": (0.1, 0.2, 0.3)}, time=1.235, view="normal", ' +
+      "steering=Steering(yaw=0.1235, zoom=0.5, pan=(0, -1))",
   );
 });
 
