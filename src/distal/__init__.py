@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from distal.scene.shape import Shape as Shape
     from distal.scene.shape import Shape2D as Shape2D
     from distal.scene.shapes import *  # noqa: F403 (a stub lists them)
+    from distal.scene.steering import Steering as Steering
 
 _ROOMS = {
     "distal.backends.base": ("Artifact",),
@@ -92,6 +93,7 @@ _ROOMS = {
     "distal.scene.scene": ("Scene",),
     "distal.scene.shape": ("Shape", "Shape2D"),
     "distal.scene.shapes": SHAPE_NAMES,
+    "distal.scene.steering": ("Steering",),
 }
 _HOMES = {name: room for room, names in _ROOMS.items() for name in names}
 

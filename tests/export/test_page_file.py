@@ -170,6 +170,13 @@ def test_names_are_texts_everywhere(rings, tmp_path):
     assert text.count("</script>") == 2
 
 
+def test_marks_of_code_in_a_docstring_are_no_words(tmp_path):
+    file = tmp_path / "marked.py"
+    file.write_text(RINGS.replace("Rings, one", "``Rings``, one"), encoding="utf-8")
+    told = exported(distal.load(file), tmp_path / "p.html", poster=False).payload
+    assert told["description"] == "Rings, one in another."
+
+
 def test_the_poster_is_the_picture(tmp_path):
     obj = distal.load("example:raymarcher")
     parts = exported(obj, tmp_path / "p.html", size=(320, 160), time=1.0)

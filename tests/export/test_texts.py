@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 import distal
+from distal.film.replacement import SaveError
 from tests.browser import BrowserUnavailableError
 from tests.browser import browser as running_browser
 from tests.export import hosts
@@ -207,6 +208,24 @@ def test_a_file_called_to_end_the_comment(scene, tmp_path):
     picture = scene(CONTROLS, "end*.py")
     text = exported(picture, tmp_path, "shadertoy")
     assert difference(picture.render(SIZE).array, hosts.shadertoy(text, SIZE)).is_agreement
+
+
+@pytest.mark.parametrize(
+    ("name", "target", "whose"),
+    [
+        ("a.vert", "glsl-330", "vertex stage"),
+        ("a.json", "wgsl", "interface"),
+        ("a.json", "glsl-es300", "interface"),
+    ],
+)
+def test_the_text_never_takes_the_place_of_what_stands_beside_it(
+    scene, tmp_path, name, target, whose
+):
+    picture = scene(CONTROLS)
+    known = sorted(tmp_path.iterdir())
+    with pytest.raises(SaveError, match=f"its {whose} goes there; give it another suffix"):
+        picture.export(tmp_path / name, target=target)
+    assert sorted(tmp_path.iterdir()) == known
 
 
 @pytest.mark.parametrize("target", ["shadertoy", "isf"])

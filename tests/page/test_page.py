@@ -15,6 +15,7 @@ from distal.scene.viewable import viewable
 from tests.browser import BrowserUnavailableError, offline_page
 from tests.browser import browser as running_browser
 from tests.page.looking import looked_at
+from tests.pictures.comparison import difference
 
 IMAGE = "raymarcher"
 OBJECTS = "raymarcher_objects"
@@ -263,6 +264,22 @@ def test_without_webgl_stand_the_poster_and_a_sentence(page):
         assert [line for line in watched.messages if line.startswith("error:")] == []
 
 
+@pytest.mark.parametrize("style", ["", "img{max-width:100%;height:auto}", "img{all:unset}"])
+def test_the_poster_is_as_large_as_the_picture_will_be(page, tmp_path, style):
+    # The picture's height is the host's, however narrow that is: so must the poster's be.
+    narrow = tmp_path / "narrow.html"
+    text = page(SCENE).read_text(encoding="utf-8")
+    narrow.write_text(text.replace("</head>", f"<style>{style}</style></head>"), encoding="utf-8")
+    size = {"width": 240, "height": 600}
+    with offline_page(narrow, flags=["--disable-3d-apis"], viewport=size) as watched:
+        watched.page.get_by_text("WebGL 2").first.wait_for()
+        box = watched.page.locator("[data-distal] > img").bounding_box()
+        stage = watched.page.locator(".stage").bounding_box()
+        assert box["height"] == pytest.approx(stage["height"], abs=1)
+        assert box["width"] == pytest.approx(stage["height"] * 4 / 3, abs=2)
+        assert box["x"] + box["width"] / 2 == pytest.approx(120, abs=1)
+
+
 def test_without_script_stand_the_poster_and_a_sentence(page):
     with offline_page(page(SCENE), java_script_enabled=False) as watched:
         assert watched.page.locator("[data-distal] > img").is_visible()
@@ -351,6 +368,39 @@ def test_two_fragments_in_another_page(tmp_path):
         assert looked.page.get_by_text("between").is_visible()
         heading = looked.page.locator("h1").evaluate("(h) => getComputedStyle(h).color")
         assert heading == "rgb(0, 0, 0)"
+
+
+def test_a_page_without_any_rules_shows_no_script(tmp_path):
+    path = tmp_path / "pebble.html"
+    loaded(SCENE).export(path, embed=True)
+    host = tmp_path / "bare.html"
+    style = "<!doctype html><title>Bare</title><style>body * {all: unset}</style>"
+    host.write_text(f"{style}<p>before</p>{path.read_text(encoding='utf-8')}", encoding="utf-8")
+    with looked_at(host, viewport={"width": 160, "height": 300}) as looked:
+        assert looked.picture().shape[:2] == (108, 144)
+        assert looked.page.evaluate("document.body.innerText").strip() == "before"
+
+
+def test_the_code_gives_the_same_picture(page):
+    with looked_at(page(SCENE), viewport={"width": 660, "height": 360}) as looked:
+        looked.settle()  # from now on keys mean something
+        slider = looked.page.get_by_role("slider", name="Softness")
+        slider.focus()
+        slider.press("PageUp")
+        looked.page.locator("canvas").focus()
+        for key in ("ArrowLeft", "ArrowUp", "+"):
+            looked.page.keyboard.press(key)
+        looked.page.get_by_role("combobox", name="View").select_option("normal")
+        looked.page.evaluate("document.querySelector('[data-distal]').distal.setTime(1.25)")
+        code = looked.page.evaluate("document.querySelector('[data-distal]').distal.code()")
+        shown = looked.picture()
+        size = shown.shape[1::-1]
+        words = ("softness", "time=1.25", 'view="normal"', "yaw=", "pitch=", "zoom=")
+        assert [word for word in words if word not in code] == []
+        names = {"obj": loaded(SCENE)}
+        exec(f"from distal import *\npasted = obj.render({size}, {code})", names)
+        pasted = names["pasted"]
+        assert difference(pasted.array, shown).is_agreement
 
 
 def test_a_page_can_ask_for_nothing_even_if_it_wants_to(page):

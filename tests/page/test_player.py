@@ -27,6 +27,7 @@ PLAYER = "document.querySelector('[data-distal]').distal"
 TINT = parameter("tint", "color", [0.0, 0.0, 0.0])
 RED = parameter("red", "slider", 0.5, low=0.0, high=1.0, help="How red it is.")
 RED_UNIFORM = uniform("red", "float", "parameter", 0.5, "red_2")
+FLAT_RED = "void main() { fragment_color = vec4(1.0, 0.0, 0.0, 1.0); }\n"
 REDDISH = "uniform float red_2;\nvoid main() { fragment_color = vec4(red_2, 0.0, 1.0, 1.0); }\n"
 
 
@@ -442,6 +443,25 @@ def test_time_plays_pauses_and_is_scrubbed(tmp_path: Path) -> None:
         page.page.wait_for_function(f"{PLAYER}.time < 5")  # the loop began anew
 
 
+def test_without_a_loop_the_time_slider_keeps_its_ends_under_the_hand(tmp_path: Path) -> None:
+    scene = moving(time={"duration": None})
+    calm = {"viewport": {"width": 400, "height": 120}, "reduced_motion": "reduce"}
+    with opened(tmp_path, scene, **calm) as page:
+        box = page.page.get_by_role("slider", name="Time").bounding_box()
+        middle, right = box["y"] + box["height"] / 2, box["x"] + box["width"]
+        page.page.mouse.move(box["x"] + 9, middle)
+        page.page.mouse.down()
+        for x in (right - 2, right + 2, right + 4, right + 6):
+            page.page.mouse.move(x, middle)
+        assert page.ask("player.time") == 10
+        page.page.mouse.move(box["x"] - 5, middle)
+        assert page.ask("player.time") == 0
+        page.page.mouse.move(right + 5, middle)
+        page.page.mouse.up()
+        page.ask("player.setTime(player.time)")
+        assert page.ask("player.timeRange") == [10, 20]
+
+
 def test_less_motion_means_it_starts_still(tmp_path: Path) -> None:
     with opened(tmp_path, moving(), reduced_motion="reduce") as page:
         assert page.ask("player.playing") is False
@@ -577,6 +597,17 @@ def test_code_is_copied(tmp_path: Path) -> None:
         assert page.page.evaluate("navigator.clipboard.readText()") == 'params={"red": 0.25}'
 
 
+def test_the_code_says_what_render_would_not_do_by_itself(tmp_path: Path) -> None:
+    time = {"start": 2.0, "duration": None, "animated": True}
+    two = [program(FLAT_RED), program(FLAT_RED)]
+    scene = payload(*two, time=time, steering={"elevation": 0.0})
+    with opened(tmp_path, scene, reduced_motion="reduce") as page:
+        assert page.ask("player.code()") == "params={}, time=2"
+        page.ask("player.setTime(0)")
+        page.ask("player.setView('normal')")
+        assert page.ask("player.code()") == 'params={}, view="normal"'
+
+
 # Accidents
 
 
@@ -618,6 +649,78 @@ def test_a_lost_context_is_told_and_mended(tmp_path: Path) -> None:
         notice.wait_for(state="detached")
         page.settle()
         assert close(page.color(10, 10), (255, 0, 255))
+
+
+def test_words_that_pass_leave_what_is_wrong(tmp_path: Path) -> None:
+    with opened(tmp_path, reddish(), viewport=WIDE) as page:
+        page.page.evaluate(
+            "document.querySelector('[data-distal]').shadowRoot.querySelector('canvas')"
+            ".getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()"
+        )
+        notice = page.page.get_by_role("alert")
+        notice.wait_for()
+        page.page.get_by_role("button", name="Copy as code").click()
+        word = page.page.locator(".chip").get_by_text("params={}")
+        word.wait_for()
+        page.page.get_by_role("button", name="Copy as code").click()
+        word.wait_for()
+        word.wait_for(state="detached")
+        assert "let go of the picture" in notice.inner_text()
+        assert notice.get_by_role("button", name="Try again").is_visible()
+
+
+def test_disposed_of_at_any_moment_it_keeps_no_context(tmp_path: Path) -> None:
+    with opened(tmp_path, reddish()) as page:
+        living = page.page.evaluate(
+            """async () => {
+  const host = document.querySelector("[data-distal]");
+  const payload = host.distal.payload;
+  const { constructor } = host.distal;
+  host.distal.dispose();
+  const made = [];
+  const get = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (...words) {
+    return made[made.push(get.apply(this, words)) - 1];
+  };
+  const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+  for (const ms of [0, 1, 2, 4, 8, 15, 30, 60]) {
+    const another = document.createElement("div");
+    host.after(another);
+    const player = new constructor(another, payload);
+    await wait(ms);
+    player.dispose();
+  }
+  // In the middle of unpacking, whatever this machine's pace.
+  const another = document.createElement("div");
+  host.after(another);
+  let unpacked;
+  const programs = { encoding: "plain", get data() { unpacked(); return payload.programs.data; } };
+  const player = new constructor(another, { ...payload, programs });
+  await new Promise((resolve) => (unpacked = resolve));
+  player.dispose();
+  await wait(300);
+  return made.filter((gl) => !gl.isContextLost()).length;
+}"""
+        )
+        assert living == 0
+
+
+def test_an_old_browser_keeps_the_poster(tmp_path: Path) -> None:
+    before = "CSSStyleSheet = function () { throw new TypeError('no constructor') }"
+    with opened(tmp_path, reddish(), before=before, quiet=False) as page:
+        page.watched.settle(300)
+        assert page.page.locator("[data-distal] img").is_visible()
+        assert page.watched.messages == ["error: no constructor"]
+        page.watched.messages.clear()
+
+
+def test_one_payload_too_new_does_not_stop_the_others(tmp_path: Path) -> None:
+    with opened(tmp_path, reddish(format=2), reddish(), style="height:60px", quiet=False) as page:
+        page.page.wait_for_function(
+            "document.querySelectorAll('[data-distal]')[1].shadowRoot?.querySelector('.live')"
+        )
+        assert page.watched.messages == ["error: a payload of format 2 is too new"]
+        page.watched.messages.clear()
 
 
 def test_a_shader_that_fails_names_the_authors_line_and_the_poster_stays(tmp_path: Path) -> None:

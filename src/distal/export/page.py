@@ -23,6 +23,8 @@ from distal.uniform_values import checked_size, checked_time
 from distal.version import __version__
 
 PLAYER: Final = Path(__file__).with_name("player.js")
+# A page that takes all rules from its elements would show the text of its scripts too.
+_UNSEEN: Final = ' style="display:none"'
 NO_SCRIPT: Final = "This picture moves and turns where JavaScript is allowed."
 
 # The colors are those of the player's own sheet, so that nothing flashes before it stands.
@@ -128,8 +130,9 @@ def _stage(told: Mapping[str, Any], poster: bytes) -> str:
             f'<img src="data:image/webp;base64,{data}" width="{width}" height="{height}"'
             f' alt="{description}"{fill if told["embed"] else ""}>'
         )
-    own = ""
+    own = unseen = ""
     if told["embed"]:
+        unseen = _UNSEEN
         # As wide as what it stands in; as high too, where that has a height of its own.
         place = (
             f"display:block;position:relative;width:100%;height:100%;aspect-ratio:{width}/{height}"
@@ -137,14 +140,14 @@ def _stage(told: Mapping[str, Any], poster: bytes) -> str:
         own = f' style="{place}"'
     return (
         f'<div data-distal class="distal"{own}>{shown}<noscript>{NO_SCRIPT}</noscript></div>\n'
-        f'<script type="application/distal+json">{json_text(told)}</script>\n'
+        f'<script type="application/distal+json"{unseen}>{json_text(told)}</script>\n'
     )
 
 
 def _fragment(stage: str, told: Mapping[str, Any], player: str) -> str:
     return (
         f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
-        f'{stage}<script type="module">{player}</script>\n'
+        f'{stage}<script type="module"{_UNSEEN}>{player}</script>\n'
     )
 
 

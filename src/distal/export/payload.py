@@ -122,7 +122,7 @@ def description_of(seen: Viewable, name: str) -> str:
     """One sentence for who cannot see it: the author's own, else one made of the name."""
     text = _documentation(seen).strip()
     if text:
-        return " ".join(text.split("\n\n")[0].split())
+        return " ".join(text.split("\n\n")[0].split()).replace("``", "")
     return f"{name}: a picture drawn live."
 
 

@@ -17,7 +17,7 @@ from distal.backends.base import Artifact
 from distal.backends.module_text import comment_text
 from distal.compiler import run_passes
 from distal.export.exported import Exported
-from distal.film.replacement import replacement
+from distal.film.replacement import SaveError, replacement
 from distal.frontend import lower
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.lang.chosen_values import checked_values
@@ -151,6 +151,9 @@ def write_files(path: Path, artifact: Artifact, text: str) -> tuple[Path, ...]:
         files[path.with_suffix(".json")] = json.dumps(artifact.interface, indent=2)
     if artifact.vertex is not None:
         files[path.with_suffix(".vert")] = artifact.vertex
+    if path in files:
+        kind = "interface" if path.suffix == ".json" else "vertex stage"
+        raise SaveError(f"cannot write {path}: its {kind} goes there; give it another suffix")
     for place, content in {**files, path: text}.items():
         with replacement(place) as file:
             file.write(content.rstrip("\n").encode() + b"\n")
