@@ -26,6 +26,7 @@ import distal
 from distal.devices.threads import usable_threads
 from distal.executor_hook import executor
 from distal.film.video import KINDS, codec_of
+from distal.film.video_pixels import Converter
 from distal.film.video_segments import Piece, join
 from distal.sequence import video
 from distal.sequence.recording import encoder_threads
@@ -66,13 +67,14 @@ def render_alone(image: object, frames: int) -> None:
 def encode_alone(pictures: list[object], frames: int, folder: Path) -> None:
     """Encode pictures that are there, in pieces of two seconds, and join these."""
     codec, pieces = codec_of(KINDS[".mp4"], 80.0), []
+    converter = Converter(codec)
     for first in range(0, frames, 120):
         count = min(120, frames - first)
         path = folder / f"{first}.mp4"
         piece = Piece(path, codec, SIZE, RATE, encoder_threads())
         for i in range(first, first + count):
             at = i % (2 * HELD)  # forth and back, so that it moves smoothly
-            piece.add(pictures[min(at, 2 * HELD - 1 - at)])
+            piece.add(converter.frame(pictures[min(at, 2 * HELD - 1 - at)]))
         piece.finish()
         pieces.append((path, count))
     join(pieces, folder / "alone.mp4", KINDS[".mp4"], RATE, {})

@@ -30,8 +30,9 @@ class Converter:
         reformatter = self._av.video.reformatter
         self._reformatter = reformatter.VideoReformatter()
         ways = reformatter.Interpolation
-        # Rounded, and colors from all pixels: patches are off by half a level at most.
-        self._way = ways.BILINEAR | ways.ACCURATE_RND | ways.FULL_CHR_H_INP
+        # Colors from all pixels. Exact rounding would take half as long again (0.71 ms instead of
+        # 0.46 at 640x480) and move colors by 0.06 of a level; brightness is the same.
+        self._way = ways.BILINEAR | ways.FULL_CHR_H_INP
 
     def frame(self, array: NDArray[np.float32]) -> Any:
         """The frame of a picture; what is transparent shows its color."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
@@ -35,6 +35,7 @@ from distal.film.video import (
     read_quality,
 )
 from distal.film.video_animation import Animation, animate
+from distal.film.video_pixels import Converter
 from distal.film.video_segments import PIECE_SUFFIX, Piece, join
 from distal.sequence.frames import Frames, make_folder
 from distal.sequence.overlap import taking
@@ -44,6 +45,7 @@ from distal.sequence.timing import Timing, timing
 from distal.uniform_values import checked_size
 from distal.version import __version__
 
+Item = TypeVar("Item")
 # Told (frames done, all frames, "rendering" or "encoding").
 Progress = Callable[[int, int, str], Any]
 # A loop whose ends differ by more jumps: three steps of 255 on average.
@@ -233,7 +235,7 @@ class _Job:
         wanted = [i for _, frames in missing for i in frames]
         encoding = _Encoding(dict(missing), codec, self, kept)
         try:
-            self._render(wanted, encoding.take, workers=1)
+            self._render(wanted, encoding.ready, encoding.take, workers=1)
         except BaseException:
             encoding.abandon()
             raise
@@ -254,13 +256,17 @@ class _Job:
         wanted = [i for i in range(self.timing.count) if self.fresh or not frames.is_there(i)]
         # Measured: 13 ms for a PNG of 640x480 against 6 ms for rendering it on two processors.
         workers = max(1, min(4, usable_threads()))
-        self._render(wanted, lambda item: frames.write(*item), workers)
+        self._render(wanted, lambda i, made: (i, made), lambda item: frames.write(*item), workers)
         return len(wanted)
 
     def _render(
-        self, wanted: Iterable[int], take: Callable[[tuple[int, Picture]], None], workers: int
+        self,
+        wanted: Iterable[int],
+        ready: Callable[[int, Picture], Item],
+        take: Callable[[Item], None],
+        workers: int,
     ) -> None:
-        """Render frames here while threads take them."""
+        """Render frames and make them ready here, while threads take them."""
         indices = list(wanted)
         count = self.timing.count
         done = count - len(indices)
@@ -272,7 +278,7 @@ class _Job:
                 picture = self.program.picture(i, at)
                 if i == 0:
                     self.program.doubt(picture, at)
-                taker.put((i, picture))
+                taker.put(ready(i, picture))
                 done += 1
                 self.progress(done, count, "rendering")
 
@@ -353,22 +359,32 @@ class _Encoding:
     ) -> None:
         self._pieces = iter(pieces.items())
         self._codec = codec
+        self._converter = Converter(codec)
         self._job = job
         self._kept = kept
         self._piece: Piece | None = None
         self._last = -1
 
-    def take(self, item: tuple[int, Picture]) -> None:
+    def ready(self, index: int, picture: Picture) -> tuple[int, Any, Picture | None]:
+        """A frame as it waits; made where it was rendered, while its pixels are in the cache.
+
+        A frame of 8 bits is a tenth of its picture: converted at once it costs 0.8 ms less of a
+        processor, at 640x480.
+        """
+        frame = self._converter.frame(picture.array)
+        return index, frame, picture if self._kept is not None else None
+
+    def take(self, item: tuple[int, Any, Picture | None]) -> None:
         """Encode the next frame."""
-        index, picture = item
+        index, frame, picture = item
         if self._piece is None:
             path, frames = next(self._pieces)
             self._last = frames[-1]
             size, rate = self._job.program.size, self._job.timing.rate
             self._piece = Piece(path, self._codec, size, rate, encoder_threads())
-        if self._kept is not None:
+        if self._kept is not None and picture is not None:
             self._kept.write(index, picture)
-        self._piece.add(picture.array)
+        self._piece.add(frame)
         if index == self._last:
             self._piece.finish()
             self._piece = None
