@@ -32,18 +32,26 @@ float sine_near_zero(float r) {
 }
 
 // careful.py:21
+#ifdef TRUST_SIN
+float sine(float x) { return sin(x); }
+#else
 float sine(float x) {
     float n = floor(x * 0.15915494 + 0.25) + 0.25;
     float rest = x - n * 6.28125 - n * 0.0019353072;
     return sine_near_zero(1.5707964 - abs(rest));
 }
+#endif
 
 // careful.py:30
+#ifdef TRUST_COS
+float cosine(float x) { return cos(x); }
+#else
 float cosine(float x) {
     float n = floor(x * 0.15915494 + 0.5);
     float rest = x - n * 6.28125 - n * 0.0019353072;
     return sine_near_zero(1.5707964 - abs(rest));
 }
+#endif
 
 // scene.py:39
 vec2 rotated(vec2 p, float angle) {

@@ -57,6 +57,7 @@ def program(body: str, *uniforms: dict[str, Any], **changes: Any) -> dict[str, A
         "uniforms": list(uniforms),
         "textures": [],
         "buffers": [],
+        "trust": {},
         "lines": [],
         "vertex_lines": [],
         **changes,

@@ -9,6 +9,7 @@
 import type { Payload, Program } from "./payload";
 import { link, type Linked } from "./program";
 import { Resources } from "./resources";
+import { trusted, trusting } from "./trust";
 import { setUniforms, type Inputs } from "./uniforms";
 
 interface Target {
@@ -57,12 +58,31 @@ export class Painter {
   program(source: Program): Promise<Linked> {
     let made = this.#programs.get(source);
     if (!made) {
-      made = link(this.gl, source);
+      made = this.#link(source);
       this.#programs.set(source, made);
       // Whoever asks again after a failure tries again.
       made.catch(() => this.#programs.delete(source));
     }
     return made;
+  }
+
+  /** What a program draws that reads nothing, byte by byte; the picture being drawn is not touched. */
+  async bytes(source: Program, width: number, height: number): Promise<Uint8Array> {
+    const { gl } = this;
+    const program = await link(gl, source);
+    const work = this.#work;
+    this.#work = newTarget(gl);
+    this.draw(program, { frame: {}, parameter: {}, number: {} }, [width, height], 0, height);
+    this.#work = work;
+    const read = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, read);
+    return read;
+  }
+
+  async #link(source: Program): Promise<Linked> {
+    const { gl } = this;
+    const names = Object.keys(source.trust).length ? await trusted(this) : [];
+    return { ...(await link(gl, { ...source, fragment: trusting(source, names) })), source };
   }
 
   /** The size of a picture at a scale of the canvas, as far as the GPU goes. */

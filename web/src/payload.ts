@@ -52,6 +52,8 @@ export interface Program {
   uniforms: UniformEntry[];
   textures: TextureEntry[];
   buffers: BufferEntry[];
+  /** What to define for the driver's own built-in in place of the fragment's careful one. */
+  trust: Record<string, string>;
   lines: LineRange[];
   vertex_lines: LineRange[];
 }

@@ -10,6 +10,7 @@ import { Painter } from "./painter";
 import type { Payload, Program } from "./payload";
 import { LostError, type Linked } from "./program";
 import { PROBE_PIXELS, Resolution } from "./resolution";
+import { forget } from "./trust";
 import type { Inputs } from "./uniforms";
 import { gpuDone, nextFrame } from "./waiting";
 
@@ -188,6 +189,7 @@ export class Renderer {
   #lose(): void {
     this.#painter = null;
     this.#program = null;
+    forget();
     this.#enter("lost");
   }
 

@@ -14,6 +14,7 @@ from distal.backends.glsl_isf import IsfHeader
 from distal.backends.glsl_resources import canvas_textures, shadertoy_channels
 from distal.backends.glsl_stages import DIALECTS, Declares, Program, fragment_lines, vertex_lines
 from distal.backends.glsl_uniforms import beyond_room
+from distal.backends.glsl_writer import trust_macro
 from distal.backends.interface import interface
 from distal.backends.keywords import (
     GLSL_CANVAS_NAMES,
@@ -25,6 +26,7 @@ from distal.backends.keywords import (
 from distal.backends.module_names import ModuleNames, name_module, reachable
 from distal.backends.module_text import joined, per_frame_reads, without_frame
 from distal.backends.packing import Packing, pack
+from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import Type
@@ -50,6 +52,7 @@ TARGETS: Final = (
     Target("shadertoy", "glsl", FramePlace.PIXEL),
 )
 
+_TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
 _FIRST_NAMES: Final = {
     "glsl-es300": frozenset({"fragment_color"}),
     "glsl-330": frozenset({"fragment_color"}),
@@ -103,7 +106,10 @@ def _program(module: Module, target: Target) -> Program:
         fixed |= isf.texts
         first |= isf.names
         header, resources = isf.lines, isf.resources
-    names = name_module(module, _RESERVED, GLSL_KEYWORDS, first, fixed, resources)
+    # A macro takes its word from everything: from locals and fields too.
+    macros = frozenset(_TRUST.values()) if target.rough else frozenset()
+    words, keywords = _RESERVED | macros, GLSL_KEYWORDS | macros
+    names = name_module(module, words, keywords, first, fixed, resources)
     packing = None
     if target.frame is FramePlace.VERTEX:
         packing = pack(_sent(module))
@@ -119,6 +125,14 @@ def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
     functions = reachable(module, expressions_in(entry.body))
     read = per_frame_reads((*functions, entry))
     return tuple((name, value.type) for name, value in module.frame if name in read)
+
+
+def _trust(module: Module) -> dict[str, str]:
+    """The macros that the fragment text knows, by the built-ins whose careful functions it has."""
+    entry = module.function(module.entry)
+    functions = (*reachable(module, expressions_in(entry.body)), entry)
+    natives = {f.native for f in functions}
+    return {name: macro for name, macro in _TRUST.items() if name in natives}
 
 
 def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
@@ -141,6 +155,9 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
         spelled = uniform["uniform"].removeprefix("vec4(").removeprefix("vec3(")
         uniform["uniform"] = spelled.partition(",")[0].partition(" ")[0]
     result["version"] = _VERSIONS[target.name]
+    if target.rough:
+        # Built-in: what a host defines that found its driver's own good (in the fragment stage).
+        result["trust"] = _trust(module)
     for buffer in result["buffers"]:
         buffer["count"] = names.counts[buffer["name"]]
         buffer["layout"] = "texture, one texel an element, row by row"

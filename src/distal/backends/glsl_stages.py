@@ -14,6 +14,7 @@ from typing import assert_never
 
 from distal.backends.clike import place
 from distal.backends.code import Code, Line
+from distal.backends.expense import Expense
 from distal.backends.glsl_isf import ISF_MOUSE, IsfWriter, sampler_lines
 from distal.backends.glsl_resources import accessor_lines, resource_lines
 from distal.backends.glsl_uniforms import constant_line, constant_lines, default_text
@@ -146,10 +147,9 @@ class Program:
 
     def writer(self) -> GlslWriter:
         """A writer for one stage."""
-        if self.target == "isf":
-            return IsfWriter(self.names, self.fixed)
         kind = Glsl100Writer if self.target in OLD_TARGETS else GlslWriter
-        return kind(self.names, self.fixed)
+        kind = IsfWriter if self.target == "isf" else kind
+        return kind(self.names, Expense(self.module), self.fixed)
 
 
 def fragment_lines(program: Program) -> list[Line]:
@@ -158,6 +158,7 @@ def fragment_lines(program: Program) -> list[Line]:
     entry = module.function(module.entry)
     is_image = module.kind is EntryKind.IMAGE
     writer = program.writer()
+    writer.leaves_choice = True
     roots: list[Expr] = list(expressions_in(entry.body))
     here = program.packing is None  # the per-frame part is computed in this stage
     frame = [value for _, value in module.frame] if here else []
@@ -179,7 +180,11 @@ def fragment_lines(program: Program) -> list[Line]:
 
 
 def vertex_lines(program: Program) -> list[Line]:
-    """The vertex stage: one triangle over the whole picture, and the per-frame part."""
+    """The vertex stage: one triangle over the whole picture, and the per-frame part.
+
+    Three vertices cost nothing, and nobody measures the driver's functions in this stage: the
+    careful ones always stand here.
+    """
     module = program.module
     writer = program.writer()
     frame = [value for _, value in module.frame]

@@ -13,12 +13,14 @@ from typing import assert_never
 from distal.backends.clike import FunctionWriter
 from distal.backends.code import Code, Level, infix, literal_code, tight
 from distal.backends.constants import is_table
+from distal.backends.expense import EAGER_OPERATIONS, Expense
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
 from distal.diagnostics import CompileError
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
+    Builtin,
     Compare,
     CompareOp,
     Const,
@@ -27,6 +29,7 @@ from distal.ir.nodes import (
     Function,
     Index,
     PerFrame,
+    Read,
     Resource,
     Select,
     Unary,
@@ -69,16 +72,25 @@ _SCALAR_ARGUMENTS = {
 }
 
 
+def trust_macro(native: str) -> str:
+    """What a host defines to have the driver's own built-in in place of the careful function."""
+    return f"TRUST_{native.upper()}"
+
+
 class GlslWriter(FunctionWriter):
     """Writes GLSL functions."""
 
     family = "glsl"
 
-    def __init__(self, names: ModuleNames, uniform_texts: Mapping[str, str]) -> None:
-        """Args: the module's names; what stands for uniforms that are not declared by name."""
+    def __init__(
+        self, names: ModuleNames, expense: Expense, uniform_texts: Mapping[str, str]
+    ) -> None:
+        """Args: the module's names and costs; what stands for uniforms not declared by name."""
         super().__init__(names)
+        self.expense = expense
         self.uniform_texts = uniform_texts
         self.output: str | None = None  # what main assigns where another function returns
+        self.leaves_choice = False  # the driver's own or the careful function, as the host likes
 
     # Types
 
@@ -130,7 +142,23 @@ class GlslWriter(FunctionWriter):
     def per_frame(self, e: PerFrame) -> Code:
         return Code(self.names.frame[e.name])
 
-    # Statements
+    # Functions and statements
+
+    def function(self, fn: Function) -> None:
+        if fn.native is None or not self.leaves_choice:
+            super().function(fn)
+            return
+        # Under the same name, so that no macro takes a word away from the author's own names.
+        self.open_function(fn)
+        reads = tuple(Read(p.name, p.type) for p in fn.params)
+        native = self.expression(Builtin(fn.native, reads, fn.result))
+        self.line(f"#ifdef {trust_macro(fn.native)}")
+        self.line(f"{self.header(fn)} {{ return {native.text}; }}")
+        self.line("#else")
+        self.line(f"{self.header(fn)} {{")
+        self.body(fn)
+        self.line("}")
+        self.line("#endif")
 
     def header(self, fn: Function) -> str:
         params = ", ".join(f"{self.type_name(p.type)} {self.locals[p.name]}" for p in fn.params)
@@ -228,9 +256,23 @@ class GlslWriter(FunctionWriter):
     def chosen(self, e: Select, condition: Code, yes: Code, no: Code) -> Code | None:
         if not isinstance(e.type, Scalar | Vector | Matrix):
             return None
+        if self.family == "glsl" and self._is_picked(e):
+            lanes = component_count(e.type) if isinstance(e.type, Vector) else 1
+            picks = self.call(f"bvec{lanes}", [condition]) if lanes > 1 else condition
+            return self.call("mix", [no, yes, picks])
         test = f"({condition.text})" if condition.level is Level.TERNARY else condition.text
         first = f"({yes.text})" if yes.level is Level.TERNARY else yes.text
         return Code(f"{test} ? {first} : {no.text}", Level.TERNARY)
+
+    def _is_picked(self, e: Select) -> bool:
+        """Whether both values are computed: ``?:`` may be a branch, ``mix`` by a bool never is.
+
+        SwiftShader's time for a loop doubles with each branch of two equal ways in it: of nine
+        scenes of the gallery it compiled none before the memory ran out, and takes a second so.
+        """
+        if isinstance(e.type, Matrix) or kind_of(e.type) is not Kind.FLOAT:
+            return False
+        return max(self.expense.of(e.yes), self.expense.of(e.no)) <= EAGER_OPERATIONS
 
     def chosen_by_components(self, e: Select) -> Code:
         if kind_of(e.type) is Kind.FLOAT and self.family == "glsl":

@@ -231,6 +231,7 @@ class Programs:
                 | {"name": names[entry["name"]]}
                 for entry in told["buffers"]
             ],
+            "trust": told["trust"],
             "lines": lines,
             "vertex_lines": vertex_lines,
         }

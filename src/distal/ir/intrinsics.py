@@ -67,7 +67,8 @@ class Intrinsic:
         wgsl: Spelling.
         llvm: Spelling.
         careful: The prelude function that stands in on targets whose drivers are rough
-            (``Target.rough``); else they spell the row as their family does.
+            (``Target.rough``); else, and where a host trusts its driver, they spell the row as
+            their family does.
         derivative: The rule in ``distal.ir.derivatives``; every row that gives floats has one.
         hidden: Not a name of the language: only prelude code and passes use it.
     """

@@ -497,7 +497,9 @@ class Param:
 class Function:
     """A function. Every path ends in Return (or in a ``while True`` that never ends).
 
-    ``name`` is unique in the module; ``source_name`` is what the author called it.
+    ``name`` is unique in the module; ``source_name`` is what the author called it. ``native`` is
+    the built-in that the function stands in for on a rough target, of the same arguments: a text
+    may let its host choose the driver's own.
     """
 
     name: str
@@ -505,6 +507,7 @@ class Function:
     result: Type
     body: tuple[Stmt, ...]
     source_name: str
+    native: str | None = field(default=None, kw_only=True)
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 

@@ -31,7 +31,8 @@ class Target:
         texel_fetch: Reads single texels and sizes.
         samples: Filters textures itself (else the prelude's filter over single texels).
         rough: Its drivers' own sine and the like may be off by what a picture shows; the table's
-            ``careful`` functions stand in. Texts for people and their sites keep the short names.
+            ``careful`` functions stand in, unless a host that has measured its driver trusts it.
+            Texts for people and their sites keep the short names.
         inline: Wants small functions inlined.
         predicated: Wants loops without break, continue and return inside (see passes.predicate).
     """

@@ -71,15 +71,22 @@ def run(module: Module, context: Context) -> Module:
         for function in linker.module.functions:
             if function.name not in done:
                 done[function.name] = _Body(linker, context, function).function()
-    functions = in_call_order(done.values(), module.entry)
+    standing_in = [replace(f, native=linker.natives.get(f.name)) for f in done.values()]
+    functions = in_call_order(standing_in, module.entry)
     return replace(linker.module, functions=functions)
 
 
 class _Linker:
-    """The module as it grows by prelude functions."""
+    """The module as it grows by prelude functions.
+
+    Attributes:
+        module: As it is so far.
+        natives: Functions that stand in for what rough drivers have themselves: its name.
+    """
 
     def __init__(self, module: Module, context: Context) -> None:
         self.module = module
+        self.natives: dict[str, str] = {}
         self._library = context.library
         self._blames: dict[str, Blame] = {}  # prelude functions: what the author wrote
         self._wrappers: dict[tuple[str, tuple[Type, ...]], str] = {}
@@ -88,7 +95,7 @@ class _Linker:
         """What of the author's brought a prelude function in; None for the author's own."""
         return self._blames.get(function)
 
-    def call(self, name: str, args: tuple[Expr, ...], type: Type, blame: Blame) -> Expr:
+    def call(self, name: str, args: tuple[Expr, ...], type: Type, blame: Blame) -> Call:
         """A call of a prelude function, component by component if it takes scalars only."""
         types = tuple(a.type for a in args)
         if self._library.find(name, types) is not None:
@@ -217,14 +224,16 @@ class _Body:
             case _:
                 return e
 
-    def _scene(self, e: Expr, name: str, args: tuple[Expr, ...], what: str) -> Expr:
+    def _scene(self, e: Expr, name: str, args: tuple[Expr, ...], what: str) -> Call:
         return self._linker.call(name, args, e.type, self._blamed(e, what))
 
     def _builtin(self, e: Builtin) -> Expr:
         row = INTRINSICS[e.name]
         family = self._target.family
         if self._target.rough and row.careful is not None:
-            return self._scene(e, row.careful, e.args, e.name)
+            careful = self._scene(e, row.careful, e.args, e.name)
+            self._linker.natives[careful.function] = e.name
+            return careful
         spelling = row.spelling(family)
         # GLSL ES 1.00 has the functions of numbers for floats only.
         if family == "glsl100" and row.scene and kind_of(e.args[0].type) in _WHOLE:
