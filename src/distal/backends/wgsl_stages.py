@@ -17,13 +17,14 @@ from dataclasses import dataclass
 from typing import Final
 
 from distal.backends.code import Code, Line
+from distal.backends.expense import Expense
 from distal.backends.module_names import ModuleNames, called_by, reachable, types_in
 from distal.backends.module_text import per_frame_reads, uniform_comment
 from distal.backends.names import Namer
 from distal.backends.wgsl_functions import function_binding_lines, function_entry_lines
 from distal.backends.wgsl_layout import Layout, shared_type
 from distal.backends.wgsl_resources import accessor_lines, binding_lines, fetched_resources
-from distal.backends.wgsl_writer import Expense, WgslWriter
+from distal.backends.wgsl_writer import WgslWriter
 from distal.ir.nodes import EntryKind, Expr, Function, Module, Resource
 from distal.ir.types import Kind, Matrix, Struct, Type, Vector, kind_of
 from distal.ir.walk import expressions_in, nodes_in

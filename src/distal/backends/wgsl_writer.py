@@ -16,21 +16,19 @@ from typing import assert_never
 from distal.backends.clike import FunctionWriter
 from distal.backends.code import Code, Level, infix, literal_code, tight
 from distal.backends.constants import is_literal_operation, is_table
+from distal.backends.expense import EAGER_OPERATIONS, Expense
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
-    Call,
     Compare,
     Const,
     Construct,
     Expr,
     Field,
-    For,
     Function,
     Index,
-    Module,
     PerFrame,
     Read,
     Resource,
@@ -40,7 +38,6 @@ from distal.ir.nodes import (
     Unary,
     UnaryOp,
     Uniform,
-    While,
 )
 from distal.ir.types import (
     Array,
@@ -58,34 +55,10 @@ from distal.ir.types import (
     kind_of,
     with_kind,
 )
-from distal.ir.walk import expressions_in, nodes_in, statements_in
+from distal.ir.walk import expressions_in
 
 _SCALARS = {Kind.FLOAT: "f32", Kind.INT: "i32", Kind.UINT: "u32", Kind.BOOL: "bool"}
 _LETTERS = {Kind.FLOAT: "f", Kind.INT: "i", Kind.UINT: "u"}
-
-# Up to so many operations in a branch, both branches are computed and one is picked.
-EAGER_OPERATIONS = 40
-
-
-class Expense:
-    """How many operations an expression may run; a loop counts as very many."""
-
-    LOOP = 10**6
-
-    def __init__(self, module: Module) -> None:
-        self._functions: dict[str, int] = {}
-        for function in module.functions:
-            loops = any(isinstance(s, For | While) for s in statements_in(function.body))
-            self._functions[function.name] = (
-                self.LOOP if loops else sum(map(self._own, expressions_in(function.body)))
-            )
-
-    def _own(self, e: Expr) -> int:
-        return 1 + (self._functions.get(e.function, 0) if isinstance(e, Call) else 0)
-
-    def of(self, e: Expr) -> int:
-        """Operations of an expression with the functions that it calls."""
-        return sum(map(self._own, nodes_in(e)))
 
 
 def _root(e: Expr) -> Expr:

@@ -16,8 +16,8 @@ LARGEST_UINT = 4294967295
 def float_to_int(x: float) -> int:
     """Toward zero; beyond the range the nearest int; 0 for NaN, which fails every comparison."""
     inside = select(x > -INT_END and x < INT_END, x, 0.0)
-    whole = saturated_int(inside)
-    return select(x >= INT_END, LARGEST_INT, select(x <= -INT_END, SMALLEST_INT, whole))
+    least = select(x <= -INT_END, SMALLEST_INT, saturated_int(inside))
+    return select(x >= INT_END, LARGEST_INT, least)
 
 
 @func
