@@ -540,6 +540,21 @@ def test_keys_do_what_the_list_of_keys_says(tmp_path: Path) -> None:
         assert not page.page.get_by_role("dialog").is_visible()
 
 
+def test_the_list_of_keys_tells_of_the_mouse_that_a_picture_reads(tmp_path: Path) -> None:
+    body = "uniform vec4 mouse;\nvoid main() { fragment_color = vec4(mouse.xy, 0.0, 1.0); }\n"
+    reading = payload(program(body, pages.MOUSE))
+    for scene, said in ((reading, "Drag, ← → ↑ ↓"), (steered(), "Right drag"), (reddish(), "")):
+        with opened(tmp_path, scene, viewport=WIDE) as page:
+            page.page.keyboard.press("?")
+            words = page.page.get_by_role("dialog").inner_text()
+            assert said in words
+            assert ("Drag" in words) == bool(said)
+            page.page.keyboard.press("Escape")
+            assert page.page.get_by_role("dialog").count() == 0
+            page.page.keyboard.press("?")
+            assert page.page.get_by_role("dialog").is_visible()
+
+
 def test_keys_in_a_field_are_the_fields(tmp_path: Path) -> None:
     with opened(
         tmp_path, steered(parameters=[TINT]), viewport={"width": 700, "height": 300}
@@ -819,6 +834,17 @@ def test_an_embedded_player_is_bare_and_leaves_the_page_its_wheel(tmp_path: Path
         page.page.mouse.wheel(0, 100)
         page.page.wait_for_function(f"{PLAYER}.steering().zoom > 1")
         assert page.page.evaluate("scrollY") == 0
+
+
+def test_a_pages_way_of_writing_stays_outside_what_is_hidden_stays_hidden(tmp_path: Path) -> None:
+    tail = "<style>body{direction:rtl;text-transform:uppercase;letter-spacing:9px}</style>"
+    told = "['direction', 'textTransform', 'letterSpacing', 'visibility', 'pointerEvents']"
+    with opened(tmp_path, moving(), tail=tail, viewport=WIDE, reduced_motion="reduce") as page:
+        style = f"(e) => {{ const s = getComputedStyle(e); return {told}.map((n) => s[n]) }}"
+        label = page.page.get_by_text("Resolution")
+        assert label.evaluate(style) == ["ltr", "none", "normal", "visible", "auto"]
+        page.page.evaluate("document.body.style = 'visibility:hidden;pointer-events:none'")
+        assert label.evaluate(style)[3:] == ["hidden", "none"]
 
 
 def test_several_scenes_on_a_page_do_not_disturb_each_other_nor_the_page(tmp_path: Path) -> None:

@@ -27,7 +27,6 @@ export class Frame {
   static #pages = 0;
   readonly root: ShadowRoot;
   readonly notices = new Notices();
-  readonly help: HTMLDialogElement;
   canvas: HTMLCanvasElement;
   #player: Player;
   #box: HTMLElement;
@@ -52,9 +51,8 @@ export class Frame {
     const poster = payload.poster && make("img", { src: payload.poster, alt: payload.description });
     const still = make("slot", { className: "still" }, poster || "");
     this.#stage = make("div", { className: "stage" }, still, this.canvas, this.notices.element);
-    this.help = helpOf((action) => this.#has(action), !!player.camera);
     const classes = `player ${theme} ${payload.embed ? "embed" : ""}`;
-    this.#box = make("div", { className: classes }, this.#stage, this.notices.status, this.help);
+    this.#box = make("div", { className: classes }, this.#stage, this.notices.status);
     this.root.replaceChildren(this.#box);
     this.#stage.after(toolbarOf(player));
     if (!payload.embed) {
@@ -69,6 +67,14 @@ export class Frame {
 
   set state(state: State) {
     this.#box.dataset["state"] = state;
+  }
+
+  showHelp(): void {
+    const { camera, readsMouse } = this.#player;
+    const dialog = helpOf((action) => this.#has(action), camera ? "camera" : readsMouse && "mouse");
+    this.#box.append(dialog);
+    dialog.onclose = () => dialog.remove();
+    dialog.showModal();
   }
 
   togglePanel(): void {

@@ -3,15 +3,25 @@
 import { make } from "./dom";
 import { KEYS, type Actions } from "./keyboard";
 
-export function helpOf(has: (action: keyof Actions) => boolean, turns: boolean): HTMLDialogElement {
-  const rows: (readonly [string, string])[] = turns
-    ? [
-        ["Drag", "Turn around the scene"],
-        ["Right drag, two fingers", "Move the scene"],
-        ["Wheel, pinch", "Nearer, farther"],
-        ["Double click", "Reset the camera"],
-      ]
-    : [];
+/** What a hand on the picture moves. */
+const GESTURES = {
+  camera: [
+    ["Drag", "Turn around the scene"],
+    ["Right drag, two fingers", "Move the scene"],
+    ["Wheel, pinch", "Nearer, farther"],
+    ["Double click", "Reset the camera"],
+  ],
+  mouse: [
+    ["Drag, ← → ↑ ↓", "The mouse that the picture reads"],
+    ["R, double click", "Reset the mouse"],
+  ],
+} as const;
+
+export function helpOf(
+  has: (action: keyof Actions) => boolean,
+  moved: keyof typeof GESTURES | false,
+): HTMLDialogElement {
+  const rows: (readonly [string, string])[] = moved ? [...GESTURES[moved]] : [];
   for (const [keys, meaning, needs] of KEYS) if (has(needs)) rows.push([keys, meaning]);
   const list = make("dl");
   for (const [keys, meaning] of rows) list.append(make("dt", {}, keys), make("dd", {}, meaning));

@@ -237,7 +237,7 @@ export class Player {
   }
 
   showHelp(): void {
-    this.#frame.help.showModal();
+    this.#frame.showHelp();
   }
 
   /** Stops everything and gives the GPU's memory back. */
