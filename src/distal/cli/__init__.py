@@ -7,6 +7,7 @@ command line, 130 after ctrl-C. Knows no algorithm.
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 
@@ -16,9 +17,23 @@ def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     print(f"warning: {message}", file=sys.stderr)
 
 
+def _open_what_is_closed() -> None:
+    """Stand-ins for standard streams that were closed: a scene's file must not become one."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free: this one
+    if sys.stdout is None:
+        sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115 (for good)
+    if sys.stderr is None:
+        sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (for good)
+
+
 def main() -> None:
     """Run the command line of this process."""
     try:
+        _open_what_is_closed()
         # Inside the try, and nothing heavy before it, so that ctrl-C is never a traceback.
         from distal.cli.application import application
 

@@ -17,7 +17,7 @@ import typer
 import distal
 from distal.cli import check, export, probe, render, rerender, video, view
 from distal.cli.arguments import UsageError, read_scene
-from distal.cli.base import SceneArgument, application, load, reporting
+from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.export.texts import with_header
 from distal.film.replacement import check_destination, replacement
 from distal.loading import EXAMPLE_PREFIX
@@ -96,7 +96,7 @@ def compile(
     artifact = distal.compile(load(scene), target=target.value, after=after)
     text = with_header(artifact, target.value, _file_name(scene))
     if output is None:
-        print(text.rstrip("\n"))
+        answer(text.rstrip("\n"))
         return
     files = {output.with_suffix(".json"): json.dumps(artifact.interface, indent=2)}
     if artifact.vertex is not None:
@@ -112,7 +112,7 @@ def compile(
 def examples() -> None:
     """List the gallery; render one as example:NAME."""
     for name, path in sorted(distal.gallery().items()):
-        print(f"example:{name}\t{path}")
+        answer(f"example:{name}\t{path}")
 
 
 @application.command()

@@ -150,6 +150,20 @@ def chosen_device(device: Device, adapter: str | None) -> str:
     return device.value
 
 
+def answer(text: str) -> None:
+    """Write data to stdout.
+
+    Raises:
+        SaveError: It cannot be written, as to a file on a full disk.
+    """
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:  # whoever reads has seen enough
+        raise
+    except OSError as error:
+        raise SaveError(f"cannot write to stdout: {error.strerror or error}") from None
+
+
 def load(scene: str) -> SceneCode:
     """The object that FILE[:NAME] means."""
     path, name = read_scene(scene)

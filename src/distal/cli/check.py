@@ -18,6 +18,7 @@ from distal.cli.base import (
     SceneArgument,
     SetOption,
     TimeOption,
+    answer,
     application,
     check_processor,
     load,
@@ -59,9 +60,9 @@ def check(
     shape = obj.shape if isinstance(obj, Scene) else obj
     checkup = look_over(shape, values, seconds, seed)
     if as_json:
-        print(json.dumps({**checkup.as_json(), "name": obj.name}))
+        answer(json.dumps({**checkup.as_json(), "name": obj.name}))
     else:
-        print("\n".join(told(checkup)))
+        answer("\n".join(told(checkup)))
     if not checkup.holds:
         raise typer.Exit(1)
 

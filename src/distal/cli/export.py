@@ -134,7 +134,7 @@ def _write(
     made = written(obj, output, target=target, params=values, **options)
     for view, reason in made.omitted.items():
         print(f"warning: the view '{view}' is left out: {reason}", file=sys.stderr)
-    print(made)
+    print(made, file=sys.stderr)
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

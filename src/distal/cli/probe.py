@@ -18,6 +18,7 @@ from distal.cli.base import (
     SetOption,
     SizeOption,
     TimeOption,
+    answer,
     application,
     check_processor,
     load,
@@ -61,9 +62,9 @@ def probe(
     values = read_assignments(assignments or (), obj.parameters())
     found = look(staged(obj, values, seconds), place, width_height, values, seconds)
     if as_json:
-        print(json.dumps({**found.as_json(), "time": seconds}))
+        answer(json.dumps({**found.as_json(), "time": seconds}))
     else:
-        print("\n".join(told(found, seconds)))
+        answer("\n".join(told(found, seconds)))
 
 
 def told(found: Probed, seconds: float) -> Iterator[str]:

@@ -31,6 +31,7 @@ from distal.cli.base import (
     SetOption,
     SizeOption,
     TimeOption,
+    answer,
     application,
     chosen_device,
     load,
@@ -173,7 +174,7 @@ def render(
         "size": list(width_height),
     }
     if stats:
-        print(json.dumps(figures))
+        answer(json.dumps(figures))
     else:
         say(f"{output}: {picture.width}x{picture.height}; {stages(figures)}")
 

@@ -14,6 +14,7 @@ from distal.cli.arguments import UsageError, read_size
 from distal.cli.base import (
     AdapterOption,
     Device,
+    answer,
     application,
     check_processor,
     chosen_device,
@@ -108,7 +109,7 @@ def rerender(
             say(f"{target}: {made.width}x{made.height}, {plan.source}")
         if check:
             found = room.difference(plan, made)
-            print(_told(picture, found))
+            answer(_told(picture, found))
             if not found.is_none:
                 raise typer.Exit(1)
     except (ReadError, room.RerenderError) as error:

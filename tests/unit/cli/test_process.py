@@ -6,22 +6,25 @@ import subprocess
 import sys
 import time
 
+import pytest
+from PIL import Image
+
 SLOW_SCENE = """
 import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
 import distal, time
 from distal.cli import main
 
-class Scene:
-    def parameters(self):
-        return []
+class Slow(distal.Scene):
     def render(self, **options):
         print("rendering", flush=True)
         time.sleep(60)
 
-distal.load = lambda path, name=None: Scene()
+distal.load = lambda path, name=None: Slow(distal.Sphere(1.0))
 main()
 """
+
+SMALL = (sys.executable, "-m", "distal.cli", "render", "example:melting", "-o", "a.png", "--stats")
 
 
 def environment():
@@ -147,3 +150,28 @@ def test_a_name_that_is_too_long_is_one_line(tmp_path):
     )
     assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)
     assert answer.stderr.startswith("error: cannot read sss")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_stdout_on_a_full_disk_is_one_line(tmp_path):
+    with open("/dev/full", "w") as full:
+        process = subprocess.run(
+            [*SMALL, "--size", "4x4"],
+            cwd=tmp_path,
+            env=environment(),
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert process.returncode == 1
+    assert process.stderr == "error: cannot write to stdout: No space left on device\n"
+
+
+def test_closed_streams_disturb_nothing(tmp_path):
+    script = 'exec "$@" 0<&- 1>&- 2>&-'
+    words = ["sh", "-c", script, "sh", *SMALL, "--size", "4x4"]
+    process = subprocess.run(words, cwd=tmp_path, env=environment())
+    assert process.returncode == 0
+    # Nothing that was meant for a stream is in the picture.
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (4, 4)
