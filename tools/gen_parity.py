@@ -18,7 +18,7 @@ ROOT: Final = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "src")]
 
 import distal  # noqa: E402
-from tests.parity.gallery import WAYS, Measured, Skipped, Way, measure  # noqa: E402
+from tests.parity.gallery import WAYS, Measured, Way, measure  # noqa: E402
 from tests.pictures.comparison import MOST_FAR_OFF, MOST_MEAN  # noqa: E402
 
 PAGE: Final = ROOT / "docs/parity.md"
@@ -40,15 +40,12 @@ NAME ...` does so for these examples only.
 COLUMNS: Final = ("example", "size", "pictures", "mean", "far off", "worst")
 
 
-def row_of(example: str, found: Measured | Skipped) -> str:
+def row_of(example: str, found: Measured) -> str:
     """A line of a table."""
-    if isinstance(found, Skipped):
-        cells = [example, "-", "-", "-", "-", found.reason]
-    else:
-        far_off, flag = f"{found.far_off:.2%}", "" if found.is_agreement else " **beyond**"
-        size = f"{found.size[0]}x{found.size[1]}"
-        cells = [example, size, str(found.pictures), f"{found.mean:.3f}", far_off]
-        cells.append(f"{found.worst}{flag}")
+    far_off, flag = f"{found.far_off:.2%}", "" if found.is_agreement else " **beyond**"
+    size = f"{found.size[0]}x{found.size[1]}"
+    cells = [example, size, str(found.pictures), f"{found.mean:.3f}", far_off]
+    cells.append(f"{found.worst}{flag}")
     return f"| {' | '.join(cells)} |"
 
 
@@ -104,7 +101,7 @@ def measured(names: Sequence[str], ways: Sequence[Way]) -> list[str]:
             rows.setdefault(way.title, {})[example] = line
             PAGE.write_text(make_page(rows, sources))
             print(f"{way.title}: {line} {time.perf_counter() - begin:.1f} s", flush=True)
-            if isinstance(found, Measured) and not found.is_agreement:
+            if not found.is_agreement:
                 faults.append(f"{example} disagrees: {way.title}: {line}")
     return faults
 

@@ -1,8 +1,7 @@
 """The gallery on every way of drawing it, held against the CPU's pictures.
 
 What flows in: an example's name and a way's. What flows out: a ``Measured``: how far the worst of
-its pictures is off, or a ``Skipped`` with the reason why there is none. ``tools/gen_parity.py``
-writes all of them down, the tests look at some.
+its pictures is off. ``tools/gen_parity.py`` writes all of them down, the tests look at some.
 """
 
 from __future__ import annotations
@@ -27,15 +26,6 @@ TIMES: Final = (0.0, 2.9, 11.3)
 LARGE: Final = (160, 120)
 MIDDLE: Final = (96, 72)
 SMALL: Final = (48, 36)
-
-# SwiftShader had none of these compiled after 15 to 25 s, and takes gigabytes for it: the browser
-# lost ``bunny`` after 110 s and 10.7 GB, and drew ``sdfray_csg_on_checker`` after 114 s.
-TOO_LARGE_FOR_SWIFTSHADER: Final = frozenset(
-    [
-        *("bunny", "catalogue", "city", "gyroid_part", "room_door", "still_life"),
-        *("sdfray_csg_on_checker", "sdfray_distortion", "sdfray_refraction"),
-    ]
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,13 +53,6 @@ class Measured:
 
 
 @dataclass(frozen=True, slots=True)
-class Skipped:
-    """An example that a way of drawing cannot be asked for."""
-
-    reason: str
-
-
-@dataclass(frozen=True, slots=True)
 class Way:
     """One way of drawing.
 
@@ -79,8 +62,6 @@ class Way:
         runs_on: What draws, in words that are the same on every machine with that driver.
         size: Of a scene of objects' picture; functions of a pixel are drawn ``LARGE``.
         times: At how many of ``TIMES`` a scene that moves is drawn.
-        refused: Examples that it cannot draw.
-        reason: Why.
     """
 
     title: str
@@ -88,14 +69,10 @@ class Way:
     runs_on: Callable[[], str]
     size: tuple[int, int] = LARGE
     times: int = len(TIMES)
-    refused: frozenset[str] = frozenset()
-    reason: str = ""
 
 
-def measure(example: str, way: Way) -> Measured | Skipped:
+def measure(example: str, way: Way) -> Measured:
     """Draw an example on one way and on the CPU, at each of its times."""
-    if example in way.refused:
-        return Skipped(way.reason)
     size = LARGE if is_function_of_a_pixel(example) else way.size
     times = TIMES[: way.times] if is_moving(example) else TIMES[:1]
     mean = far_off = worst = 0.0
@@ -190,7 +167,5 @@ WAYS: Final[dict[str, Way]] = {
         by_browser("swiftshader"),
         lambda: generic(webgl.renderer("swiftshader")),
         size=MIDDLE,
-        refused=TOO_LARGE_FOR_SWIFTSHADER,
-        reason="SwiftShader runs out of memory or time compiling it",
     ),
 }

@@ -1,7 +1,7 @@
 """The gallery in a real browser, and the page that says how far every way of drawing is off.
 
-``make parity`` draws everything everywhere; here the functions of a pixel and the scenes that
-SwiftShader compiles quickly stand for the rest.
+``make parity`` draws everything everywhere; here the functions of a pixel and a few
+scenes stand for the rest, among them those that once took SwiftShader minutes to compile.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ EXAMPLES = sorted(distal.gallery())
 ON_SWIFTSHADER = [
     *(name for name in EXAMPLES if gallery.is_function_of_a_pixel(name)),
     *("raymarcher_objects", "sdfray_glass", "sea"),
+    *("sdfray_csg_on_checker", "city"),
 ]
 ON_MESA = ["raymarcher", "bunny", "still_life"]
 
@@ -33,7 +34,7 @@ def assert_agreement(example, way):
         found = gallery.measure(example, gallery.WAYS[way])
     except BrowserUnavailableError as error:
         pytest.skip(str(error))
-    assert isinstance(found, gallery.Measured) and found.is_agreement, found
+    assert found.is_agreement, found
 
 
 @pytest.mark.parametrize("example", ON_SWIFTSHADER)
@@ -98,13 +99,9 @@ def test_the_page_lists_every_example_for_every_way(tool):
 
 
 def test_no_row_of_the_page_is_beyond_the_tolerances(tool):
-    for title, lines in tool.rows_on(tool.PAGE.read_text()).items():
-        way = next(way for way in gallery.WAYS.values() if way.title == title)
-        for example, line in lines.items():
+    for lines in tool.rows_on(tool.PAGE.read_text()).values():
+        for line in lines.values():
             *_, mean, far_off, worst = line.strip("| ").split(" | ")
-            if example in way.refused:
-                assert worst == way.reason
-                continue
             assert float(mean) <= 1.0 and float(far_off.rstrip("%")) <= 0.2, line
             assert worst.isdigit(), line  # else the tool has marked it
 
