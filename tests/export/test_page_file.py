@@ -289,6 +289,10 @@ def test_a_mistake_in_python_too(rings, tmp_path):
         obj.export(tmp_path / "a.glsl", embed=True)
     with pytest.raises(ValueError, match="between 0 and 1"):
         obj.export(tmp_path / "a.html", params={"softness": 9.0})
+    with pytest.raises(TypeError, match="a title is a text, not 5"):
+        obj.export(tmp_path / "a.html", title=5)
+    with pytest.raises(TypeError, match="views are names in a list, not 'signal'"):
+        obj.export(tmp_path / "a.html", views="signal")
     with pytest.raises(ValueError, match="no parameter 'nose'"):
         obj.export(tmp_path / "a.glsl", params={"nose": 1})
     assert sorted(tmp_path.iterdir()) == [rings]

@@ -11,6 +11,8 @@ from traitlets import TraitError
 
 import distal
 from distal import Camera, Scene, Sphere, Torus, time
+from distal.diagnostics import CompileError
+from distal.export import payload as payload_room
 from distal.lang import Frame, choice, color, func, image, slider, vec3
 from distal.scene.steering import Steering
 
@@ -108,12 +110,50 @@ def test_a_wrong_value_is_refused_and_nothing_changes(values, error, message):
         ("steering", {"zoom": 0.0}, "a steering is yaw, pitch, zoom and pan"),
         ("steering", {"roll": 1.0}, "a steering is yaw, pitch, zoom and pan"),
         ("steering", {"pan": [1.0]}, "a steering is yaw, pitch, zoom and pan"),
+        ("steering", 3, "a steering is yaw, pitch, zoom and pan"),
     ],
 )
 def test_a_wrong_state_is_refused(name, value, message):
     widget = ball().show()
     with pytest.raises(TraitError, match=message):
         setattr(widget, name, value)
+
+
+def test_a_time_that_no_message_can_carry_is_refused():
+    widget = ball().show()
+    with pytest.raises(ValueError, match="time is finite, not nan"):
+        widget.time = float("nan")
+    assert widget.time == 0.0
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"widht": 3}, TypeError, "'widht' is no option of show; options: panel, params, playing,"),
+        ({"size": 3}, TypeError, "size is .width, height. in pixels, not 3"),
+        ({"size": (0, -3)}, ValueError, "each side has 1 to"),
+        ({"time": "a"}, TypeError, "time is a number of seconds, not 'a'"),
+    ],
+)
+def test_a_wrong_option_is_refused(options, error, message):
+    with pytest.raises(error, match=message):
+        drawn.show(**options)
+
+
+def test_a_view_that_webgl_cannot_show_is_none(monkeypatch):
+    compiled = payload_room._compiled
+
+    def refusing(image):
+        if "depth" in image.name:
+            raise CompileError.at("it cannot be said", None)
+        return compiled(image)
+
+    scene = ball()
+    monkeypatch.setattr(payload_room, "_compiled", refusing)
+    widget = scene.show()
+    widget.view = "normal"
+    with pytest.raises(TraitError, match="there is no view 'depth'"):
+        widget.view = "depth"
 
 
 def test_the_picture_as_it_stands_is_computed_by_python():

@@ -66,6 +66,10 @@ def write(
     size, time = checked_size(size), checked_time(time)
     if duration is not None and not checked_time(duration) > 0.0:
         raise ValueError(f"a duration is more than 0 seconds, not {duration}")
+    if title is not None and not isinstance(title, str):
+        raise TypeError(f"a title is a text, not {title!r}")
+    if isinstance(views, str):
+        raise TypeError(f"views are names in a list, not {views!r}")
     for name in (view, *(views or ())):
         seen.image(name)  # there must be such a view
     player = player_script()

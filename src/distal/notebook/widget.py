@@ -7,6 +7,7 @@ change. Knows nothing of how the browser draws.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping
 from typing import Any
 
@@ -18,6 +19,7 @@ from distal.export.payload import payload
 from distal.lang.chosen_values import checked_values
 from distal.scene.steering import Steering
 from distal.scene.viewable import Viewable, viewable
+from distal.uniform_values import checked_size, checked_time
 
 
 class LiveView(anywidget.AnyWidget):
@@ -69,14 +71,17 @@ class LiveView(anywidget.AnyWidget):
             CompileError: The scene code has mistakes, or says what WebGL cannot do.
             ValueError: A value lies outside its parameter's range, or there is no such view.
         """
+        size, time = checked_size(size), checked_time(time)
         self._seen: Viewable = viewable(obj, params, time)
         if view not in self._seen.views:
             raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
         values = self._checked(params)
         made = payload(self._seen, size=size, params=values, time=time, panel=panel)
+        # Without what WebGL cannot show.
+        self._views = [shown["name"] for shown in made["views"]]
         super().__init__(
             params={**{p.name: _plain(p.default) for p in self._seen.parameters}, **values},
-            time=float(time),
+            time=time,
             playing=self._seen.animated if playing is None else playing,
             view=view,
             steering=_as_dict(Steering()),
@@ -119,13 +124,17 @@ class LiveView(anywidget.AnyWidget):
         # What one side leaves out keeps its value: nothing is lost by a partial change.
         return {**self.params, **self._checked(proposal["value"])}
 
+    @traitlets.validate("time")
+    def _check_time(self, proposal: Any) -> float:
+        # A message to the browser is JSON, which has no infinity.
+        return checked_time(proposal["value"])
+
     @traitlets.validate("view")
     def _check_view(self, proposal: Any) -> str:
         view: str = proposal["value"]
-        if view not in self._seen.views:
-            raise traitlets.TraitError(
-                f"there is no view '{view}'; views: {', '.join(self._seen.views)}"
-            )
+        if view not in self._views:
+            known = ", ".join(self._views)
+            raise traitlets.TraitError(f"there is no view '{view}'; views: {known}")
         return view
 
     @traitlets.validate("steering")
@@ -136,8 +145,8 @@ class LiveView(anywidget.AnyWidget):
 def _as_steering(value: Mapping[str, Any] | Steering) -> Steering:
     if isinstance(value, Steering):
         return value
-    numbers = {"yaw": 0.0, "pitch": 0.0, "zoom": 1.0, "pan": (0.0, 0.0), **value}
     try:
+        numbers = {"yaw": 0.0, "pitch": 0.0, "zoom": 1.0, "pan": (0.0, 0.0), **value}
         x, y = (float(c) for c in numbers.pop("pan"))
         return Steering(pan=(x, y), **{name: float(v) for name, v in numbers.items()})
     except (TypeError, ValueError):
@@ -161,5 +170,12 @@ def _plain(value: Any) -> Any:
 
 
 def show(obj: Any, **options: Any) -> LiveView:
-    """A live picture of a scene, a shape or an ``@image``; see ``LiveView``."""
+    """A live picture of a scene, a shape or an ``@image``; see ``LiveView``.
+
+    Raises:
+        TypeError: There is no such option.
+    """
+    known = sorted(inspect.signature(LiveView).parameters.keys() - {"obj"})
+    if unknown := sorted(set(options) - set(known)):
+        raise TypeError(f"'{unknown[0]}' is no option of show; options: {', '.join(known)}")
     return LiveView(obj, **options)
