@@ -15,17 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.executor_hook import executor
 from distal.film import exr, png
 from distal.film.metadata import Provenance, ReadError, Record, read
 from distal.film.picture import Picture
-from distal.lang.functions import Func, Image
 from distal.loading import EXAMPLE_PREFIX, digest_of, load, split_source
-from distal.scene.field import Field
-from distal.scene.local_views import view_of_image
-from distal.scene.scene import Scene
-from distal.scene.stage import stage
 from distal.scene.steering import Steering
+from distal.scene.viewable import viewable
 from distal.version import __version__
 
 MARK: Final = ".rerendered"
@@ -144,17 +139,12 @@ def rerender(
 
 
 def _rendered(obj: Any, origin: Provenance, samples: int | None, options: Any) -> Picture:
-    if isinstance(obj, Image):
+    seen = viewable(obj, *(origin.stage or ({}, 0.0)))
+    if seen.scene is None:
         if samples is not None:
-            raise ValueError(f"samples are for scenes and shapes; '{obj.name}' is an @image")
-        shown = obj if origin.view == "color" else view_of_image(obj, origin.view)
-        picture: Picture = executor().render(shown, **options)
-        return picture.told(view=origin.view)
-    if isinstance(obj, Func) or not isinstance(obj, Field | Scene):
-        raise ValueError(f"'{obj.name}' is no scene, no shape and no @image")
-    scene = obj if isinstance(obj, Scene) else stage(obj, *(origin.stage or ({}, 0.0)))
-    if origin.exposure is not None or origin.tone_map is not None:
-        scene = scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
+            raise ValueError(f"samples are for scenes and shapes; '{seen.name}' is an @image")
+        return seen.render(view=origin.view, **options)
+    scene = seen.scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
     moved = None
     if origin.steering is not None:
         yaw, pitch, zoom, *pan = origin.steering

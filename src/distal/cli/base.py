@@ -8,19 +8,24 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
 
 import typer
 
 import distal
-from distal.cli.arguments import UsageError, read_scene
+from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
 
 if TYPE_CHECKING:
+    from distal.lang.functions import Image
+    from distal.lang.parameter_values import Value
     from distal.loading import SceneCode
+    from distal.scene.field import Field
+    from distal.scene.scene import Scene
+    from distal.scene.viewable import Viewable
 
 Arguments = ParamSpec("Arguments")
 
@@ -168,6 +173,29 @@ def load(scene: str) -> SceneCode:
     """The object that FILE[:NAME] means."""
     path, name = read_scene(scene)
     return distal.load(path, name)
+
+
+def load_picture(
+    scene: str, assignments: Sequence[str] | None
+) -> tuple[Image | Scene | Field, dict[str, Value]]:
+    """What FILE[:NAME] means, and the values of its parameters that --set gives.
+
+    Raises:
+        LoadError: There is none, or it is no picture.
+        UsageError: A parameter's value is wrong.
+    """
+    from distal.scene.viewable import checked_picture
+
+    picture = checked_picture(load(scene))
+    return picture, read_assignments(assignments or (), picture.parameters())
+
+
+def check_view(seen: Viewable, view: str) -> None:
+    """Refuse a view that there is not."""
+    try:
+        seen.image(view)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
 
 
 def check_processor() -> None:

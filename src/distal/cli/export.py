@@ -12,14 +12,15 @@ from typing import Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_assignments, read_scene, read_size, read_time
+from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
     SceneArgument,
     SetOption,
     TimeOption,
     application,
     check_processor,
-    load,
+    check_view,
+    load_picture,
     reporting,
 )
 
@@ -91,7 +92,7 @@ def export(
     seconds = read_time(at)
     _check(scene, output, target, given)
     _write(
-        load(scene),
+        scene,
         output,
         target,
         assignments or [],
@@ -119,19 +120,16 @@ def _check(scene: str, output: Path, target: str | None, given: dict[str, Any]) 
 
 
 def _write(
-    obj: Any, output: Path, target: str | None, assignments: list[str], options: dict[str, Any]
+    scene: str, output: Path, target: str | None, assignments: list[str], options: dict[str, Any]
 ) -> None:
     from distal.export.registry import export as written
     from distal.scene.viewable import viewable
 
-    seen = viewable(obj)
-    values = read_assignments(assignments, seen.parameters)
+    obj, values = load_picture(scene, assignments)
+    seen = viewable(obj, values, options["time"])
     for name in (options["view"], *options.get("views", ())):
-        try:
-            seen.image(name)
-        except ValueError as error:
-            raise UsageError(str(error)) from None
-    made = written(obj, output, target=target, params=values, **options)
+        check_view(seen, name)
+    made = written(seen, output, target=target, params=values, **options)
     for view, reason in made.omitted.items():
         print(f"warning: the view '{view}' is left out: {reason}", file=sys.stderr)
     print(made, file=sys.stderr)

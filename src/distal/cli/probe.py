@@ -24,7 +24,6 @@ from distal.cli.base import (
     load,
     reporting,
 )
-from distal.cli.render import staged
 from distal.diagnostics import LoadError, excerpt
 
 if TYPE_CHECKING:
@@ -51,6 +50,7 @@ def probe(
     """Tell what one pixel saw: its ray, the march, the shape and its material."""
     from distal.lang.functions import Func
     from distal.scene.probe import probe as look
+    from distal.scene.viewable import viewable
     from distal.uniform_values import LARGEST_SIDE_PX
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
@@ -60,7 +60,9 @@ def probe(
     if isinstance(obj, Func):
         raise LoadError(f"'{obj.name}' is no scene and no shape; pixels are probed of these")
     values = read_assignments(assignments or (), obj.parameters())
-    found = look(staged(obj, values, seconds), place, width_height, values, seconds)
+    seen = viewable(obj, values, seconds)
+    assert seen.scene is not None  # images were refused
+    found = look(seen.scene, place, width_height, values, seconds)
     if as_json:
         answer(json.dumps({**found.as_json(), "time": seconds}))
     else:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import json
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -18,7 +18,6 @@ import typer
 
 from distal.cli.arguments import (
     UsageError,
-    read_assignments,
     read_plane,
     read_size,
     read_time,
@@ -33,14 +32,15 @@ from distal.cli.base import (
     TimeOption,
     answer,
     application,
+    check_view,
     chosen_device,
-    load,
+    load_picture,
     reporting,
 )
-from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
     from distal.film.picture import Picture
+    from distal.scene.viewable import Viewable
 
 Run: TypeAlias = "Callable[..., Picture]"
 
@@ -143,6 +143,7 @@ def render(
     """Render a scene, a shape or an image to a picture."""
     from distal.cli.report import ProgressBar, say, stages
     from distal.film.picture import check_savable
+    from distal.scene.viewable import viewable
     from distal.uniform_values import LARGEST_SIDE_PX
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
@@ -150,9 +151,10 @@ def render(
     suffix, _ = check_savable(output, bits)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
-    obj = load(scene)
-    wishes = replace(wishes, layers=read_layers(layers, suffix, obj, wishes.view))
-    run, values = prepared(obj, wishes, assignments or (), seconds)
+    obj, values = load_picture(scene, assignments)
+    seen = viewable(obj, values, seconds)
+    wishes = replace(wishes, layers=read_layers(layers, suffix, seen, wishes.view))
+    run = rendering(seen, wishes)
     loaded = time.perf_counter()
     with ProgressBar() as progress:
         picture = run(
@@ -201,13 +203,12 @@ def read_wishes(
     return Wishes(seen, wanted, samples, transparent, exposure, tone_map)
 
 
-def read_layers(given: str | None, suffix: str, obj: Any, view: str) -> tuple[str, ...]:
+def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
     """The layers that a file of a suffix is to hold: those that were asked for, else all."""
-    from distal.lang.functions import Func
     from distal.scene.layers import NAMES, checked_layers
 
     if given is None:
-        all_of_them = suffix == ".exr" and view == "color" and not isinstance(obj, Func)
+        all_of_them = suffix == ".exr" and view == "color" and seen.scene is not None
         return NAMES if all_of_them else ()
     if given == "none":
         return ()
@@ -219,66 +220,16 @@ def read_layers(given: str | None, suffix: str, obj: Any, view: str) -> tuple[st
         raise UsageError(str(error)) from None
 
 
-def prepared(
-    obj: Any, wishes: Wishes, assignments: Sequence[str], seconds: float
-) -> tuple[Run, Mapping[str, Any]]:
-    """What renders an object, and the values of its parameters.
+def rendering(seen: Viewable, wishes: Wishes) -> Run:
+    """What renders a picture as it is to be seen.
 
     Raises:
-        LoadError: It is no picture.
-        UsageError: It cannot be seen that way, or a parameter's value is wrong.
+        UsageError: It cannot be seen that way.
     """
-    from distal.lang.functions import Func, Image
-
-    if isinstance(obj, Image):
-        wishes.refuse_for_image(obj.name)
-        values = read_assignments(assignments, obj.parameters())
-        return _image_run(obj, wishes.view), values
-    if isinstance(obj, Func) or not hasattr(obj, "parameters"):
-        raise LoadError(f"'{obj.name}' is a @func; only a scene, a shape or an @image is a picture")
-    values = read_assignments(assignments, obj.parameters())
-    return _scene_run(staged(obj, values, seconds), wishes), values
-
-
-def _image_run(image: Any, view: str) -> Run:
-    if view == "color":
-        run: Run = image.render
-        return run
-    from distal.executor_hook import executor
-    from distal.scene.local_views import view_of_image
-
-    try:
-        seen = view_of_image(image, view)
-    except ValueError as error:
-        raise UsageError(str(error)) from None
-    return lambda **options: executor().render(seen, **options).told(view=view)
-
-
-def _scene_run(scene: Any, wishes: Wishes) -> Run:
-    if wishes.view != "color":
-        _check_view(wishes.view)
-    if wishes.exposure is not None or wishes.tone_map is not None:
-        scene = scene.developed(exposure=wishes.exposure, tone_map=wishes.tone_map)
+    if seen.scene is None:
+        wishes.refuse_for_image(seen.name)
+    check_view(seen, wishes.view)
+    if seen.scene is None:
+        return functools.partial(seen.render, view=wishes.view)
+    scene = seen.scene.developed(exposure=wishes.exposure, tone_map=wishes.tone_map)
     return functools.partial(scene.render, **wishes.options)
-
-
-def _check_view(view: str) -> None:
-    from distal.render.views import VIEWS
-
-    if view not in VIEWS:
-        known = ", ".join(("color", *VIEWS))
-        hint = "; locals are shown of an @image" if view.startswith("local:") else ""
-        raise UsageError(f"a scene has no view '{view:.40}'; views: {known}{hint}")
-
-
-def staged(obj: Any, values: Mapping[str, Any], seconds: float) -> Any:
-    """A scene as it is; a shape in a scene of its own."""
-    from distal.scene.field import Field
-
-    if not isinstance(obj, Field):
-        if not hasattr(obj, "render"):
-            raise LoadError(f"'{obj.name}' is no scene, no shape and no @image")
-        return obj
-    from distal.scene.stage import stage
-
-    return stage(obj, values, seconds)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_assignments, read_size
+from distal.cli.arguments import UsageError, read_size
 from distal.cli.base import (
     AdapterOption,
     Device,
@@ -21,7 +21,7 @@ from distal.cli.base import (
     SizeOption,
     application,
     chosen_device,
-    load,
+    load_picture,
     reporting,
 )
 
@@ -86,10 +86,7 @@ def video(
     if quality is not None and not kind.lossy and quality != "lossless":
         raise UsageError(f"--quality is for mp4, webm and webp; {kind.name} keeps what it can")
     device_name = chosen_device(device, adapter)
-    obj: Any = load(scene)
-    if not hasattr(obj, "parameters"):
-        raise UsageError(f"'{scene}' is no scene, no shape and no @image")
-    values = read_assignments(assignments or (), obj.parameters())
+    obj, values = load_picture(scene, assignments)
     with FrameBar() as bar:
         made = _made(
             obj,

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from distal.cli.arguments import UsageError, read_assignments, read_scene, read_size, read_time
+from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
     AdapterOption,
     Device,
@@ -22,10 +22,9 @@ from distal.cli.base import (
     TimeOption,
     application,
     chosen_device,
-    load,
+    load_picture,
     reporting,
 )
-from distal.diagnostics import LoadError
 
 
 @application.command()
@@ -53,10 +52,7 @@ def view(
     width_height, seconds = read_size(size, LARGEST_SIDE), read_time(at)
     check_display()
     path, name = read_scene(scene)
-    obj = load(scene)
-    if not hasattr(obj, "parameters"):
-        raise LoadError(f"'{obj.name}' is a @func; only a scene, a shape or an @image is a picture")
-    values = read_assignments(assignments or (), obj.parameters())
+    obj, values = load_picture(scene, assignments)
     try:
         code, ended = show(
             obj,

@@ -233,7 +233,8 @@ class Scene(Composed, Presentable):
         """
         if name != "color" and name not in views.VIEWS:
             known = ", ".join(["color", *views.VIEWS])
-            raise ValueError(f"there is no view '{name}'; views: {known}")
+            hint = "; locals are shown of an @image" if name.startswith("local:") else ""
+            raise ValueError(f"there is no view '{name:.40}'; views: {known}{hint}")
         key = (name, transparent, sampled, encoded, steered)
         if key == ("color", False, False, False, False):
             return self
@@ -255,6 +256,8 @@ class Scene(Composed, Presentable):
 
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
         """The same scene, its light shown in another way; None keeps what it says itself."""
+        if exposure is None and tone_map is None:
+            return self
         made = Scene.__new__(Scene)
         made.__dict__.update({n: v for n, v in self.__dict__.items() if n != "_whole"})
         if exposure is not None:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
+from distal.lang.chosen_values import checked_values
 from distal.loading import hand_on
 from distal.scene.backgrounds import GradientBackground
 from distal.scene.cameras import Camera
@@ -65,8 +66,7 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
         name=shape.name,
     )
     hand_on(given, scene)
-    known = {key: p for p in given.parameters() for key in (p.label, p.name)}
-    said = {known[key].name: known[key].check(value) for key, value in (params or {}).items()}
+    said = checked_values(given.parameters(), params)
     object.__setattr__(scene, "staged", (said, float(time)))  # its pictures tell it
     return scene
 

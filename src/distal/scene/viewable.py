@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import LoadError
 from distal.executor_hook import executor
@@ -26,6 +26,9 @@ from distal.scene.picture import Picturing
 from distal.scene.scene import Scene
 from distal.scene.stage import stage
 from distal.scene.steering import STILL, Steering
+
+if TYPE_CHECKING:
+    from distal.film.picture import Picture
 
 COLOR: Final = "color"
 
@@ -112,11 +115,11 @@ class Viewable:
         view: str = COLOR,
         steering: Steering | None = None,
         **options: Any,
-    ) -> Any:
+    ) -> Picture:
         """The picture; the options are those of ``Image.render``: size, time, params, device."""
         image = self.image(view, steered=steering is not None)
         settings = {} if steering is None else self.settings(steering, view)
-        picture = executor().render(image, settings=settings, **options)
+        picture: Picture = executor().render(image, settings=settings, **options)
         moved = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
         return picture.told(view=view, steering=moved, stage=staged)
@@ -148,17 +151,29 @@ def viewable(obj: Any, params: Mapping[str, Any] | None = None, time: float = 0.
     """The one interface over a scene, a shape and an ``@image``.
 
     Args:
-        obj: What is to be shown.
+        obj: What is to be shown; what is a ``Viewable`` already stays as it is.
         params: Values of parameters by name: the stage of a lone shape is as large as it is then.
         time: Seconds, for the same.
 
     Raises:
         LoadError: It is no picture.
     """
-    if isinstance(obj, Image | Scene):
-        return Viewable(obj.name, obj)
-    if isinstance(obj, Field):
-        return Viewable(obj.name, stage(obj, params, time))
+    if isinstance(obj, Viewable):
+        return obj
+    picture = checked_picture(obj)
+    if isinstance(picture, Field):
+        return Viewable(picture.name, stage(picture, params, time))
+    return Viewable(picture.name, picture)
+
+
+def checked_picture(obj: object) -> Image | Scene | Field:
+    """What a picture can be made of.
+
+    Raises:
+        LoadError: It is something else.
+    """
+    if isinstance(obj, Image | Scene | Field):
+        return obj
     name = getattr(obj, "name", repr(obj)[:60])
     what = "a @func" if isinstance(obj, Func) else f"of type {type(obj).__name__}"
     raise LoadError(f"'{name}' is {what}; only a scene, a shape or an @image is a picture")

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from distal.diagnostics import CompileError
 from distal.loading import load, loaded_from
 from distal.scene.steering import STILL
-from distal.scene.viewable import Viewable, viewable
+from distal.scene.viewable import Viewable, checked_picture, viewable
 from distal.window.session import Shot, valid_values
 
 if TYPE_CHECKING:
@@ -94,11 +94,9 @@ def load_again(path: str, name: str | None, shot: Shot, maker: Maker) -> Loaded:
         LoadError, CompileError: There is a mistake; whatever was loaded before still works.
         DeviceError: The device was lost.
     """
-    obj = load(path, name)
+    obj = checked_picture(load(path, name))
     origin = loaded_from(obj)
     assert origin is not None, "it was loaded just now"
-    if not hasattr(obj, "parameters"):  # a @func: viewable says so
-        viewable(obj)
     values = valid_values(obj.parameters(), dict(shot.parameters))
     shown = viewable(obj, values, shot.time)
     view = shot.view if shot.view in shown.views else shown.views[0]

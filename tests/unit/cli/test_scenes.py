@@ -162,7 +162,7 @@ def test_probe_of_nothing_and_for_editors(run):
         (
             ("render", "twisted.py", "-o", "a.png", "--view", "local:t"),
             2,
-            "error: a scene has no view 'local:t'; views: color, coordinate, signal, distance, "
+            "error: there is no view 'local:t'; views: color, coordinate, signal, distance, "
             "normal, depth, steps, material, slope, slice; locals are shown of an @image\n",
         ),
         (
