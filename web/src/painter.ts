@@ -72,7 +72,7 @@ export class Painter {
     const program = await link(gl, source);
     const work = this.#work;
     this.#work = newTarget(gl);
-    this.draw(program, { frame: {}, parameter: {}, number: {} }, [width, height], 0, height);
+    this.draw(program, {} as Inputs, [width, height], 0, height);
     this.#work = work;
     const read = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, read);

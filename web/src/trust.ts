@@ -23,10 +23,10 @@ const MOST = 1e-5;
 // Every driver draws bytes, and not every one floats. A row for each name.
 const SOURCE: Program = {
   vertex: `#version 300 es
-void main(){gl_Position=vec4(4*(gl_VertexID%2)-1,4*(gl_VertexID/2)-1,0,1);}`,
+void main(){gl_Position=vec4(gl_VertexID%2*4-1,gl_VertexID/2*4-1,0,1);}`,
   fragment: `#version 300 es
 precision highp float;precision highp int;out vec4 c;
-void main(){vec2 p=floor(gl_FragCoord.xy);float y=p.y,i=p.x-${COUNT / 2 - 0.5},a=i*${STEP},r=i/${COUNT / 2}.;
+void main(){vec2 p=gl_FragCoord.xy;float y=p.y,i=p.x-${COUNT / 2}.,a=i*${STEP},r=i/${COUNT / 2}.;
 uint b=floatBitsToUint(y<1.?sin(a):y<2.?cos(a):y<3.?tan(a):y<4.?asin(r):acos(r));
 c=vec4(uvec4(b,b>>8,b>>16,b>>24)&255u)/255.;}`,
   uniforms: [],
@@ -41,7 +41,7 @@ let known: Promise<readonly string[]> | null = null;
 
 /** The built-ins that are good enough; none where that cannot be told. */
 export function trusted(painter: Painter): Promise<readonly string[]> {
-  known ??= measured(painter).catch(() => {
+  known ??= painter.bytes(SOURCE, COUNT, NAMES.length).then(good, () => {
     forget();
     return [];
   });
@@ -61,17 +61,16 @@ export function trusting({ fragment, trust }: Program, names: readonly string[])
   return fragment.replace("\n", `\n${lines}#line 2\n`); // Nothing may stand before the version.
 }
 
-async function measured(painter: Painter): Promise<readonly string[]> {
-  const { buffer } = await painter.bytes(SOURCE, COUNT, NAMES.length);
+function good({ buffer }: Uint8Array): string[] {
   const values = new Float32Array(buffer);
   return NAMES.filter((name, row) => {
     for (let i = 0; i < COUNT; i++) {
       const x = (i + 0.5 - COUNT / 2) * (row < 3 ? STEP : 2 / COUNT);
       const exact = Math[name](x);
       // Near its poles a tangent is as good as the angle it is of.
-      const most = name === "tan" ? MOST * (1 + exact * exact) : MOST;
+      const slope = name === "tan" ? 1 + exact * exact : 1;
       const off = Math.abs(values[row * COUNT + i]! - exact);
-      if (!(off <= most)) return false; // Nor where it is no number.
+      if (!(off <= MOST * slope)) return false; // Nor where it is no number.
     }
     return true;
   });
