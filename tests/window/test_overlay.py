@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from distal.window import lettering, overlay
 from distal.window.layout import Table, time_track
-from distal.window.lettering import plain_font, shortened, width
+from distal.window.lettering import plain_font, shortened, shortened_inside, width
 from distal.window.overlay import Overlay, Panel, Reading, Row
 
 ROWS = (
@@ -118,6 +118,11 @@ def test_a_long_line_moves_until_its_caret_is_seen() -> None:
     assert overlay._fitted([source], 200) == [source]
 
 
+def test_words_go_on_below_whole() -> None:
+    told = ["error: it left while it was loaded", "   |", ""]
+    assert overlay._fitted(told, 26) == ["error: it left while it", "was loaded", "   |", ""]
+
+
 def test_a_mistake_of_many_lines_is_cut_with_a_sign() -> None:
     text = "\n".join(f"line {n}" for n in range(200))
     panels = Overlay().panels(Reading(trouble=text), (400, 300), 1.0)
@@ -130,3 +135,36 @@ def test_words_are_shortened_to_their_room() -> None:
     cut = shortened(font, "a label that is far too long", 60.0)
     assert cut.endswith("…")
     assert width(font, cut) <= 60.0
+
+
+def test_names_of_one_family_stay_apart() -> None:
+    font = plain_font(13)
+    names = [shortened_inside(font, f"Parameter number {i:02d}", 90.0) for i in range(40)]
+    assert len(set(names)) == 40
+    assert all("…" in name and width(font, name) <= 90.0 for name in names)
+    assert shortened_inside(font, "Parameter number 07", 500.0) == "Parameter number 07"
+    assert width(font, shortened_inside(font, "Parameter", 20.0)) <= 20.0
+
+
+def test_rows_that_are_not_shown_are_marked() -> None:
+    """A mark at the right edge stands as far down as the rows stand among all."""
+
+    def mark(count: int, chosen: int) -> NDArray[np.intp]:
+        rows = tuple(Row(f"row {i}", "1", None, is_moved=False) for i in range(count))
+        (panel,) = Overlay().panels(Reading(rows=rows, chosen=chosen), (640, 480), 1.0)
+        return np.flatnonzero(panel.pixels[:, -2, :3].min(axis=1) > 100)
+
+    assert mark(5, 0).size == 0
+    first, last = mark(40, 0), mark(40, 39)
+    table = Table.of(640, 480, 40, 0)
+    assert abs(first.size / (table.frame.height - 16) - table.count / 40) < 0.02
+    assert first[0] == 8
+    assert last[-1] == int(table.frame.height) - 9
+
+
+@pytest.mark.parametrize("size", [(120, 90), (300, 200), (640, 480)])
+def test_lines_of_help_never_lie_over_each_other(size: tuple[int, int]) -> None:
+    (panel,) = Overlay().panels(Reading(help=True), size, 1.0)
+    accent = (np.abs(panel.pixels[..., :3].astype(int) - overlay._ACCENT[:3]) < 40).all(axis=2)
+    lines = np.flatnonzero(np.diff(accent.any(axis=1).astype(int)) == 1).size
+    assert lines >= min(len(overlay.HELP), int((size[1] - 20) // 21))

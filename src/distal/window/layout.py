@@ -100,6 +100,13 @@ class Table:
         left = row.x + row.width * LABEL_SHARE
         return Rectangle(left, row.y, row.width * (1 - LABEL_SHARE - VALUE_SHARE), row.height)
 
+    def handle(self, rows: int) -> Rectangle:
+        """A mark at the right edge: which part of all rows is shown."""
+        whole = self.frame.height - 2 * TABLE_PADDING
+        top = self.frame.y + TABLE_PADDING + whole * self.first / rows
+        right = self.frame.x + self.frame.width
+        return Rectangle(right - 3.0, top, 2.0, whole * self.count / rows)
+
     def row_at(self, x: float, y: float) -> int | None:
         """The row that a point is on."""
         if not self.frame.holds(x, y):

@@ -50,3 +50,13 @@ def shortened(font: Font, text: str, room: float) -> str:
     while text and width(font, text + "…") > room:
         text = text[:-1]
     return text + "…"
+
+
+def shortened_inside(font: Font, text: str, room: float) -> str:
+    """The text, or its beginning and its end: names of one family differ at their ends."""
+    kept = len(text)
+    made = text
+    while kept > 2 and width(font, made) > room:
+        kept -= 1
+        made = f"{text[: kept - kept // 2]}…{text[len(text) - kept // 2 :]}"
+    return made if width(font, made) <= room else shortened(font, text, room)

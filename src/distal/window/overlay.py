@@ -8,6 +8,7 @@ same object again. Knows no window and no GPU.
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from typing import Any, Final
@@ -18,7 +19,7 @@ from PIL import Image, ImageDraw
 
 from distal.window import layout
 from distal.window.keys import HELP
-from distal.window.lettering import fixed_font, plain_font, shortened, width
+from distal.window.lettering import fixed_font, plain_font, shortened, shortened_inside, width
 from distal.window.session import Session
 
 _TEXT_SIZE: Final = 13
@@ -305,8 +306,9 @@ def _rows(rows: tuple[Row, ...], chosen: int, place: _Place) -> Panel:
                 place_of.x - 4, place_of.y + 1, place_of.width + 8, place_of.height - 2, _CHOSEN, 4
             )
         color = _TEXT if row.is_moved or number == chosen else _DIM
-        room = place_of.width * layout.LABEL_SHARE - 8
-        canvas.text(place_of.x, middle, row.label, color, room=room)
+        room = place.px(place_of.width * layout.LABEL_SHARE - 8)
+        label = shortened_inside(plain_font(place.text_px), row.label, room)
+        canvas.text(place_of.x, middle, label, color)
         track = table.track(number)
         if row.share is not None:
             canvas.box(track.x, middle - 2, track.width, 4, _TRACK, 2)
@@ -315,18 +317,24 @@ def _rows(rows: tuple[Row, ...], chosen: int, place: _Place) -> Panel:
         room = place_of.width * layout.VALUE_SHARE - 10
         right = place_of.x + place_of.width
         canvas.text(right, middle, row.words, color, room=room, anchor="rm")
+    if table.count < len(rows):
+        # Where these rows stand among all.
+        part = table.handle(len(rows))
+        canvas.box(part.x, part.y, part.width, part.height, _DIM, part.width / 2)
     return canvas.panel()
 
 
 def _help(place: _Place) -> Panel:
     left = max(_text_width(keys, place) for keys, _ in HELP)
     across = left + max(_text_width(words, place) for _, words in HELP) + 52
-    line = min(21.0, max((place.height - 24) / len(HELP), 1.0))
-    down = line * len(HELP) + 20
+    # A small window shows the beginning: lines that lie over each other are no help.
+    line = min(21.0, max((place.height - 24) / len(HELP), _TEXT_SIZE + 2.0))
+    shown = HELP[: max(int((place.height - 20) // line), 1)]
+    down = line * len(shown) + 20
     x, y = max((place.width - across) / 2, 0.0), max((place.height - down) / 2, 0.0)
     frame = layout.Rectangle(x, y, min(across, place.width), down)
     canvas = _Canvas(frame, place, _BACK_OF_HELP)
-    for number, (keys, words) in enumerate(HELP):
+    for number, (keys, words) in enumerate(shown):
         middle = y + 10 + line * (number + 0.5)
         canvas.text(x + 16, middle, keys, _ACCENT)
         canvas.text(x + 32 + left, middle, words)
@@ -392,7 +400,9 @@ def _fitted(lines: list[str], columns: int) -> list[str]:
         if is_source and (carets is not None or _CARETS.fullmatch(line)):
             fitted.append(_windowed(line, shift, columns))
         else:
-            fitted += [line[at : at + columns] for at in range(0, len(line), columns)] or [""]
+            fitted += textwrap.wrap(
+                line, columns, replace_whitespace=False, break_on_hyphens=False
+            ) or [""]
     return fitted
 
 
