@@ -306,8 +306,8 @@ def _rows(rows: tuple[Row, ...], chosen: int, place: _Place) -> Panel:
                 place_of.x - 4, place_of.y + 1, place_of.width + 8, place_of.height - 2, _CHOSEN, 4
             )
         color = _TEXT if row.is_moved or number == chosen else _DIM
-        room = place.px(place_of.width * layout.LABEL_SHARE - 8)
-        label = shortened_inside(plain_font(place.text_px), row.label, room)
+        width_px = place.px(place_of.width * layout.LABEL_SHARE - 8)
+        label = shortened_inside(plain_font(place.text_px), row.label, width_px)
         canvas.text(place_of.x, middle, label, color)
         track = table.track(number)
         if row.share is not None:
