@@ -13,6 +13,13 @@ import { build, transform } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 
+// Properties of our own get one letter, but those that the player sets: 170 bytes of each page.
+function shortened(sheet) {
+  const names = [...new Set(sheet.match(/--[a-z]+(?=:)/g))].filter((name) => name !== "--part");
+  const letters = new Map(names.map((name, i) => [name, `--${String.fromCharCode(97 + i)}`]));
+  return sheet.replace(/--[a-z]+\b(?!-)/g, (name) => letters.get(name) ?? name);
+}
+
 // A style sheet becomes a text, without its white space.
 const styles = {
   name: "styles",
@@ -20,7 +27,7 @@ const styles = {
     builder.onLoad({ filter: /\.css$/ }, async ({ path }) => {
       const source = await readFile(path, "utf8");
       const { code } = await transform(source, { loader: "css", minify: true, target: "chrome123" });
-      return { contents: code.trim(), loader: "text" };
+      return { contents: shortened(code.trim()), loader: "text" };
     });
   },
 };

@@ -152,6 +152,7 @@ def test_a_page_says_no_path_and_asks_for_nothing(rings, tmp_path):
         for tag, attrs in parts.tags
         if attrs.get("http-equiv") == "Content-Security-Policy"
     ]
+    assert [tag for tag, _ in parts.tags].count("main") == 1  # a landmark to jump to
     assert policy.startswith("default-src 'none'; script-src 'sha256-")
     assert "connect-src" not in policy and "http" not in policy and "unsafe-eval" not in policy
 

@@ -174,6 +174,6 @@ def _document(stage: str, told: Mapping[str, Any], player: str) -> str:
         '<meta property="og:type" content="website">\n'
         f'<meta name="generator" content="distal {__version__}">\n'
         f'<link rel="icon" href="{_ICON}">\n'
-        f"<style>{_STYLE}</style>\n</head>\n<body>\n"
-        f'{stage}<script type="module">{player}</script>\n</body>\n</html>\n'
+        f"<style>{_STYLE}</style>\n</head>\n<body>\n<main>\n"
+        f'{stage}</main>\n<script type="module">{player}</script>\n</body>\n</html>\n'
     )
