@@ -36,6 +36,14 @@ def test_numbered_pictures_go_on(run):
     assert result.stderr.startswith("continues: 2 of 4 frames are there\nframes/%02d.png: 4 frames")
 
 
+def test_the_time_of_a_still_is_the_start_of_a_sequence(run):
+    words = ["-o", "%d.png", "--duration", "0.1", "--fps", "10", "--size", "16x12"]
+    assert run(*words, "--start", "0.5").exit_code == 0
+    result = run(*words, "--time", "0.5")
+    assert result.stderr.startswith("continues: 1 of 1 frames are there")
+    assert run(*words, "--time", "0.6").stderr.startswith("%d.png: 1 frame")
+
+
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer.models import CommandInfo
 
 import distal
 from distal.cli import check, export, probe, render, rerender, video, view
@@ -25,6 +26,11 @@ from distal.version import __version__
 
 # Importing them is what adds their commands.
 COMMANDS = (render, check, probe, export, video, rerender, view)
+# As --help lists them: what a newcomer asks for first.
+_ORDER = (
+    *("render", "view", "video", "export", "rerender"),
+    *("check", "probe", "compile", "examples", "doctor"),
+)
 
 __all__ = ["COMMANDS", "TargetName", "application"]
 
@@ -126,6 +132,13 @@ def doctor() -> None:
     show(findings)
     if any(finding.state is State.BROKEN for finding in findings):
         raise typer.Exit(1)
+
+
+def _place(command: CommandInfo) -> int:
+    return _ORDER.index(command.name or getattr(command.callback, "__name__", ""))
+
+
+application.registered_commands.sort(key=_place)
 
 
 def _file_name(scene: str) -> str:

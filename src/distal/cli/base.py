@@ -111,8 +111,10 @@ SceneArgument = Annotated[
     ),
 ]
 
-SizeOption = Annotated[str, typer.Option("--size", help="Width and height in pixels.")]
-TimeOption = Annotated[str, typer.Option("--time", help="Seconds.")]
+SizeOption = Annotated[
+    str, typer.Option("--size", metavar="WxH", help="Width and height in pixels.")
+]
+TimeOption = Annotated[str, typer.Option("--time", metavar="S", help="Seconds.")]
 SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),

@@ -53,7 +53,9 @@ def export(
     ] = None,
     size: Annotated[
         str | None,
-        typer.Option(help="Of a page: the picture's width and height.", show_default=False),
+        typer.Option(
+            metavar="WxH", help="Of a page: the picture's width and height.", show_default=False
+        ),
     ] = None,
     duration: Annotated[
         str | None,

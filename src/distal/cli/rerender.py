@@ -39,7 +39,7 @@ def rerender(
         ),
     ] = None,
     size: Annotated[
-        str | None, typer.Option("--size", help="Another size.", show_default=False)
+        str | None, typer.Option("--size", metavar="WxH", help="Another size.", show_default=False)
     ] = None,
     samples: Annotated[
         int | None, typer.Option(min=1, max=65536, help="Another number of rays for each pixel.")

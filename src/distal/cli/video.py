@@ -43,11 +43,16 @@ def video(
         ),
     ],
     duration: Annotated[
-        str, typer.Option(help="Seconds; the period of what loops.", show_default=False)
+        str,
+        typer.Option(metavar="S", help="Seconds; the period of what loops.", show_default=False),
     ],
-    fps: Annotated[str, typer.Option(help="Frames a second: 30, 29.97, 30000/1001.")] = "30",
+    fps: Annotated[
+        str, typer.Option(metavar="N", help="Frames a second: 30, 29.97, 30000/1001.")
+    ] = "30",
     size: SizeOption = "640x480",
-    start: Annotated[str, typer.Option(help="Time of the first frame in seconds.")] = "0",
+    start: Annotated[
+        str, typer.Option("--start", "--time", metavar="S", help="When the first frame is.")
+    ] = "0",
     samples: Annotated[int, typer.Option(min=1, max=65536, help="Rays for each pixel.")] = 1,
     loop: Annotated[
         bool,

@@ -1,6 +1,7 @@
 """The command as a process of its own: light to start, polite when interrupted."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -175,3 +176,12 @@ def test_closed_streams_disturb_nothing(tmp_path):
     # Nothing that was meant for a stream is in the picture.
     with Image.open(tmp_path / "a.png") as picture:
         assert picture.size == (4, 4)
+
+
+def test_help_begins_with_what_a_newcomer_asks_for():
+    words = [sys.executable, "-m", "distal.cli", "--help"]
+    told = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
+    commands = re.findall(r"^\W*(\w+)  +[A-Z]", told.stdout.partition("Commands")[2], re.MULTILINE)
+    assert commands[:4] == ["render", "view", "video", "export"]
+    assert commands[-1] == "doctor"
+    assert len(commands) == 10
