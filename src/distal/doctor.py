@@ -58,6 +58,11 @@ class Package:
     extra: str
     purpose: str
 
+    @property
+    def remedy(self) -> str:
+        """The command that installs it."""
+        return f"pip install 'distal[{self.extra}]'" if self.extra else f"pip install {self.name}"
+
 
 PACKAGES: Final = (
     Package("numpy", "", "arrays and the reference"),
@@ -168,13 +173,9 @@ def _packages() -> Iterator[Finding]:
         try:
             version = importlib.metadata.version(package.name)
         except importlib.metadata.PackageNotFoundError:
-            remedy = (
-                f"pip install 'distal[{package.extra}]'"
-                if package.extra
-                else f"pip install {package.name}"
-            )
             state = State.OPTIONAL if package.extra else State.BROKEN
-            yield Finding(area, package.name, state, f"missing ({package.purpose})", remedy)
+            detail = f"missing ({package.purpose})"
+            yield Finding(area, package.name, state, detail, package.remedy)
         else:
             yield Finding(area, package.name, State.READY, version)
 

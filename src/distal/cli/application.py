@@ -7,7 +7,6 @@ without numpy, llvmlite and wgpu. ``render``, ``check`` and ``probe`` have modul
 
 from __future__ import annotations
 
-import json
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -19,8 +18,8 @@ import distal
 from distal.cli import check, export, probe, render, rerender, video, view
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
-from distal.export.texts import with_header
-from distal.film.replacement import check_destination, replacement
+from distal.export.texts import with_header, write_files
+from distal.film.replacement import check_destination
 from distal.loading import EXAMPLE_PREFIX
 from distal.version import __version__
 
@@ -104,13 +103,7 @@ def compile(
     if output is None:
         answer(text.rstrip("\n"))
         return
-    files = {output.with_suffix(".json"): json.dumps(artifact.interface, indent=2)}
-    if artifact.vertex is not None:
-        files[output.with_suffix(".vert")] = artifact.vertex
-    files[output] = text
-    for path, text in files.items():
-        with replacement(path) as file:
-            file.write(text.rstrip("\n").encode() + b"\n")
+    write_files(output, artifact, text, with_interface=True)
 
 
 @application.command()

@@ -10,7 +10,7 @@ import functools
 import sys
 from collections.abc import Callable, Sequence
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
+from typing import TYPE_CHECKING, Annotated, ParamSpec
 
 import typer
 
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 
 Arguments = ParamSpec("Arguments")
 
-# By the name under which Python knows it: what rendering needs besides this command itself.
-CORE_PACKAGES: Final = {"numpy": "numpy", "llvmlite": "llvmlite", "PIL": "pillow", "rich": "rich"}
-
 application = typer.Typer(
     name="distal",
     help="Scenes and shaders written as Python: render them, compile them.",
@@ -40,17 +37,6 @@ application = typer.Typer(
     # A traceback is a fault of ours; it is shown as Python shows it, with nothing hidden.
     pretty_exceptions_enable=False,
 )
-
-
-# By the name under which Python knows it: a package of an extra, and that extra.
-EXTRA_PACKAGES: Final = {
-    "wgpu": "gpu",
-    "rendercanvas": "gpu",
-    "glfw": "gpu",
-    "av": "video",
-    "OpenEXR": "exr",
-    "anywidget": "notebook",
-}
 
 
 class Device(StrEnum):
@@ -96,12 +82,11 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
 
 def _mend(package: str) -> str | None:
     """What is missing and how to get it; None for what is not ours to tell."""
-    if package in CORE_PACKAGES:
-        name = CORE_PACKAGES[package]
-        return f"{name} is missing: pip install {name}"
-    if package in EXTRA_PACKAGES:
-        return f"{package} is missing: pip install 'distal[{EXTRA_PACKAGES[package]}]'"
-    return None
+    from distal.doctor import PACKAGES
+
+    name = "pillow" if package == "PIL" else package  # Python knows it by another name
+    known = {package.name: package for package in PACKAGES}
+    return f"{name} is missing: {known[name].remedy}" if name in known else None
 
 
 SceneArgument = Annotated[
@@ -120,6 +105,9 @@ SetOption = Annotated[
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
 ]
 
+ThreadsOption = Annotated[
+    int | None, typer.Option(min=1, max=1024, help="CPU threads; one per core if not given.")
+]
 DeviceOption = Annotated[
     Device, typer.Option("--device", help="What renders; auto: a GPU, else the CPU.")
 ]

@@ -29,6 +29,7 @@ from distal.cli.base import (
     SceneArgument,
     SetOption,
     SizeOption,
+    ThreadsOption,
     TimeOption,
     answer,
     application,
@@ -132,10 +133,7 @@ def render(
     ] = None,
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
-    threads: Annotated[
-        int | None,
-        typer.Option(min=1, max=1024, help="CPU threads; one per core if not given."),
-    ] = None,
+    threads: ThreadsOption = None,
     stats: Annotated[
         bool, typer.Option("--stats", help="Print one line of JSON with the figures.")
     ] = False,

@@ -9,27 +9,31 @@ import sys
 import time
 from collections.abc import Mapping
 from types import TracebackType
-from typing import Any, Final
+from typing import Any, Final, Self
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    ProgressColumn,
+    TaskID,
+    TextColumn,
+    TimeRemainingColumn,
+)
 
 PATIENCE_S: Final = 1.0  # a bar that flashes by is noise
 
 
-class ProgressBar:
-    """A bar on stderr, drawn only on a terminal and only when the work takes long.
+class _Bar:
+    """A bar on stderr, drawn only on a terminal and only when the work takes long."""
 
-    Called with the share that is done, or with a number done and a total.
-    """
-
-    def __init__(self) -> None:
+    def __init__(self, *columns: ProgressColumn) -> None:
         self._begin = time.monotonic()
+        self._columns = columns
         self._progress: Progress | None = None
-        self._task: TaskID | None = None
         self._wanted = sys.stderr.isatty()
 
-    def __enter__(self) -> ProgressBar:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -38,78 +42,78 @@ class ProgressBar:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        self._stop()
+
+    def _shown(self) -> Progress | None:
+        """The bar, begun now if it was not yet; None while there is to be none."""
+        if not self._wanted or time.monotonic() - self._begin < PATIENCE_S:
+            return None
+        if self._progress is None:
+            self._progress = Progress(*self._columns, console=Console(stderr=True), transient=True)
+            self._progress.start()
+        return self._progress
+
+    def _stop(self) -> None:
         if self._progress is not None:
             self._progress.stop()
+            self._progress = None
 
-    def __call__(self, done: float, total: float = 1.0) -> None:
+
+class ProgressBar(_Bar):
+    """The bar of a picture.
+
+    Called with the share that is done.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(TextColumn("rendering"), BarColumn(), TimeRemainingColumn())
+        self._task: TaskID | None = None
+
+    def __call__(self, done: float) -> None:
         """Show how far the work is."""
-        if not self._wanted or time.monotonic() - self._begin < PATIENCE_S:
+        bar = self._shown()
+        if bar is None:
             return
-        if self._progress is None:
-            columns = (TextColumn("rendering"), BarColumn(), TimeRemainingColumn())
-            self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
-            self._task = self._progress.add_task("rendering", total=total)
-            self._progress.start()
-        assert self._task is not None
-        self._progress.update(self._task, completed=done, total=total)
+        if self._task is None:
+            self._task = bar.add_task("rendering", total=1.0)
+        bar.update(self._task, completed=done)
 
 
-class FrameBar:
+class FrameBar(_Bar):
     """The bar of a sequence: frames, frames a second, time that remains.
 
     Called with frames done, all frames, and what is being done with them.
     """
 
     def __init__(self) -> None:
-        self._begin = time.monotonic()
-        self._progress: Progress | None = None
+        super().__init__(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.completed:.0f}/{task.total:.0f}"),
+            TextColumn("{task.fields[pace]}"),
+            TimeRemainingColumn(),
+        )
         self._tasks: dict[str, tuple[TaskID, float, int]] = {}
-        self._wanted = sys.stderr.isatty()
-
-    def __enter__(self) -> FrameBar:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._stop()
 
     def __call__(self, done: int, total: int, what: str) -> None:
         """Show how far the work is."""
-        if not self._wanted or time.monotonic() - self._begin < PATIENCE_S:
+        bar = self._shown()
+        if bar is None:
             return
-        if self._progress is None:
-            columns = (
-                TextColumn("{task.description}"),
-                BarColumn(),
-                TextColumn("{task.completed:.0f}/{task.total:.0f}"),
-                TextColumn("{task.fields[pace]}"),
-                TimeRemainingColumn(),
-            )
-            self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
-            self._progress.start()
         now = time.monotonic()
         if what not in self._tasks:
             # Frames that an earlier run made cost no time: the pace is that of this run.
-            task = self._progress.add_task(what, total=total, completed=done, pace="")
+            task = bar.add_task(what, total=total, completed=done, pace="")
             self._tasks[what] = (task, now, done)
         task, begin, first = self._tasks[what]
         pace = f"{(done - first) / (now - begin):.1f} fps" if now > begin else ""
-        self._progress.update(task, completed=done, total=total, pace=pace)
+        bar.update(task, completed=done, total=total, pace=pace)
 
     def say(self, line: str) -> None:
         """A line that stays, above the bar."""
         self._stop()
+        self._tasks = {}
         say(line)
-
-    def _stop(self) -> None:
-        if self._progress is not None:
-            self._progress.stop()
-            self._progress = None
-            self._tasks = {}
 
 
 def say(line: str) -> None:

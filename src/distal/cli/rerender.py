@@ -6,7 +6,7 @@ What flows in: parsed words. What flows out: a picture's file, or how the two di
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,12 +14,16 @@ from distal.cli.arguments import UsageError, read_size
 from distal.cli.base import (
     AdapterOption,
     Device,
+    ThreadsOption,
     answer,
     application,
     check_processor,
     chosen_device,
     reporting,
 )
+
+if TYPE_CHECKING:
+    from distal.rerender import Difference
 
 
 @application.command()
@@ -67,10 +71,7 @@ def rerender(
         typer.Option("--device", help="What renders; what did then without.", show_default=False),
     ] = None,
     adapter: AdapterOption = None,
-    threads: Annotated[
-        int | None,
-        typer.Option(min=1, max=1024, help="CPU threads; one per core if not given."),
-    ] = None,
+    threads: ThreadsOption = None,
 ) -> None:
     """Render a saved picture again, from what its file says about itself."""
     from distal import rerender as room
@@ -122,10 +123,7 @@ def _kept_bits(kind: str, bits: int, target: Path) -> int | None:
     return bits if target.suffix.lower() == f".{kind}" else None
 
 
-def _told(picture: Path, found: object) -> str:
-    from distal.rerender import Difference
-
-    assert isinstance(found, Difference)
+def _told(picture: Path, found: Difference) -> str:
     if found.is_none:
         return f"{picture}: identical"
     largest, percent = found.largest, 100.0 * found.share

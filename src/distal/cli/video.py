@@ -19,6 +19,7 @@ from distal.cli.base import (
     SceneArgument,
     SetOption,
     SizeOption,
+    ThreadsOption,
     application,
     chosen_device,
     load_picture,
@@ -69,10 +70,7 @@ def video(
     view: Annotated[str, typer.Option(help="What to show, as in distal render.")] = "color",
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
-    threads: Annotated[
-        int | None,
-        typer.Option(min=1, max=1024, help="CPU threads; one per core if not given."),
-    ] = None,
+    threads: ThreadsOption = None,
     keep_frames: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Write every frame there as PNG besides."),

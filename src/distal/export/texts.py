@@ -140,14 +140,25 @@ def write(
     description = get_target(target)
     artifact = emit(run_passes(_set(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
-    beside = write_files(path, artifact, with_header(artifact, target, name))
+    text = with_header(artifact, target, name)
+    told = target not in ("shadertoy", "glslcanvas", "isf")  # these set their inputs by themselves
+    beside = write_files(path, artifact, text, with_interface=told)
     return Exported(path, {}, beside)
 
 
-def write_files(path: Path, artifact: Artifact, text: str) -> tuple[Path, ...]:
-    """Write a text; beside it what a program that runs it reads. Returns what stands beside."""
+def write_files(
+    path: Path, artifact: Artifact, text: str, *, with_interface: bool
+) -> tuple[Path, ...]:
+    """Write a text, and what belongs to it: its vertex stage, its interface.
+
+    Returns:
+        The files that stand beside it.
+
+    Raises:
+        SaveError: The file system refuses.
+    """
     files = {}
-    if artifact.interface.get("target") not in ("shadertoy", "glslcanvas", "isf"):
+    if with_interface:
         files[path.with_suffix(".json")] = json.dumps(artifact.interface, indent=2)
     if artifact.vertex is not None:
         files[path.with_suffix(".vert")] = artifact.vertex

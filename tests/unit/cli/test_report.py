@@ -17,7 +17,7 @@ def run_on(monkeypatch, stream):
     monkeypatch.setattr(sys, "stderr", stream)
     with ProgressBar() as progress:
         progress(0.25)
-        progress(3, 4)
+        progress(0.75)
     return stream.getvalue()
 
 
