@@ -23,9 +23,10 @@ from distal.window.log import Log
 from distal.window.making import Making, Order
 from distal.window.overlay import Overlay, Reading, reading
 from distal.window.presenters import Made, Maker, picture
-from distal.window.reload import PERIOD_S, Watch, files_in, load_again
+from distal.window.reload import PERIOD_S, Loaded, Watch, files_in, load_again
 from distal.window.screen import set_full_screen
-from distal.window.session import Session, Shot
+from distal.window.screenshots import free_name
+from distal.window.session import Session
 from distal.window.worker import Worker
 
 if TYPE_CHECKING:
@@ -250,13 +251,13 @@ class Application:
         origin, session = self._origin, self._session
         shot, maker = session.shot(time.monotonic()), self._making.maker
 
-        def job(_: object) -> Any:
+        def job(_: object) -> Loaded:
             return load_again(origin.path, origin.name, shot, maker)
 
         self._worker.submit(job, self._loaded)
         self.wake()
 
-    def _loaded(self, result: Any) -> None:
+    def _loaded(self, result: Loaded | BaseException) -> None:
         self._is_loading = False
         if isinstance(result, BaseException):
             self._trouble_of_file = self._tell(result)
@@ -360,7 +361,7 @@ class Application:
             picture(viewable, shot, size, device).save(path)
             return path
 
-        def done(result: Any) -> None:
+        def done(result: Path | BaseException) -> None:
             if isinstance(result, BaseException):
                 self._say(self._tell(result).splitlines()[0])
             else:
@@ -373,20 +374,6 @@ class Application:
 
     def _toggle_full_screen(self) -> None:
         self._full_screen_from = set_full_screen(self._canvas, self._full_screen_from)
-
-
-def free_name(folder: Path, title: str, shot: Shot) -> Path:
-    """A file's name after the scene and the time that no file has yet."""
-    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in title)[:60]
-    stem = f"{plain or 'picture'}-{shot.time:.2f}s"
-    if shot.view != "color":
-        stem += "-" + "".join(c if c.isalnum() else "_" for c in shot.view)
-    number = 1
-    while True:
-        path = folder / (f"{stem}.png" if number == 1 else f"{stem}-{number}.png")
-        if not path.exists():
-            return path
-        number += 1
 
 
 def _facts(order: Order) -> dict[str, Any]:

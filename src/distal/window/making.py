@@ -43,7 +43,8 @@ class Order:
     @property
     def pixels(self) -> tuple[int, int]:
         """Width and height that are rendered."""
-        return tuple(max(round(side * self.share), 1) for side in self.size)  # type: ignore[return-value]
+        width, height = self.size
+        return max(round(width * self.share), 1), max(round(height * self.share), 1)
 
     def shows_the_same(self, other: Order) -> bool:
         """Whether only sharpness sets them apart."""

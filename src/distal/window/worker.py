@@ -6,6 +6,7 @@ window's own thread in the order of their jobs. Knows nothing of what jobs do.
 
 from __future__ import annotations
 
+import functools
 import queue
 import threading
 from collections.abc import Callable
@@ -64,7 +65,7 @@ class Worker:
             except BaseException as error:  # whatever it is: the window tells it
                 result = error
             if not self._ended:
-                self._post(lambda done=done, result=result: self._finish(done, result))  # type: ignore[misc]
+                self._post(functools.partial(self._finish, done, result))
 
     def _finish(self, done: Done, result: Any) -> None:
         self.waiting -= 1
