@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from distal.window import lettering, overlay
 from distal.window.layout import Table, time_track
 from distal.window.lettering import plain_font, shortened, shortened_inside, width
-from distal.window.overlay import Overlay, Panel, Reading, Row
+from distal.window.overlay import Overlay, Panel
+from distal.window.reading import Reading, Row
 
 ROWS = (
     Row("Softness", "0.054", 0.27, is_moved=True),

@@ -21,8 +21,9 @@ from distal.loading import EXAMPLE_PREFIX
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
 from distal.window.making import Making, Order
-from distal.window.overlay import Overlay, Reading, reading
+from distal.window.overlay import Overlay
 from distal.window.presenters import Made, Maker, picture
+from distal.window.reading import Reading, reading
 from distal.window.reload import PERIOD_S, Loaded, Watch, files_in, load_again
 from distal.window.screen import set_full_screen
 from distal.window.screenshots import free_name

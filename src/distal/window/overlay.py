@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw
 from distal.window import layout
 from distal.window.keys import HELP
 from distal.window.lettering import fixed_font, plain_font, shortened, shortened_inside, width
-from distal.window.session import Session
+from distal.window.reading import Reading, Row
 
 _TEXT_SIZE: Final = 13
 _BACK: Final = (16, 18, 24, 196)
@@ -47,79 +47,6 @@ class Panel:
     x: int
     y: int
     pixels: NDArray[np.uint8]
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A parameter's row.
-
-    Attributes:
-        label: Whose.
-        words: Its value.
-        share: Where its bar stands, or None.
-        is_moved: Whether it is not at its default.
-    """
-
-    label: str
-    words: str
-    share: float | None
-    is_moved: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """All that is to be read over a picture.
-
-    Attributes:
-        status: One line about what is seen, and how fast it is.
-        rows: The parameters; None while they are not asked for.
-        chosen: Which row keys move.
-        time: Seconds, and how many the strip stands for; None where nothing depends on them.
-        is_paused: Whether the time stands.
-        help: Whether the keys are explained.
-        trouble: A mistake's text, or "".
-        note: A short message, or "".
-    """
-
-    status: str = ""
-    rows: tuple[Row, ...] | None = None
-    chosen: int = 0
-    time: tuple[float, float] | None = None
-    is_paused: bool = False
-    help: bool = False
-    trouble: str = ""
-    note: str = ""
-
-
-def reading(
-    session: Session, now: float, *, status: str = "", trouble: str = "", note: str = ""
-) -> Reading:
-    """What is to be read now; a mistake is told even where nothing else is."""
-    if not session.shows_overlay:
-        return Reading(trouble=trouble, note=note)
-    rows = None
-    if session.shows_parameters:
-        rows = tuple(
-            Row(
-                dial.label,
-                dial.words(session.value(dial)),
-                dial.share(session.value(dial)),
-                dial.parameter.name in session.values,
-            )
-            for dial in session.dials
-        )
-    # Hundredths: what is written, and finer than a pixel of the strip.
-    seconds = round(session.clock.time(now), 2)
-    return Reading(
-        status=status,
-        rows=rows,
-        chosen=session.chosen,
-        time=(seconds, session.time_span) if session.animated else None,
-        is_paused=not session.playing,
-        help=session.shows_help,
-        trouble=trouble,
-        note=note,
-    )
 
 
 class Overlay:
