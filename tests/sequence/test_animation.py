@@ -61,6 +61,54 @@ def test_frames_are_the_stills(moving, tmp_path, kind):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["moving.py", f"out.{kind}"]
 
 
+FADING = """
+from distal.lang import Frame, image, vec3
+
+
+@image
+def picture(frame: Frame) -> vec3:
+    uv = frame.coord / frame.resolution
+    return vec3(0.7 - 0.2 * frame.time, 0.4 * uv.x, 0.1 + 0.05 * frame.time)
+"""
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_changes_slowly_leaves_no_ghosts(tmp_path, kind):
+    fading = distal.load(str(scene_file(tmp_path, FADING)))
+    out = tmp_path / f"out.{kind}"
+    video(fading, out, duration=2, fps=12, size=SIZE)
+    frames, _, _, _ = read(out)
+    for i, frame in enumerate(frames):
+        off = frame[..., :3].astype(float) - still(fading, SIZE, i / 12)
+        assert abs(off.mean(axis=(0, 1))).max() < 2.5, i
+
+
+WANDERING = """
+from distal.lang import Frame, image, vec4
+
+
+@image
+def picture(frame: Frame) -> vec4:
+    x = frame.coord.x / frame.resolution.x - frame.time
+    alpha = 0.0
+    if x > 0.0 and x < 0.2:
+        alpha = 1.0
+    return vec4(1.0, 0.5, 0.1, alpha)
+"""
+
+
+@pytest.mark.parametrize("kind", ["apng", "webp"])
+@pytest.mark.parametrize("quality", ["high", "lossless"])
+def test_what_was_clear_is_clear_again(tmp_path, kind, quality):
+    wandering = distal.load(str(scene_file(tmp_path, WANDERING)))
+    out = tmp_path / f"out.{kind}"
+    video(wandering, out, duration=0.8, fps=5, size=SIZE, quality=quality)
+    frames, _, _, _ = read(out)
+    for i, frame in enumerate(frames):
+        expected = wandering.render(size=SIZE, time=i / 5).array[..., 3] * 255
+        assert (frame[..., 3] == expected).all()
+
+
 @pytest.mark.parametrize("kind", ["apng", "webp"])
 def test_lossless_is_exact_also_where_it_is_clear(tmp_path, kind):
     clear = distal.load(str(scene_file(tmp_path, CLEAR)))

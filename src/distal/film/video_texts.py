@@ -22,6 +22,7 @@ from distal.film.video import Kind
 _EXIF_DESCRIPTION: Final = 0x010E
 _EXIF_SOFTWARE: Final = 0x0131
 _WEBP_HAS_EXIF: Final = 0x08
+_WEBP_NO_BLEND: Final = 0x02
 
 
 def with_texts(path: Path, kind: Kind, texts: Mapping[str, str]) -> None:
@@ -68,6 +69,7 @@ def _webp(file: BinaryIO, texts: Mapping[str, str]) -> None:
     head = file.read(30)
     if head[12:16] != b"VP8X":  # one frame alone: the simple format has no room for it
         return
+    _replace_frames(file)
     exif = Image.Exif()
     exif[_EXIF_DESCRIPTION] = _together(texts)
     exif[_EXIF_SOFTWARE] = texts.get("software", "")
@@ -80,6 +82,23 @@ def _webp(file: BinaryIO, texts: Mapping[str, str]) -> None:
     file.write(struct.pack("<I", size + len(chunk)))
     file.seek(20)
     file.write(bytes([head[20] | _WEBP_HAS_EXIF]))
+
+
+def _replace_frames(file: BinaryIO) -> None:
+    """Mark frames as taking the place of what is there: FFmpeg's would be laid over it by alpha."""
+    at = 12
+    while len(head := _read_at(file, at, 8)) == 8:
+        (size,) = struct.unpack_from("<I", head, 4)
+        if head[:4] == b"ANMF":
+            flags = _read_at(file, at + 23, 1)[0]
+            file.seek(at + 23)
+            file.write(bytes([flags | _WEBP_NO_BLEND]))
+        at += 8 + size + size % 2
+
+
+def _read_at(file: BinaryIO, at: int, count: int) -> bytes:
+    file.seek(at)
+    return file.read(count)
 
 
 def _together(texts: Mapping[str, str]) -> str:
