@@ -32,7 +32,11 @@ def test_whole_numbers_wrap_at_32_bits():
         ({"time": float("inf")}, ValueError, "time is finite, not inf"),
         ({"size": (0, 4)}, ValueError, "each side has 1 to 16384 pixels, not 0x4"),
         ({"size": 4}, TypeError, r"size is \(width, height\) in pixels, not 4"),
-        ({"device": "abacus"}, ValueError, "there is no device 'abacus'; devices: auto, cpu, reference, gpu, gpu-fragment"),
+        (
+            {"device": "abacus"},
+            ValueError,
+            "there is no device 'abacus'; devices: auto, cpu, reference, gpu, gpu-fragment",
+        ),
         ({"params": {"radius": 1}}, ValueError, "there is no parameter 'radius'; parameters: none"),
     ],
 )
