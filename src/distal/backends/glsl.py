@@ -35,7 +35,7 @@ from distal.ir.walk import expressions_in
 _RESERVED: Final = GLSL_KEYWORDS | GLSL_FUNCTIONS
 
 TARGETS: Final = (
-    Target("glsl-es300", "glsl", FramePlace.VERTEX, rough=True),
+    Target("glsl-es300", "glsl", FramePlace.VERTEX, rough=True, one_way=True),
     Target("glsl-330", "glsl", FramePlace.VERTEX),
     *(
         Target(

@@ -35,6 +35,7 @@ class Target:
             Texts for people and their sites keep the short names.
         inline: Wants small functions inlined.
         predicated: Wants loops without break, continue and return inside (see passes.predicate).
+        one_way: Wants no If of two ways of equal length (see passes.one_way).
     """
 
     name: str
@@ -50,3 +51,4 @@ class Target:
     rough: bool = False
     inline: bool = False
     predicated: bool = False
+    one_way: bool = False

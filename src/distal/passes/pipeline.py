@@ -14,6 +14,7 @@ from distal.passes import (
     frequency,
     gradient,
     inline,
+    one_way,
     predicate,
     share,
     specialise,
@@ -39,6 +40,7 @@ PIPELINE: Final[tuple[tuple[str, Pass], ...]] = (
     ("fold-inlined", fold.run),
     ("share", share.run),
     ("predicate", predicate.run),
+    ("one-way", one_way.run),
 )
 
 PASS_NAMES: Final = tuple(name for name, _ in PIPELINE)

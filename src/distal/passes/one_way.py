@@ -1,0 +1,123 @@
+"""Ifs of two ways as Ifs of one, for drivers whose time doubles with each.
+
+What flows in: functions as a text would show them. What flows out: the same meaning; where two ways
+of an If may be equally long, its condition is bound first, and each way has an If of its own. Two
+returns at the end of a function are such ways too. Knows nothing of drivers beyond this:
+SwiftShader walks a loop block by block to find its way back, and walks on twice from a block that
+two ways of one length lead to: 2 to the power of such Ifs, over a loop and all that it calls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import assert_never
+
+from distal.ir.nodes import (
+    Assign,
+    Break,
+    Continue,
+    For,
+    Function,
+    If,
+    Let,
+    Module,
+    Read,
+    Return,
+    Stmt,
+    Unary,
+    UnaryOp,
+    Var,
+    While,
+)
+from distal.ir.types import BOOL
+from distal.passes.context import Context
+from distal.passes.naming import Names, local_names
+from distal.passes.predicate import zero
+
+_Block = tuple[Stmt, ...]
+
+
+def run(module: Module, context: Context) -> Module:
+    """Part the ways of every function's Ifs, where the target wants it."""
+    if not context.target.one_way:
+        return module
+    return replace(module, functions=tuple(map(parted, module.functions)))
+
+
+def parted(function: Function) -> Function:
+    """The function without an If whose two ways may be equally long."""
+    names = Names(local_names(function))
+    return replace(function, body=_parted(_joined(function, names), names))
+
+
+def _joined(function: Function, names: Names) -> _Block:
+    """The body; where it ends in two ways to return, these assign, and one Return follows."""
+    *before, last = function.body
+    after: list[Stmt] = []
+    while before and isinstance(before[-1], Let | Var | Assign):
+        after.insert(0, before.pop())
+    match before, last:
+        case [*earlier, If(condition, (*then, Return(yes) as first), ()) as fork], Return(no):
+            if not (_lengths(then) and _lengths(after)):
+                return function.body
+            name = names.fresh("result")
+            result = Read(name, function.result)
+            ways = If(
+                condition,
+                (*then, Assign(result, yes, span=first.span)),
+                (*after, Assign(result, no, span=last.span)),
+                span=fork.span,
+            )
+            start = Var(name, zero(function.result), span=fork.span)
+            return (*earlier, start, ways, Return(result, span=last.span))
+        case _:
+            return function.body
+
+
+def _parted(block: _Block, names: Names) -> _Block:
+    done: list[Stmt] = []
+    for stmt in block:
+        match stmt:
+            case If(condition, then, otherwise):
+                then, otherwise = _parted(then, names), _parted(otherwise, names)
+                fork = If(condition, then, otherwise, span=stmt.span)
+                twins = then and otherwise and _lengths(then) & _lengths(otherwise)
+                done += _two(fork, names) if twins else [fork]
+            case For() | While():
+                done.append(replace(stmt, body=_parted(stmt.body, names)))
+            case Let() | Var() | Assign() | Break() | Continue() | Return():
+                done.append(stmt)
+            case _:
+                assert_never(stmt)
+    return tuple(done)
+
+
+def _two(fork: If, names: Names) -> list[Stmt]:
+    """Both ways, one after the other; the first may change what the condition reads."""
+    name = names.fresh("first")
+    first = Read(name, BOOL)
+    return [
+        Let(name, fork.condition, span=fork.span),
+        If(first, fork.then, (), span=fork.span),
+        If(Unary(UnaryOp.NOT, first, BOOL), fork.otherwise, (), span=fork.span),
+    ]
+
+
+def _lengths(block: Sequence[Stmt]) -> frozenset[int]:
+    """How many branches lie on the ways through a block; none where one leaves it, or loops."""
+    found = frozenset([0])
+    for stmt in block:
+        match stmt:
+            case Let() | Var() | Assign():
+                continue
+            case If(_, then, otherwise):
+                through, around = _lengths(then), _lengths(otherwise)
+                if not (through and around):
+                    return frozenset()
+                # To a way's first block, through it, and on to where the ways meet.
+                ways = {2 + n for n in through} | {(2 if otherwise else 1) + n for n in around}
+                found = frozenset(a + b for a in found for b in ways)
+            case _:
+                return frozenset()
+    return found
