@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import distal
+from distal.export.page import TOO_OLD
 from distal.scene.viewable import viewable
 from tests.browser import BrowserUnavailableError, offline_page
 from tests.browser import browser as running_browser
@@ -249,6 +250,27 @@ def test_a_lost_context_comes_back(page):
             ".querySelector('.player').dataset.state === 'ready'"
         )
         assert (looked.picture() == before).all()
+
+
+def test_an_old_browser_shows_the_poster_and_a_sentence(tmp_path):
+    # Everything that needs WebGL 2 and a style sheet of 2024 has what unpacks the player too.
+    path = exported(SCENE)
+    with offline_page(path) as watched:
+        watched.page.add_init_script("delete window.DecompressionStream")
+        watched.page.reload()
+        watched.page.get_by_text(TOO_OLD).wait_for()
+        assert watched.page.locator("img").is_visible()
+        assert watched.complaints == []
+
+
+def test_the_policy_lets_the_pages_own_scripts_run_and_no_other(tmp_path):
+    text = exported(SCENE).read_text(encoding="utf-8")
+    foreign = tmp_path / "foreign.html"
+    injected = "<body><script>document.title = 'taken over'</script>"
+    foreign.write_text(text.replace("<body>", injected), encoding="utf-8")
+    with offline_page(foreign) as watched:
+        watched.page.locator("canvas").wait_for()
+        assert watched.page.title() == SCENE
 
 
 def test_without_webgl_stand_the_poster_and_a_sentence(page):

@@ -552,7 +552,7 @@ def test_the_list_of_keys_tells_of_the_mouse_that_a_picture_reads(tmp_path: Path
             page.page.keyboard.press("Escape")
             assert page.page.get_by_role("dialog").count() == 0
             page.page.keyboard.press("?")
-            assert page.page.get_by_role("dialog").is_visible()
+            page.page.get_by_role("dialog").wait_for()
 
 
 def test_keys_in_a_field_are_the_fields(tmp_path: Path) -> None:

@@ -63,6 +63,6 @@ function isNeeded(target: EventTarget | undefined, key: string): boolean {
     if (target.type === "range") return isArrow;
     return target.type === "checkbox" ? key === " " : true;
   }
-  if (target.closest("textarea, select, dialog, [contenteditable]")) return true;
+  if (target.closest("textarea, select, dialog[open], [contenteditable]")) return true;
   return key === " " && !!target.closest("button, summary, a");
 }
