@@ -7,6 +7,7 @@ joins the front end, the devices and the film; ``distal.lang`` reaches it throug
 from __future__ import annotations
 
 import importlib
+import threading
 import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -80,6 +81,7 @@ class PythonExecutor:
 
     def __init__(self) -> None:
         self._kernels: dict[tuple[str, str, int], Kernel] = {}
+        self._lock = threading.RLock()  # frames of a film are rendered by several threads
         self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
         self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
 
@@ -290,16 +292,18 @@ class PythonExecutor:
             known = ", ".join((AUTO, *DEVICES))
             raise ValueError(f"there is no device '{device}'; devices: {known}")
         key = (lowered.digest, device, precision)
-        kernel = self._kernels.pop(key, None)
-        if kernel is None:
-            room, options = DEVICES[name]
-            told = {**options, "adapter": adapter or None} if name.startswith("gpu") else options
-            prepare = importlib.import_module(room).prepare
-            kernel = prepare(lowered.module, precision=precision, **told)
-        self._kernels[key] = kernel  # the last used stands last
-        if len(self._kernels) > KERNELS_KEPT:
-            self._kernels.pop(next(iter(self._kernels)), None)
-        return kernel
+        with self._lock:
+            kernel = self._kernels.pop(key, None)
+            if kernel is None:
+                room, options = DEVICES[name]
+                is_gpu = name.startswith("gpu")
+                told = {**options, "adapter": adapter or None} if is_gpu else options
+                prepare = importlib.import_module(room).prepare
+                kernel = prepare(lowered.module, precision=precision, **told)
+            self._kernels[key] = kernel  # the last used stands last
+            if len(self._kernels) > KERNELS_KEPT:
+                self._kernels.pop(next(iter(self._kernels)), None)
+            return kernel
 
 
 def _found() -> str:

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from distal.sequence.overlap import WAITING, taking
+from distal.sequence.overlap import WAITING, made_ahead, taking
 
 
 def test_all_items_are_taken_in_order_elsewhere():
@@ -91,3 +91,54 @@ def test_several_take_at_once():
     with taking(lambda item: together.wait(), workers=3) as taker:
         for i in range(3):
             taker.put(i)
+
+
+def test_what_is_made_ahead_comes_in_order():
+    gate = threading.Event()
+
+    def make(i):
+        if i == 0:
+            assert gate.wait(10.0)  # the first is ready last
+        else:
+            gate.set()
+        return i * i
+
+    stopped = []
+    assert list(made_ahead(make, range(7), 3, lambda: stopped.append(1))) == [
+        0, 1, 4, 9, 16, 25, 36
+    ]  # fmt: skip
+    assert stopped == []
+
+
+def test_no_more_is_made_ahead_than_was_asked_for():
+    begun = []
+    made = made_ahead(lambda i: begun.append(i) or i, range(100), 2, lambda: None)
+    assert next(made) == 0
+    assert sorted(begun) in ([0], [0, 1])
+    made.close()
+
+
+def test_leaving_early_ends_what_is_being_made():
+    ended = threading.Event()
+
+    def make(i):
+        assert i == 0 or ended.wait(10.0)
+        return i
+
+    made = made_ahead(make, range(50), 2, ended.set)
+    assert next(made) == 0
+    made.close()  # would wait for ten seconds
+    assert ended.is_set()
+
+
+def test_a_failure_comes_in_its_turn_and_ends_the_rest():
+    def make(i):
+        if i == 3:
+            raise TimeoutError("of its own")  # not the wait's
+        return i
+
+    found, stopped = [], []
+    with pytest.raises(TimeoutError, match="of its own"):
+        for i in made_ahead(make, range(10), 3, lambda: stopped.append(1)):
+            found.append(i)
+    assert found == [0, 1, 2] and stopped == [1]

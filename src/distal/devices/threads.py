@@ -20,6 +20,7 @@ from distal.devices.base import Cancel, Cancelled, Progress, cancel_test
 
 _WATCH_S: Final = 0.02  # how long a request to end may wait
 _STACK_BYTES: Final = 16 * 2**20  # twice what the LLVM backend gives to arrays
+_STARTING: Final = threading.Lock()  # the size of stacks is the whole process's
 
 
 def usable_threads() -> int:
@@ -96,13 +97,14 @@ def _checked(threads: int | None) -> int | None:
 
 
 def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> None:
-    previous = threading.stack_size(_STACK_BYTES)
-    try:
-        for thread in workers:
-            thread.start()
-            started.append(thread)
-    finally:
-        threading.stack_size(previous)
+    with _STARTING:
+        previous = threading.stack_size(_STACK_BYTES)
+        try:
+            for thread in workers:
+                thread.start()
+                started.append(thread)
+        finally:
+            threading.stack_size(previous)
 
 
 def _watch(

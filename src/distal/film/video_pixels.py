@@ -22,7 +22,7 @@ LIMITED, FULL = 1, 2  # FFmpeg's names for 16 to 235 and 0 to 255
 
 
 class Converter:
-    """Makes an encoder's frames of pictures; one for each encoder, since it keeps its tables."""
+    """Makes an encoder's frames of pictures; one for each thread, since it keeps its tables."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec

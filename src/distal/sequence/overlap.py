@@ -1,18 +1,22 @@
-"""Two kinds of work at once: what the caller makes, others take.
+"""Several kinds of work at once: items are made, in order, while others take those that are made.
 
-What flows in: items, put one by one. What flows out: each is given to a function that runs on
-threads of its own; a few wait in between, so that memory stays flat. Knows nothing of pictures.
+What flows in: a function that makes, one that takes. What flows out: each item is given to a
+function that runs on threads of its own; a few wait in between, so that memory stays flat. Knows
+nothing of pictures.
 """
 
 from __future__ import annotations
 
 import queue
 import threading
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Final, Generic, TypeVar
 
 Item = TypeVar("Item")
+Given = TypeVar("Given")
 # How many may wait: one on the way out and one on the way in, and two for an uneven pace.
 WAITING: Final = 4
 _LOOK_S: Final = 0.1  # how long a failure on the other side may stay unseen
@@ -87,3 +91,35 @@ def taking(take: Callable[[Item], None], workers: int = 1) -> Iterator[Taker[Ite
     except BaseException:
         taker.abandon()
         raise
+
+
+def made_ahead(
+    make: Callable[[Given], Item], given: Iterable[Given], count: int, stop: Callable[[], object]
+) -> Generator[Item, None, None]:
+    """What ``make`` makes of each, in order, ``count`` of them being made at once.
+
+    Close it when it is left early: then ``stop`` is called, which should end what is being made.
+    """
+    waiting: deque[Future[Item]] = deque()
+    with ThreadPoolExecutor(count) as pool:
+        try:
+            for each in given:
+                waiting.append(pool.submit(make, each))
+                if len(waiting) == count:
+                    yield _result(waiting.popleft())
+            while waiting:
+                yield _result(waiting.popleft())
+        except BaseException:
+            stop()
+            for future in waiting:
+                future.cancel()
+            raise
+
+
+def _result(future: Future[Item]) -> Item:
+    while True:
+        try:
+            return future.result(_LOOK_S)  # in turns, so that ctrl-C is heard everywhere
+        except TimeoutError:
+            if future.done():
+                return future.result()

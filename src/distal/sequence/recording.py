@@ -8,8 +8,10 @@ whole is kept, and the same call goes on from there. How files are encoded is ``
 from __future__ import annotations
 
 import json
+import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from fractions import Fraction
 from os import PathLike
@@ -18,6 +20,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
+from distal.devices.base import cancel_test
 from distal.devices.threads import usable_threads
 from distal.film.picture import Picture
 from distal.film.replacement import check_destination
@@ -38,7 +41,7 @@ from distal.film.video_animation import Animation, animate
 from distal.film.video_pixels import Converter
 from distal.film.video_segments import PIECE_SUFFIX, Piece, join
 from distal.sequence.frames import Frames, make_folder
-from distal.sequence.overlap import taking
+from distal.sequence.overlap import made_ahead, taking
 from distal.sequence.program import Program, program
 from distal.sequence.store import Store, Tell
 from distal.sequence.timing import Timing, timing
@@ -48,6 +51,8 @@ from distal.version import __version__
 Item = TypeVar("Item")
 # Told (frames done, all frames, "rendering" or "encoding").
 Progress = Callable[[int, int, str], Any]
+# Larger frames are rendered one by one: each takes 16 bytes a pixel.
+MOST_PIXELS_AT_ONCE: Final = 2**24
 # A loop whose ends differ by more jumps: three steps of 255 on average.
 _JUMP: Final = 3.0 / 255.0
 
@@ -127,7 +132,8 @@ def video(
         keep_frames: A folder for every frame as a PNG file besides; it is made.
         fresh: Render all again, even where an earlier call was broken off.
         progress: Told how many frames are done, of how many, and what is being done with them.
-        cancel: An event, or a function without arguments, that ends the work early.
+        cancel: An event, or a function without arguments, that ends the work early; it is asked by
+            the threads that render.
         tell: Told in words where the work goes on, and why it begins anew.
 
     Raises:
@@ -150,7 +156,12 @@ def video(
     else:
         library()
         check_destination(output)
-    options = {"device": device, "threads": threads, "cancel": cancel}
+    stop, asked = threading.Event(), cancel_test(cancel)
+
+    def is_over() -> bool:
+        return stop.is_set() or asked()
+
+    options = {"device": device, "threads": threads, "cancel": is_over}
     made = program(obj, width_height, when.time(0), params or {}, view, samples, options)
     job = _Job(
         output=output,
@@ -164,6 +175,7 @@ def video(
         told={"view": view, "samples": samples},
         progress=progress or (lambda done, total, what: None),
         tell=tell or (lambda words: None),
+        stop=stop,
     )
     if loop:
         job.look_at_ends()
@@ -185,6 +197,7 @@ class _Job:
     told: Mapping[str, Any]
     progress: Progress
     tell: Tell
+    stop: threading.Event
 
     def run(self, keep: Path | None) -> tuple[int, int]:
         """Make the file: the number of frames rendered, and the bytes written."""
@@ -266,21 +279,35 @@ class _Job:
         take: Callable[[Item], None],
         workers: int,
     ) -> None:
-        """Render frames and make them ready here, while threads take them."""
+        """Render frames and make them ready, while threads take them."""
         indices = list(wanted)
         count = self.timing.count
         done = count - len(indices)
         if done:
             self.tell(f"continues: {done} of {count} frames are there")
-        with taking(take, workers) as taker:
-            for i in indices:
-                at = self.timing.time(i)
-                picture = self.program.picture(i, at)
-                if i == 0:
-                    self.program.doubt(picture, at)
-                taker.put(ready(i, picture))
+
+        def made(i: int) -> Item:
+            at = self.timing.time(i)
+            picture = self.program.picture(i, at)
+            if i == 0:
+                self.program.doubt(picture, at)
+            return ready(i, picture)
+
+        frames = made_ahead(made, indices, self._at_once(), self.stop.set)
+        with taking(take, workers) as taker, closing(frames):
+            for frame in frames:
+                taker.put(frame)
                 done += 1
                 self.progress(done, count, "rendering")
+
+    def _at_once(self) -> int:
+        """How many frames are rendered at once.
+
+        While one waits for its last part, or becomes eight bits, the next keeps processors busy:
+        on two of them 7.9 ms a frame of 640x480, one after the other 9.3.
+        """
+        width, height = self.program.size
+        return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
 
     def look_at_ends(self) -> None:
         """Say it when a loop jumps: the picture one period later is another."""
@@ -359,7 +386,7 @@ class _Encoding:
     ) -> None:
         self._pieces = iter(pieces.items())
         self._codec = codec
-        self._converter = Converter(codec)
+        self._converters = threading.local()  # each keeps tables that are one thread's
         self._job = job
         self._kept = kept
         self._piece: Piece | None = None
@@ -371,7 +398,9 @@ class _Encoding:
         A frame of 8 bits is a tenth of its picture: converted at once it costs 0.8 ms less of a
         processor, at 640x480.
         """
-        frame = self._converter.frame(picture.array)
+        if not hasattr(self._converters, "own"):
+            self._converters.own = Converter(self._codec)
+        frame = self._converters.own.frame(picture.array)
         return index, frame, picture if self._kept is not None else None
 
     def take(self, item: tuple[int, Any, Picture | None]) -> None:
