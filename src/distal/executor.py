@@ -268,23 +268,26 @@ class PythonExecutor:
 
     def _parts(self, function: Func | Composed) -> _Parts:
         """What is run for a function, remembered while it is the same."""
-        first = self._lower(function, None)
-        display = getattr(function, "display", None)
-        parts = (first,) if display is None else (first, self._lower(display, (VEC4,)))
-        known = self._together.get(function)
-        if known is None or known.parts != parts:
-            known = self._together[function] = _Parts(parts, Declared([p.module for p in parts]))
-        return known
+        with self._lock:
+            first = self._lower(function, None)
+            display = getattr(function, "display", None)
+            parts = (first,) if display is None else (first, self._lower(display, (VEC4,)))
+            known = self._together.get(function)
+            if known is None or known.parts != parts:
+                declared = Declared([p.module for p in parts])
+                known = self._together[function] = _Parts(parts, declared)
+            return known
 
     def _lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
         """The lowered function, remembered while what it captured is the same."""
         if isinstance(function, LangFunction):
             return Lowered.of(function, types)
-        known = self._lowered.setdefault(function, {})
-        lowered = known.get(types)
-        if lowered is None or not lowered.captured.is_fresh():
-            lowered = known[types] = Lowered.of(function, types)
-        return lowered
+        with self._lock:
+            known = self._lowered.setdefault(function, {})
+            lowered = known.get(types)
+            if lowered is None or not lowered.captured.is_fresh():
+                lowered = known[types] = Lowered.of(function, types)
+            return lowered
 
     def _kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
         name, _, adapter = device.partition(":")

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.body import Names
+from distal.frontend.parsing import parse
 from distal.frontend.problems import SceneError, did_you_mean
 from distal.frontend.source import SourceMap, parse_definition
 from distal.lang.functions import Overload
@@ -175,7 +176,7 @@ def _annotation(node: ast.expr, find: Any, known: Any) -> Any:
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         text = node.value
         try:
-            node = ast.parse(text, mode="eval").body
+            node = parse(text, mode="eval").body
         except (SyntaxError, RecursionError, ValueError):
             raise SceneError(f"'{text}' is not a type of scene code", None) from None
     names = [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]

@@ -10,6 +10,7 @@ import ast
 from collections.abc import Sequence
 
 from distal.diagnostics import CompileError, Span
+from distal.frontend.parsing import parse
 from distal.lang.source import Source
 
 
@@ -85,10 +86,10 @@ def _find(source: Source, name: str, span: Span) -> tuple[ast.FunctionDef, Sourc
     if span.col:
         segment, offset = ["if 1:\n", *segment], offset - 1
     try:
-        tree = ast.parse("".join(segment))
+        tree = parse("".join(segment))
     except SyntaxError:
         # The indentation misled: a text in quotes, say. The whole file needs no guess.
-        tree, offset = ast.parse("".join(source.lines)), 0
+        tree, offset = parse("".join(source.lines)), 0
     first = source.first_line - offset
     for node in ast.walk(tree):
         match node:
