@@ -29,7 +29,7 @@ from distal.film.video import KINDS, codec_of
 from distal.film.video_pixels import Converter
 from distal.film.video_segments import Piece, join
 from distal.sequence import video
-from distal.sequence.recording import encoder_threads
+from distal.sequence.encoding import encoder_threads
 
 SIZE, RATE = (640, 480), Fraction(60)
 HELD = 60

@@ -40,6 +40,17 @@ def check_destination(path: Path) -> None:
         raise SaveError(f"cannot write {path}: the folder {folder} is not writable")
 
 
+def move_into_place(temporary: Path, path: Path) -> None:
+    """Let a whole file take the place of another, after its bytes are on disk.
+
+    Raises:
+        OSError: The file system refuses.
+    """
+    with open(temporary, "rb+") as file:
+        os.fsync(file.fileno())  # renamed before it is on disk, a crash would leave zeros
+    os.replace(temporary, path)
+
+
 @contextmanager
 def replacement(path: Path) -> Iterator[BinaryIO]:
     """Open a file that takes the place of ``path`` when the block ends well.

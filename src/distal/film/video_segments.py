@@ -7,14 +7,13 @@ of scenes and of who decides where a piece ends.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final
 
-from distal.film.replacement import SaveError
+from distal.film.replacement import SaveError, move_into_place
 from distal.film.video import Codec, Kind, library
 from distal.film.video_pixels import tag
 
@@ -63,7 +62,7 @@ class Piece:
         with writing(self._path):
             self._container.mux(self._stream.encode(None))
             self._container.close()
-            appear(self._partial, self._path)
+            move_into_place(self._partial, self._path)
 
     def abandon(self) -> None:
         """Leave nothing."""
@@ -154,13 +153,6 @@ def _shifted(source: Any, first: int, rate: Fraction) -> Iterator[Any]:
 def partial(path: Path) -> Path:
     """The name of a file that is not whole yet."""
     return path.with_name(f"{path.stem}.partial{path.suffix}")
-
-
-def appear(temporary: Path, path: Path) -> None:
-    """Let a whole file take its place, after its bytes are on disk."""
-    with open(temporary, "rb+") as file:
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
 
 
 @contextmanager

@@ -72,7 +72,7 @@ class Viewable:
             return 0.0
         return float(executor().call(_Elevation(self.scene), (), {}))
 
-    @property
+    @cached_property
     def animated(self) -> bool:
         """Whether the picture depends on the time."""
         return executor().reads_time(self.image(COLOR, encoded=True))
@@ -105,7 +105,7 @@ class Viewable:
             self._images[view] = view_of_image(self._source, view)
         return self._images[view]
 
-    def settings(self, steering: Steering = STILL, view: str = COLOR) -> dict[str, Any]:
+    def settings(self, steering: Steering = STILL) -> dict[str, Any]:
         """The values of a steered program's numbers; empty where no camera is moved."""
         return steering.settings if self.steers else {}
 
@@ -118,7 +118,7 @@ class Viewable:
     ) -> Picture:
         """The picture; the options are those of ``Image.render``: size, time, params, device."""
         image = self.image(view, steered=steering is not None)
-        settings = {} if steering is None else self.settings(steering, view)
+        settings = {} if steering is None else self.settings(steering)
         picture: Picture = executor().render(image, settings=settings, **options)
         moved = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged

@@ -26,7 +26,6 @@ from distal.film.picture import Picture
 from distal.film.replacement import check_destination
 from distal.film.video import (
     FRAMES,
-    Codec,
     Kind,
     WishError,
     check_rate,
@@ -38,8 +37,8 @@ from distal.film.video import (
     read_quality,
 )
 from distal.film.video_animation import Animation, animate
-from distal.film.video_pixels import Converter
-from distal.film.video_segments import PIECE_SUFFIX, Piece, join
+from distal.film.video_segments import join
+from distal.sequence.encoding import Encoding, piece_name
 from distal.sequence.frames import Frames, make_folder
 from distal.sequence.overlap import made_ahead, taking
 from distal.sequence.program import Program, program
@@ -239,14 +238,14 @@ class _Job:
 
     def _encoded(self, store: Store, kept: Frames | None) -> int:
         codec = codec_of(self.kind, self.quality)
-        pieces = {store.path(_piece_name(frames)): frames for frames in self.timing.pieces}
+        pieces = {store.path(piece_name(frames)): frames for frames in self.timing.pieces}
         missing = [
             (file, frames)
             for file, frames in pieces.items()
             if not file.exists() or not (kept is None or all(map(kept.is_there, frames)))
         ]
         wanted = [i for _, frames in missing for i in frames]
-        encoding = _Encoding(dict(missing), codec, self, kept)
+        encoding = Encoding(dict(missing), codec, self.program.size, self.timing.rate, kept)
         try:
             self._render(wanted, encoding.ready, encoding.take, workers=1)
         except BaseException:
@@ -367,7 +366,7 @@ class _Job:
 
     def _tell_kept(self, store: Store) -> None:
         if self.kind.encoded:
-            there = [f for f in self.timing.pieces if store.path(_piece_name(f)).exists()]
+            there = [f for f in self.timing.pieces if store.path(piece_name(f)).exists()]
             kept = sum(map(len, there))
         else:
             kept = len(store.items())
@@ -376,61 +375,6 @@ class _Job:
                 f"{kept} of {self.timing.count} frames are kept in {store.folder}; "
                 "continue with the same command"
             )
-
-
-class _Encoding:
-    """Encodes frames as they come, piece by piece, on one thread."""
-
-    def __init__(
-        self, pieces: Mapping[Path, range], codec: Codec, job: _Job, kept: Frames | None
-    ) -> None:
-        self._pieces = iter(pieces.items())
-        self._codec = codec
-        self._converters = threading.local()  # each keeps tables that are one thread's
-        self._job = job
-        self._kept = kept
-        self._piece: Piece | None = None
-        self._last = -1
-
-    def ready(self, index: int, picture: Picture) -> tuple[int, Any, Picture | None]:
-        """A frame as it waits; made where it was rendered, while its pixels are in the cache.
-
-        A frame of 8 bits is a tenth of its picture: converted at once it costs 0.8 ms less of a
-        processor, at 640x480.
-        """
-        if not hasattr(self._converters, "own"):
-            self._converters.own = Converter(self._codec)
-        frame = self._converters.own.frame(picture.array)
-        return index, frame, picture if self._kept is not None else None
-
-    def take(self, item: tuple[int, Any, Picture | None]) -> None:
-        """Encode the next frame."""
-        index, frame, picture = item
-        if self._piece is None:
-            path, frames = next(self._pieces)
-            self._last = frames[-1]
-            size, rate = self._job.program.size, self._job.timing.rate
-            self._piece = Piece(path, self._codec, size, rate, encoder_threads())
-        if self._kept is not None and picture is not None:
-            self._kept.write(index, picture)
-        self._piece.add(frame)
-        if index == self._last:
-            self._piece.finish()
-            self._piece = None
-
-    def abandon(self) -> None:
-        """Leave nothing of a piece that is not whole."""
-        if self._piece is not None:
-            self._piece.abandon()
-
-
-def encoder_threads() -> int:
-    """Half the processors: rendering needs the others, and one alone lags behind many."""
-    return max(1, min(8, usable_threads() // 2))
-
-
-def _piece_name(frames: range) -> str:
-    return f"{frames[0]:06d}-{frames[-1]:06d}{PIECE_SUFFIX}"
 
 
 def _amount(count: int) -> str:

@@ -14,7 +14,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, Final
 
-from distal.film.replacement import SaveError, check_destination, replacement
+from distal.film.replacement import (
+    SaveError,
+    check_destination,
+    move_into_place,
+    replacement,
+)
 
 try:
     import fcntl
@@ -81,9 +86,7 @@ class Store:
     def appear(self, made: Path) -> None:
         """Move the finished video to its place and drop the folder."""
         try:
-            with open(made, "rb+") as file:
-                os.fsync(file.fileno())
-            os.replace(made, os.path.realpath(self.output))
+            move_into_place(made, Path(os.path.realpath(self.output)))
         except OSError as error:
             raise SaveError(f"cannot write {self.output}: {error.strerror or error}") from error
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -165,7 +165,7 @@ class TextureMaker:
             params=dict(shot.parameters),
             mouse=shot.mouse.pixels(size),
             index=shot.index,
-            settings=viewable.settings(shot.steering, shot.view) if shot.steering else {},
+            settings=viewable.settings(shot.steering) if shot.steering else {},
             adapter=self._adapter,
         )
         self._wait_for(texture)
