@@ -1,0 +1,117 @@
+"""Fog and occlusion in whole scenes: each leg of a ray's way by its own length.
+
+Of what a leg shows exp(-density * its length) is left and the rest is fog; what lies behind a
+mirror or a pane comes through the fog of all legs before. Inside glass there is no fog, and what a
+ray sees that meets nothing is behind no fog of its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from distal import AmbientLight, Box, DistantLight, Material, Plane, Sphere, emissive, mirror
+from tests.optics.looking import clear, seen, unit
+
+FOG = np.array([0.7, 0.2, 0.4])
+DENSITY = 0.3
+LAMP = np.array([0.9, 1.6, 0.3])
+TINT = np.array([0.8, 0.5, 0.9])
+FAR_GLASS = Box(0.1, 0.1, 0.1).translate(40.0, 40.0, 40.0).paint(clear(1.5))
+
+
+def through(light, length):
+    """A light seen through fog."""
+    left = math.exp(-DENSITY * length)
+    return left * np.asarray(light) + (1.0 - left) * FOG
+
+
+def left_after(length):
+    return math.exp(-DENSITY * length)
+
+
+def foggy(shape, position, target, **scene):
+    return seen(shape, position, target, fog=tuple(FOG), fog_density=DENSITY, **scene)
+
+
+# A ray comes down on a mirror 2.5 away and goes up to a lamp's wall 4 away, or to the sky.
+DOWN = unit(0.6, -0.8, 0.0)
+MIRROR = Plane(y=0.0).paint(mirror(tuple(TINT)))
+EYE = tuple(-2.5 * DOWN)
+WALL = Box(1.0, 40.0, 40.0).translate(x=2.4 + 0.5)  # its near side at x = 2.4: 4 along the ray
+LIT_WALL = WALL.paint(emissive(tuple(LAMP / LAMP.max()), strength=float(LAMP.max())))
+
+
+@pytest.mark.parametrize("glass", [False, True])
+def test_fog_before_a_mirror_and_after_it(glass):
+    """The mirror's own light is black: of the first leg only fog is seen."""
+    shape = MIRROR | LIT_WALL
+    found = foggy(shape | FAR_GLASS if glass else shape, EYE, (0, 0, 0))
+    expected = through((0, 0, 0), 2.5) + left_after(2.5) * TINT * through(LAMP, 4.0)
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("glass", [False, True])
+def test_a_background_in_a_mirror_is_behind_the_fog_before_the_mirror(glass):
+    shape = MIRROR | FAR_GLASS if glass else MIRROR
+    found = foggy(shape, EYE, (0, 0, 0), background=(0.3, 0.9, 0.6))
+    expected = through((0, 0, 0), 2.5) + left_after(2.5) * TINT * np.array([0.3, 0.9, 0.6])
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("glass", [False, True])
+def test_two_mirrors_are_behind_all_the_fog_before_them(glass):
+    """To the floor, to a wall that mirrors, back to the floor, which shows the second bounce."""
+    half = np.array([0.5, 0.7, 0.6])
+    walls = MIRROR | WALL.paint(Material(color=tuple(half), diffuse=0.0, specular=1.0, metal=1.0))
+    found = foggy(walls | FAR_GLASS if glass else walls, EYE, (0, 0, 0), background=(0.3, 0.9, 0.6))
+    expected = through((0, 0, 0), 2.5)
+    expected = expected + left_after(2.5) * TINT * through((0, 0, 0), 4.0)
+    expected = expected + left_after(6.5) * TINT * half * np.array([0.3, 0.9, 0.6])
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_fog_before_a_pane_and_behind_it_but_not_within():
+    """An index of 1: straight on through 1.5 of an absorbing pane to a lamp 3 behind it."""
+    absorbs = np.array([0.2, 0.7, 0.4])
+    pane = Box(20.0, 20.0, 1.5).translate(z=-0.75).paint(clear(1.0, absorption=tuple(absorbs)))
+    lamp = Box(20.0, 20.0, 1.0).translate(z=-5.0)
+    shape = pane | lamp.paint(emissive(tuple(LAMP / LAMP.max()), strength=float(LAMP.max())))
+    found = foggy(shape, (0, 0, 2.0), (0, 0, 0))
+    expected = through((0, 0, 0), 2.0) + left_after(2.0) * np.exp(-1.5 * absorbs) * through(
+        LAMP, 3.0
+    )
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_nothing_is_before_a_background():
+    assert foggy(Sphere(1.0), (0, 3, 5), (0, 4, 0), background=(0.3, 0.9, 0.6)) == pytest.approx(
+        (0.3, 0.9, 0.6), rel=1e-5
+    )
+
+
+# Occlusion: a floor beside a wall; ``tests/render/test_shading`` has the formula.
+
+SHARES = np.array([0.05, 0.2875, 0.525, 0.7625, 1.0])
+WEIGHTS = 1.2 * np.array([1.0, 0.6, 0.36, 0.216, 0.1296])
+WHITE = Plane(y=0.0).paint("#fff")
+BLACK_WALL = Box(1.0, 40.0, 40.0).paint("#000")
+
+
+def open_beside(wall, reach):
+    lacking = np.maximum(SHARES * reach - wall, 0.0)
+    return 1.0 - float(WEIGHTS @ lacking) / reach
+
+
+@pytest.mark.parametrize(("wall", "reach"), [(0.3, 0.5), (0.3, 1.2), (0.9, 1.2), (0.9, 0.0)])
+def test_a_wall_hides_ambient_light_within_reach_and_no_other(wall, reach):
+    """The sun's share stays; ambient light of 0.6 is occluded."""
+    shape = WHITE | BLACK_WALL.translate(x=-0.5 - wall)
+    lights = [AmbientLight(0.6), DistantLight((0.0, 0.8, 0.6), 0.5)]
+    look = {"position": (1.0, 2.0, 0.5), "target": (0.0, 0.0, 0.0), "lights": lights}
+    found = seen(shape, **look, ambient_occlusion=reach)
+    share = open_beside(wall, reach) if reach else 1.0
+    assert found == pytest.approx([0.6 * share + 0.5 * 0.8] * 3, abs=2e-3)
+    assert reach <= wall or share < 0.99
