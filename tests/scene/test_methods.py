@@ -210,6 +210,42 @@ EXEMPT = {
 }
 
 
+DEFAULTS = {
+    "mirror": {"offset": 0.0},
+    "split": {"offset": 0.0},
+    "shell": {"where": "centre"},
+    "repeat": {"count": None, "neighbours": 0, "mirrored": False},
+    "repeat_polar": {"neighbours": 0},
+    "shear": {"xy": 0.0, "xz": 0.0, "yz": 0.0},
+    "array": {"positions": None, "start": None, "end": None, "count": None},
+    "bend_linear": {"ease": "linear"},
+    "bend_radial": {"ease": "linear"},
+    "transition_linear": {"ease": "linear"},
+    "transition_radial": {"ease": "linear"},
+    "warp": {"frequency": 1.0, "seed": 0},
+    "displace": {"height": 1.0},
+    "slice": {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)},
+    "project": {"count": 32},
+    "extrude": {"height": 1.0, "rounding": None, "chamfer": None},
+    "revolve": {"offset": 0.0, "angle": None},
+    "loft": {"height": 1.0, "ease": "linear"},
+    "sweep": {"up": (0.0, 1.0, 0.0)},
+    "sweep_bezier": {"up": (0.0, 1.0, 0.0), "pieces": 16},
+    **{k: {"smooth": 0.0, "blend": "quadratic"} for k in ("union", "intersection", "difference")},
+    "apply": {"others": ()},
+}
+ROTATE = dict.fromkeys(("angle", "axis", "x", "y", "z", "quaternion", "matrix"))
+
+
+@pytest.mark.parametrize("kind", [Shape, Shape2D])
+def test_what_is_not_said_is_what_is_documented(kind):
+    for name in sorted(methods_of(kind)):
+        parameters = inspect.signature(getattr(kind, name)).parameters.values()
+        found = {p.name: p.default for p in parameters if p.default is not p.empty}
+        turned = ROTATE if name == "rotate" and kind is Shape else {}
+        assert found == DEFAULTS.get(name, turned), name
+
+
 @pytest.mark.parametrize("blend", BLENDS)
 @pytest.mark.parametrize("kind", ["union", "intersection", "difference", "xor"])
 def test_every_blend_joins_as_its_union_says(kind, blend):
