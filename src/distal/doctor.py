@@ -152,12 +152,11 @@ def _cache() -> Iterator[Finding]:
         yield Finding("cache", "folder", State.READY, f"{folder} (the first render makes it)")
         return
     cache = Cache(folder)
-    kernels, size = cache.size()
     with warnings.catch_warnings(record=True) as complaints:
         warnings.simplefilter("always")
+        kernels, size = cache.size()
         usable = cache.store(_PROBE, b"probe") and cache.load(_PROBE) == b"probe"
-    for left in folder.glob(f"{_PROBE}.*"):
-        left.unlink()
+    cache.discard(_PROBE)
     if usable:
         detail = f"{folder}: {kernels} kernels, {size / 2**20:.1f} MiB"
         yield Finding("cache", "folder", State.READY, detail)

@@ -3,28 +3,40 @@
 What flows in: a key and a kernel's bytes. What flows out: the same bytes, or nothing. A kernel is
 machine code that will be run, so it is read only from a folder and a file that belong to the user
 and that nobody else can write. Files are written whole under another name and then renamed, and
-carry a checksum, so that writers side by side, full disks and lost power do no harm. A cache that
-cannot be used is no error: everything is compiled again.
+carry a checksum of their key and their content, so that writers side by side, full disks, lost
+power and files that changed places do no harm. A cache that cannot be used is no error: everything
+is compiled again.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import re
+import secrets
 import stat
 import sys
-import tempfile
+import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+try:
+    import fcntl
+except ImportError:  # Windows, where kernels are not kept (no O_NOFOLLOW)
+    fcntl = None  # type: ignore[assignment]
+
 FOLDER_VARIABLE: Final = "DISTAL_CACHE_DIR"
 OFF: Final = "off"
 SIZE_LIMIT: Final = 256 * 2**20  # bytes; then the longest unused go
 _SUFFIX: Final = ".kernel"
-_MAGIC: Final = b"distal kernel 1\n"
+_TEMPORARY: Final = re.compile(r"\.new-[A-Za-z0-9_]{8,16}\Z")
+# Of a temporary file whose writer was killed. Writing takes milliseconds; a lock tells a writer
+# that was only stopped, as by a suspended machine.
+LEFTOVER_AGE_S: Final = 3600.0
+_MAGIC: Final = b"distal kernel 2\n"
 _DIGEST = 32
 
 _warned: set[Path] = set()
@@ -63,53 +75,69 @@ class Cache:
             if folder is None:
                 return None
             try:
-                handle = os.open(key + _SUFFIX, os.O_RDONLY | os.O_NOFOLLOW, dir_fd=folder)
+                # Not blocking: a pipe in the file's place would be waited for without end.
+                flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
+                handle = os.open(key + _SUFFIX, flags, dir_fd=folder)
             except OSError:
                 return None
-            with os.fdopen(handle, "rb") as file:
-                if not _only_ours(os.fstat(handle), stat.S_ISREG):
+            with suppress(OSError), os.fdopen(handle, "rb") as file:
+                info = os.fstat(handle)
+                if not stat.S_ISREG(info.st_mode) or info.st_size > self.limit:
+                    return None
+                if not _only_ours(info):
                     self._warn("holds a file that others can write; not used")
                     return None
                 data = file.read()
                 with suppress(OSError):
                     os.utime(handle)  # used last: dropped last
-        return _checked(data)
+                return _checked(key, data)
+        return None
 
     def store(self, key: str, payload: bytes) -> bool:
         """Keep bytes under a key; whether that worked."""
-        if self.folder is None:
+        data = _MAGIC + _digest(key, payload) + payload
+        if self.folder is None or len(data) > self.limit:
             return False
         with suppress(OSError):
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with self._opened() as folder:
             if folder is None:
                 return False
-            data = _MAGIC + hashlib.sha256(payload).digest() + payload
+            self._drop_leftovers(folder)
             try:
-                _replace(self.folder, key + _SUFFIX, data)
+                _replace(folder, key + _SUFFIX, data)
             except OSError:
                 return False
-            self._shrink()
+            self._shrink(folder)
         return True
+
+    def discard(self, key: str) -> None:
+        """Forget what is stored under a key."""
+        with self._opened() as folder, suppress(OSError):
+            if folder is not None:
+                os.unlink(key + _SUFFIX, dir_fd=folder)
 
     def size(self) -> tuple[int, int]:
         """How many kernels there are, and their bytes."""
-        files = list(self._files())
+        with self._opened() as folder:
+            files = [] if folder is None else list(_kernels(folder))
         return len(files), sum(size for _, size, _ in files)
 
     @contextmanager
     def _opened(self) -> Iterator[int | None]:
-        """The folder held open, so that what was checked is what is read; None if not ours."""
+        """The folder held open, so that what was checked is what is used; None if not ours."""
         if self.folder is None or not hasattr(os, "O_NOFOLLOW"):
             yield None
             return
         try:
+            # A link that another user made may lead to a folder of ours that is no cache.
+            link = os.lstat(self.folder)
             handle = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
         except OSError:
             yield None
             return
         try:
-            if _only_ours(os.fstat(handle), stat.S_ISDIR):
+            if link.st_uid == os.geteuid() and _only_ours(os.fstat(handle)):
                 yield handle
             else:
                 self._warn("can be written by others; not used")
@@ -123,55 +151,102 @@ class Cache:
             _warned.add(self.folder)
             warnings.warn(f"the kernel cache {self.folder} {what}", RuntimeWarning, stacklevel=4)
 
-    def _files(self) -> Iterator[tuple[float, int, str]]:
-        """Time of last use, size and path of every kernel."""
-        if self.folder is None:
-            return
-        with suppress(OSError), os.scandir(self.folder) as entries:
+    def _drop_leftovers(self, folder: int) -> None:
+        """Remove the temporary files of writers that were killed, never those of living ones."""
+        with suppress(OSError), os.scandir(folder) as entries:
             for entry in entries:
-                if entry.name.endswith(_SUFFIX):
+                if _TEMPORARY.match(entry.name):
                     with suppress(OSError):
-                        info = entry.stat(follow_symlinks=False)
-                        yield info.st_mtime, info.st_size, entry.path
+                        _drop_leftover(folder, entry.name)
 
-    def _shrink(self) -> None:
+    def _shrink(self, folder: int) -> None:
         """Drop what was not used for longest, down to four fifths of the limit."""
-        files = sorted(self._files())
+        files = sorted(_kernels(folder))
         total = sum(size for _, size, _ in files)
         if total <= self.limit:
             return
-        for _, size, path in files:
+        for _, size, name in files:
             if total <= self.limit * 4 // 5:
                 break
             with suppress(OSError):
-                os.unlink(path)
+                os.unlink(name, dir_fd=folder)
                 total -= size
 
 
-def _only_ours(info: os.stat_result, right_sort: object) -> bool:
-    assert callable(right_sort)
+def _only_ours(info: os.stat_result) -> bool:
     others_write = info.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-    return bool(right_sort(info.st_mode)) and info.st_uid == os.geteuid() and not others_write
+    return info.st_uid == os.geteuid() and not others_write
 
 
-def _replace(folder: Path, name: str, data: bytes) -> None:
-    handle, temporary = tempfile.mkstemp(prefix=".new-", dir=folder)
+def _kernels(folder: int) -> Iterator[tuple[float, int, str]]:
+    """Time of last use, size and name of every kernel."""
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(_SUFFIX):
+                with suppress(OSError):
+                    info = entry.stat(follow_symlinks=False)
+                    yield info.st_mtime, info.st_size, entry.name
+
+
+def _drop_leftover(folder: int, name: str) -> None:
+    info = os.stat(name, dir_fd=folder, follow_symlinks=False)
+    if not stat.S_ISREG(info.st_mode) or not time.time() - info.st_mtime > LEFTOVER_AGE_S:
+        return
+    handle = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
+    try:
+        if _lock(handle):
+            os.unlink(name, dir_fd=folder)
+    finally:
+        os.close(handle)
+
+
+def _lock(handle: int) -> bool:
+    """Hold a file while it is open; False if another process holds it."""
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
+
+
+def _replace(folder: int, name: str, data: bytes) -> None:
+    temporary = f".new-{secrets.token_hex(8)}"
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    handle = os.open(temporary, flags, 0o600, dir_fd=folder)
     try:
         with os.fdopen(handle, "wb") as file:
+            _lock(handle)
             file.write(data)
-        os.replace(temporary, folder / name)
+            file.flush()
+            _rename(folder, temporary, name)
     except BaseException:
         with suppress(OSError):
-            os.unlink(temporary)
+            os.unlink(temporary, dir_fd=folder)
         raise
 
 
-def _checked(data: bytes) -> bytes | None:
-    """The payload of a file, or None when it is broken."""
+def _rename(folder: int, temporary: str, name: str) -> None:
+    try:
+        os.replace(temporary, name, src_dir_fd=folder, dst_dir_fd=folder)
+    except IsADirectoryError:
+        os.rmdir(name, dir_fd=folder)  # an empty one only
+        os.replace(temporary, name, src_dir_fd=folder, dst_dir_fd=folder)
+
+
+def _digest(key: str, payload: bytes) -> bytes:
+    """A checksum of the content and of the key that it was stored under."""
+    named = key.encode()
+    return hashlib.sha256(len(named).to_bytes(8, "little") + named + payload).digest()
+
+
+def _checked(key: str, data: bytes) -> bytes | None:
+    """The payload of a file, or None when it is broken or belongs to another key."""
     start = len(_MAGIC) + _DIGEST
     if len(data) < start or not data.startswith(_MAGIC):
         return None
     payload = data[start:]
-    if hashlib.sha256(payload).digest() != data[len(_MAGIC) : start]:
-        return None
-    return payload
+    return payload if _digest(key, payload) == data[len(_MAGIC) : start] else None

@@ -6,15 +6,11 @@ at points. With a kernel in the cache no pass runs and nothing is compiled.
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import json
-import os
 import struct
 import time
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -37,15 +33,15 @@ from distal.devices import cpu_memory, threads
 from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
-from distal.devices.features import Level, chosen_level
-from distal.devices.jit import compile_object, compiler_fingerprint
+from distal.devices.features import chosen_level
+from distal.devices.jit import compile_object
+from distal.devices.kernel_key import kernel_key
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
 from distal.ir.nodes import Module
 from distal.ir.printer import print_identity
 from distal.ir.target import Target
 from distal.ir.types import Buffer, Texture, Type
-from distal.version import __version__
 
 RunPasses = Callable[[Module, Target, int], Module]
 
@@ -75,7 +71,7 @@ def prepare(
     started = time.perf_counter()
     level = chosen_level(features)
     cache = Cache(default_folder()) if cache is None else cache
-    key = _key(module, level, precision)
+    key = kernel_key(level, precision, print_identity(module))
     kernel = _loaded(cache.load(key))
     hit = kernel is not None
     if kernel is None:
@@ -98,33 +94,6 @@ def prepare(
 
 
 # Kernels as files
-
-
-def _key(module: Module, level: Level, precision: int) -> str:
-    """Names everything that machine code depends on, but not how the passes go about it."""
-    told = (
-        print_identity(module),
-        __version__,
-        _sources(),
-        level,
-        precision,
-        compiler_fingerprint(),
-    )
-    return hashlib.sha256(repr(told).encode()).hexdigest()
-
-
-@cache
-def _sources() -> str:
-    """A fingerprint of the compiler itself, so that a change of it never meets its old kernels."""
-    rows: list[tuple[str, int, int]] = []
-    root = Path(__file__).parent.parent
-    for folder in ("ir", "passes", "backends/llvm", "devices", "lang/prelude"):
-        for folder_path, _, names in os.walk(root / folder):
-            for name in names:
-                if name.endswith(".py"):
-                    info = os.stat(os.path.join(folder_path, name))
-                    rows.append((name, info.st_size, info.st_mtime_ns))
-    return hashlib.sha256(repr(sorted(rows)).encode()).hexdigest()
 
 
 def _stored(code: bytes, interface: dict[str, Any]) -> bytes:

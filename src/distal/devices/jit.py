@@ -6,8 +6,6 @@ What flows in: a module's text and a feature level. What flows out: an object fi
 from __future__ import annotations
 
 import importlib
-import importlib.util
-import os
 import sys
 from functools import cache
 from typing import Any
@@ -39,15 +37,6 @@ def _triple(architecture: str) -> str:
     triple: str = llvm_binding().get_process_triple()
     # The loader reads ELF on every system; Windows' own format lacks what large stacks need.
     return f"{triple}-elf" if sys.platform == "win32" else triple
-
-
-def compiler_fingerprint() -> tuple[int, int] | None:
-    """Tells one installed LLVM from another, without loading it."""
-    spec = importlib.util.find_spec("llvmlite")
-    if spec is None or spec.origin is None:
-        return None
-    info = os.stat(spec.origin)
-    return info.st_size, info.st_mtime_ns
 
 
 def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:

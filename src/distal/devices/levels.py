@@ -7,7 +7,6 @@ one core, here 0.3 ms.
 
 from __future__ import annotations
 
-import hashlib
 from functools import cache
 from typing import Any, Final
 
@@ -17,7 +16,8 @@ from numpy.typing import NDArray
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
 from distal.devices.features import chosen_level
-from distal.devices.jit import compile_object, compiler_fingerprint
+from distal.devices.jit import compile_object
+from distal.devices.kernel_key import kernel_key
 
 _NAME: Final = "levels"
 _WIDTH: Final = 16  # values at once, whatever the machine's registers hold
@@ -47,8 +47,7 @@ def _code(bits: int) -> Executable | None:
     except ValueError:
         return None
     text = _text(bits)
-    told = (_NAME, text, level, compiler_fingerprint())
-    key = hashlib.sha256(repr(told).encode()).hexdigest()
+    key = kernel_key(level, bits, _NAME, text)
     kept = Cache(default_folder())
     found = kept.load(key)
     if found is None:

@@ -1,0 +1,95 @@
+"""The name under which machine code is kept: everything that the code depends on.
+
+What flows in: what is compiled, and for which CPU level. What flows out: a key for ``Cache``, made
+without loading LLVM. The one place that makes keys, so that no kind of kernel can leave out the
+level, the compiler or the version.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+from distal.devices.features import Level
+from distal.version import __version__
+
+# What turns a module from the front end into machine code; the front end too, since passes link
+# functions of the prelude, which it lowers.
+_COMPILER: Final = (
+    *("ir", "passes", "backends/llvm", "devices", "frontend", "lang/prelude"),
+    *("backends/base.py", "compiler.py", "prelude_library.py"),
+)
+_VERSION_FILE: Final = "_version.py"
+_LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")
+
+
+def kernel_key(level: Level, precision: int, *compiled: str) -> str:
+    """Names machine code.
+
+    Args:
+        level: The CPU level that it is compiled for.
+        precision: Bits of a float or of a result.
+        compiled: What is compiled, as texts.
+    """
+    parts = (
+        compiled,
+        level,
+        precision,
+        sys.platform,
+        __version__,
+        compiler_sources(),
+        llvm_fingerprint(),
+    )
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+@cache
+def compiler_sources() -> str:
+    """A fingerprint of the compiler itself, so that a change of it never meets its old kernels."""
+    root = Path(__file__).parent.parent
+    rows: list[tuple[str, int, int]] = []
+    for name in _COMPILER:
+        for file in _python_files(root / name):
+            info = os.stat(file)
+            rows.append((os.path.relpath(file, root), info.st_size, info.st_mtime_ns))
+    return hashlib.sha256(repr(sorted(rows)).encode()).hexdigest()
+
+
+def _python_files(place: Path) -> list[str]:
+    if place.suffix == ".py":
+        return [str(place)]
+    return [
+        os.path.join(folder, name)
+        for folder, _, names in os.walk(place)
+        for name in names
+        if name.endswith(".py")
+    ]
+
+
+@cache
+def llvm_fingerprint() -> tuple[object, ...]:
+    """Tells one installed LLVM from another, without loading it: its version, and its library.
+
+    Sizes and times alone do not: some installers give every file the same time.
+    """
+    spec = importlib.util.find_spec("llvmlite")
+    if spec is None or spec.origin is None:
+        return ()
+    folder = Path(spec.origin).parent
+    found: list[object] = []
+    try:
+        found.append((folder / _VERSION_FILE).read_text("utf-8", "replace"))
+    except OSError:
+        found.append(None)
+    for library in _LIBRARIES:
+        try:
+            info = os.stat(folder / "binding" / library)
+        except OSError:
+            continue
+        found.append((library, info.st_size, info.st_mtime_ns))
+    return tuple(found)
