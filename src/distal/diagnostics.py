@@ -3,12 +3,59 @@
 What flows in: a message, a place in the author's source and, when known, a hint. What flows
 out: an exception whose text shows the author's line with a caret. This is the only module that
 draws a caret; everything above reports by making a ``Diagnostic`` and raising ``CompileError``.
+Here too is how texts that others wrote (of a file, a driver, a package) become safe to show.
 """
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
+
+LONGEST_SHOWN: Final = 200  # characters of a text that others wrote
+LONGEST_MESSAGE: Final = 1000  # characters of a whole line that may hold several
+
+# Control, format (bidirectional overrides, zero width), surrogates, line and paragraph separators.
+_UNSAFE_CATEGORIES: Final = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
+# Letters and marks that show nothing (Unicode's Default_Ignorable_Code_Point of other categories).
+_INVISIBLE: Final = frozenset(
+    map(
+        chr,
+        (
+            *(0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, 0x2065, 0x3164, 0xFFA0),
+            *range(0x180B, 0x1810),
+            *range(0xFE00, 0xFE10),
+            *range(0xFFF0, 0xFFF9),
+            *range(0xE0000, 0xE1000),
+        ),
+    )
+)
+
+
+def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
+    """A text that others wrote, on one line: control characters escaped, cut where it is long.
+
+    Args:
+        text: Anything; shown as ``str`` gives it.
+        limit: Characters at most.
+    """
+    whole = str(text)
+    safe = "".join(map(_escaped, whole[: limit + 1]))
+    return safe if len(safe) <= limit else f"{safe[: limit - 1]}…"
+
+
+def printable_lines(text: object) -> str:
+    """A message of ours, which may quote what others wrote: line ends and tabs stay."""
+    return "".join(c if c in "\n\t" else _escaped(c) for c in str(text))
+
+
+def _escaped(character: str) -> str:
+    if " " <= character <= "~":
+        return character
+    if unicodedata.category(character) in _UNSAFE_CATEGORIES or character in _INVISIBLE:
+        return character.encode("unicode_escape").decode("ascii")
+    return character
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Final
 
+from distal.diagnostics import LONGEST_MESSAGE, printable
 from distal.version import __version__
 
 
@@ -48,6 +49,10 @@ class Finding:
     state: State
     detail: str
     remedy: str = ""
+
+    def __post_init__(self) -> None:
+        for field in ("subject", "detail", "remedy"):
+            object.__setattr__(self, field, printable(getattr(self, field), LONGEST_MESSAGE))
 
 
 @dataclass(frozen=True, slots=True)

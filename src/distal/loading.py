@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import importlib
 import linecache
+import os
 import sys
 import types
 from collections.abc import Iterable, Mapping, Set
@@ -86,7 +87,8 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     text = _read(file)
     module, modules = _run(file, text)
     found = _pick(module, file, name)
-    source = str(path) if name is None else f"{path}:{name}"
+    given = str(path).replace(os.sep, "/")  # the same on every system
+    source = given if name is None else f"{given}:{name}"
     folder = file.resolve().parent
     neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
     digest = _digest(text, folder, neighbours)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError
+from distal.diagnostics import LONGEST_MESSAGE, LoadError, printable
 from distal.film import exr, png
 from distal.film.metadata import Provenance, ReadError, Record, read
 from distal.film.picture import Picture
@@ -24,10 +24,16 @@ from distal.scene.viewable import viewable
 from distal.version import __version__
 
 MARK: Final = ".rerendered"
+_LONGEST_PART: Final = 80  # characters of what a message quotes
+_MOST_SHOWN: Final = 20  # modules beside a scene
 
 
 class RerenderError(Exception):
     """A picture that cannot be rendered again as it was, and why, in one line."""
+
+    def __init__(self, message: str) -> None:
+        # It quotes what a picture's file says, and others may have made that.
+        super().__init__(printable(message, LONGEST_MESSAGE))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,16 +43,23 @@ class Plan:
     Attributes:
         path: The picture's file.
         record: What it says.
-        source: Where the scene was found: ``FILE[:NAME]`` or ``example:NAME``.
+        file: Where the scene was found: a file or ``example:NAME``.
+        name: Which object of the file; None for its only one.
         named: The same as the new picture says it: as it was written, without a folder of ours.
         notes: What is not as it was, one line each.
     """
 
     path: Path
     record: Record
-    source: str
+    file: str
+    name: str | None
     named: str
     notes: tuple[str, ...]
+
+    @property
+    def source(self) -> str:
+        """Where the scene was found, as ``FILE[:NAME]``."""
+        return self.file if self.name is None else f"{self.file}:{self.name}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,21 +95,24 @@ def planned(path: Path, *, source: str | None = None, force: bool = False) -> Pl
     """
     record = read(path)
     origin = record.provenance
-    found = source or _source(origin, path)
+    file, name = split_source(source) if source else _named_source(origin, path)
     try:
-        digest = digest_of(split_source(found)[0], origin.neighbours)
+        digest = digest_of(file, origin.neighbours)
     except LoadError as error:
         raise RerenderError(f"cannot rebuild {path}: {error}") from None
     notes = []
     if digest != origin.source_hash:
-        also = f" or what it imports ({', '.join(origin.neighbours)})" if origin.neighbours else ""
+        beside = printable(", ".join(origin.neighbours[:_MOST_SHOWN]), _LONGEST_PART)
+        also = f" or what it imports ({beside})" if origin.neighbours else ""
+        found = file if name is None else f"{file}:{name}"
         changed = f"{found}{also} is not what {path} was rendered of"
         if not force:
             raise RerenderError(f"{changed}: it has changed since; --force renders it as it is now")
-        notes.append(f"{changed}: rendered as it is now")
+        notes.append(printable(f"{changed}: rendered as it is now", LONGEST_MESSAGE))
     if record.version != __version__:
-        notes.append(f"{path} was made by distal {record.version}, this is {__version__}")
-    return Plan(path, record, found, source or origin.source, tuple(notes))
+        version = printable(record.version, _LONGEST_PART)
+        notes.append(f"{path} was made by distal {version}, this is {__version__}")
+    return Plan(path, record, file, name, source or origin.source, tuple(notes))
 
 
 def rerender(
@@ -118,7 +134,7 @@ def rerender(
         DeviceError: The device is missing.
     """
     origin = plan.record.provenance
-    obj = load(*split_source(plan.source))
+    obj = load(plan.file, plan.name)
     options = {
         "size": size or plan.record.size,
         "time": origin.time,
@@ -133,7 +149,7 @@ def rerender(
     }
     try:
         made = _rendered(obj, origin, samples, options)
-    except (ValueError, TypeError) as error:  # what a caller asked for, and the scene has not
+    except (ValueError, TypeError, OverflowError) as error:  # asked for, and the scene has not
         raise RerenderError(f"cannot rebuild {plan.path}: {error}") from None
     return made.told(source=plan.named)
 
@@ -211,34 +227,69 @@ def default_output(path: Path) -> Path:
     return path.with_name(f"{path.stem}{MARK}{path.suffix}")
 
 
-def _source(origin: Provenance, path: Path) -> str:
-    """Where the scene is: beside the picture, or from where one stands.
+def _named_source(origin: Provenance, path: Path) -> tuple[str, str | None]:
+    """The file that a picture names and the name in it: beside the picture, or from where one is.
 
-    Of several files the first that is as it was then.
+    Who made the picture chose that name, and the file will be run: it may name an example, or a
+    Python file in the picture's folder or in the current one, and nothing else. Of several files
+    the first that has not changed.
+
+    Raises:
+        RerenderError: It names no such file.
     """
-    text = origin.source
-    if text.startswith(EXAMPLE_PREFIX):
-        return text
-    places = [folder / text for folder in (path.parent, Path())]
-    found = [str(place) for place in dict.fromkeys(places) if _is_file(str(place))]
+    file, name = _split(origin.source)
+    if file.startswith(EXAMPLE_PREFIX):
+        return file, name
+    shown = printable(origin.source, _LONGEST_PART)
+    reason = _refused(file, shown)
+    found: list[str] = []
+    if reason is None:
+        places = [(folder, _inside(folder, file)) for folder in (path.parent, Path())]
+        found = list(dict.fromkeys(str(folder / file) for folder, is_in in places if is_in))
+        reason = f"there is no {shown}, neither beside it nor here"
+        if any(is_in is False for _, is_in in places):
+            reason = f"it names {shown}, a link that leads out of its folder"
     if not found:
-        lacks = f"there is no {text}, neither beside it nor here"
-        if ".py" not in text or not text.isprintable():
-            lacks = f"it says no file, only {text!r:.60}" if text else "it says no file"
-        raise RerenderError(f"cannot rebuild {path}: {lacks}; name it: --source FILE[:NAME]")
-    same = [s for s in found if _digest_or_none(s, origin) == origin.source_hash]
-    return (same or found)[0]
+        raise RerenderError(f"cannot rebuild {path}: {reason}; name it: --source FILE[:NAME]")
+    same = [place for place in found if _digest_or_none(place, origin) == origin.source_hash]
+    return (same or found)[0], name
 
 
-def _digest_or_none(source: str, origin: Provenance) -> str | None:
+def _split(text: str) -> tuple[str, str | None]:
+    """As ``split_source``, by the text alone: no file can change what a picture says."""
+    file, _, name = text.rpartition(":")
+    if name.isidentifier() and file and f"{file}:" != EXAMPLE_PREFIX:
+        return file, name
+    return text, None
+
+
+def _refused(file: str, shown: str) -> str | None:
+    """Why a picture may not name a file by itself; None if it may."""
+    if not file:
+        return "it names no file"
+    parts = PurePosixPath(file)
+    if parts.suffix != ".py":
+        return f"it names no .py file, only '{shown}'"
+    # A colon is a drive, or a stream of another file, on Windows.
+    is_plain = not any(c in "\\:" for c in file) and printable(file, len(file)) == file
+    if not is_plain or parts.is_absolute() or ".." in parts.parts:
+        return f"it names '{shown}', which is no plain path below its folder"
+    return None
+
+
+def _inside(folder: Path, file: str) -> bool | None:
+    """Whether a file stands in a folder; None if it is none, False if links lead out of it."""
     try:
-        return digest_of(split_source(source)[0], origin.neighbours)
-    except LoadError:
+        real = (folder / file).resolve(strict=True)
+        if not real.is_file():
+            return None
+        return real.is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # a name that no file can have, links in a circle
         return None
 
 
-def _is_file(source: str) -> bool:
+def _digest_or_none(file: str, origin: Provenance) -> str | None:
     try:
-        return Path(split_source(source)[0]).is_file()
-    except (OSError, ValueError):  # a name that no file can have
-        return False
+        return digest_of(file, origin.neighbours)
+    except LoadError:
+        return None

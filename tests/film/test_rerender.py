@@ -243,7 +243,7 @@ def test_picture_of_python_names_no_file(run):
     distal.Scene(distal.Sphere(1.0)).render(size=(8, 6)).save("a.png")
     result = run("rerender", "a.png")
     assert result.stderr == (
-        "error: cannot rebuild a.png: it says no file, only 'scene'; name it: "
+        "error: cannot rebuild a.png: it names no .py file, only 'scene'; name it: "
         "--source FILE[:NAME]\n"
     )
 
@@ -310,7 +310,7 @@ def test_garbled_texts_are_told_in_one_line(run, changes):
         ({"tone_map": "sepia"}, "there is no tone map 'sepia'"),
         ({"parameters": json.dumps({"size": 99.0})}, "'Size'"),
         ({"steering": "[0, 0, 0, 0, 0]"}, "zoom is a factor above 0"),
-        ({"source": "\0"}, "it says no file, only '\\x00'"),
+        ({"source": "\0"}, "it names no .py file, only '\\x00'"),
         ({"source": "nowhere/" * 2000 + "a.py"}, "there is no"),
         ({"neighbours": '["/dev/zero", "../../x"]'}, "it has changed since"),
     ],

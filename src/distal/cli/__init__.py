@@ -7,6 +7,7 @@ command line, 130 after ctrl-C. Knows no algorithm.
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import warnings
@@ -14,7 +15,9 @@ import warnings
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     """A warning in one line: where in our code it arose is of no use to who gave the command."""
-    print(f"warning: {message}", file=sys.stderr)
+    from distal.cli.messages import say
+
+    say(f"warning: {message}")
 
 
 def _open_what_is_closed() -> None:
@@ -26,6 +29,9 @@ def _open_what_is_closed() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free: this one
     if sys.stdout is None:
         sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115 (for good)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file's name may be no text
     if sys.stderr is None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (for good)
 

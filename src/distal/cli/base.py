@@ -7,7 +7,6 @@ message and exit code. Knows no command.
 from __future__ import annotations
 
 import functools
-import sys
 from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, ParamSpec
@@ -16,6 +15,7 @@ import typer
 
 import distal
 from distal.cli.arguments import UsageError, read_assignments, read_scene
+from distal.cli.messages import say
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
 
@@ -57,22 +57,22 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
         try:
             command(*args, **kwargs)
         except UsageError as error:
-            print(f"error: {error}", file=sys.stderr)
+            say(f"error: {error}")
             raise typer.Exit(2) from None
         except CompileError as error:
-            print(error, file=sys.stderr)
+            say(error)
             raise typer.Exit(1) from None
         except (LoadError, SaveError, DeviceError) as error:
-            print(f"error: {error}", file=sys.stderr)
+            say(f"error: {error}")
             raise typer.Exit(1) from None
         except ModuleNotFoundError as error:
             mend = _mend(error.name or "")
             if mend is None:
                 raise
-            print(f"error: {mend}", file=sys.stderr)
+            say(f"error: {mend}")
             raise typer.Exit(1) from None
         except MemoryError as error:
-            print(f"error: not enough memory: {error}".rstrip(": "), file=sys.stderr)
+            say(f"error: not enough memory: {error}".rstrip(": "))
             raise typer.Exit(1) from None
         except KeyboardInterrupt:
             raise typer.Exit(130) from None
@@ -139,7 +139,7 @@ def chosen_device(device: Device, adapter: str | None) -> str:
 
         found = resolve(device.value)
         if found.device == Device.CPU:
-            print(f"rendering on the CPU: {found.reason}", file=sys.stderr)
+            say(f"rendering on the CPU: {found.reason}")
             check_processor()
             return Device.CPU.value
     return device.value

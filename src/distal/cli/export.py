@@ -6,7 +6,6 @@ a page or a text holds is the library's matter; here stands only what goes with 
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,6 +22,7 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
+from distal.cli.messages import say
 
 
 @application.command()
@@ -133,8 +133,8 @@ def _write(
         check_view(seen, name)
     made = written(seen, output, target=target, params=values, **options)
     for view, reason in made.omitted.items():
-        print(f"warning: the view '{view}' is left out: {reason}", file=sys.stderr)
-    print(made, file=sys.stderr)
+        say(f"warning: the view '{view}' is left out: {reason}")
+    say(made)
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

@@ -139,7 +139,8 @@ def render(
     ] = False,
 ) -> None:
     """Render a scene, a shape or an image to a picture."""
-    from distal.cli.report import ProgressBar, say, stages
+    from distal.cli.messages import say
+    from distal.cli.report import ProgressBar, stages
     from distal.film.picture import check_savable
     from distal.scene.viewable import viewable
     from distal.uniform_values import LARGEST_SIDE_PX

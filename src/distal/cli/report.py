@@ -21,6 +21,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from distal.cli.messages import say
+
 PATIENCE_S: Final = 1.0  # a bar that flashes by is noise
 
 
@@ -114,11 +116,6 @@ class FrameBar(_Bar):
         self._stop()
         self._tasks = {}
         say(line)
-
-
-def say(line: str) -> None:
-    """One line to the person; stdout stays for data."""
-    print(line, file=sys.stderr)
 
 
 def stages(figures: Mapping[str, Any]) -> str:

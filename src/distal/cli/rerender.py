@@ -21,6 +21,7 @@ from distal.cli.base import (
     chosen_device,
     reporting,
 )
+from distal.diagnostics import printable_lines
 
 if TYPE_CHECKING:
     from distal.rerender import Difference
@@ -75,7 +76,8 @@ def rerender(
 ) -> None:
     """Render a saved picture again, from what its file says about itself."""
     from distal import rerender as room
-    from distal.cli.report import ProgressBar, say
+    from distal.cli.messages import say
+    from distal.cli.report import ProgressBar
     from distal.film.metadata import ReadError
     from distal.film.picture import check_savable
     from distal.uniform_values import LARGEST_SIDE_PX
@@ -110,7 +112,7 @@ def rerender(
             say(f"{target}: {made.width}x{made.height}, {plan.source}")
         if check:
             found = room.difference(plan, made)
-            answer(_told(picture, found))
+            answer(printable_lines(_told(picture, found)))
             if not found.is_none:
                 raise typer.Exit(1)
     except (ReadError, room.RerenderError) as error:

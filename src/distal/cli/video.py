@@ -80,7 +80,8 @@ def video(
     ] = False,
 ) -> None:
     """Render a scene that moves to a video or to numbered pictures."""
-    from distal.cli.report import FrameBar, say
+    from distal.cli.messages import say
+    from distal.cli.report import FrameBar
     from distal.film.video import kind_of
     from distal.uniform_values import LARGEST_SIDE_PX
 

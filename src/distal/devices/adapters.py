@@ -21,7 +21,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.diagnostics import DeviceError
+from distal.diagnostics import DeviceError, printable
 
 _ANSWER_TIMEOUT_S: Final = 30  # a driver may compile shaders of its own at its first start
 _KINDS: Final = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
@@ -37,6 +37,7 @@ _LIMITS: Final = (
     "max-samplers-per-shader-stage",
     "max-bindings-per-bind-group",
 )
+_TOLD: Final = ("device", "adapter_type", "backend_type", "vendor", "description")
 _NO_WGPU: Final = "wgpu is not installed: pip install 'distal[gpu]'"
 NO_ADAPTER: Final = (
     "no GPU adapter: install the GPU's driver, or in software: apt-get install"
@@ -69,9 +70,9 @@ class Adapter:
     @staticmethod
     def of(number: int, info: dict[str, Any]) -> Adapter:
         """The row of what wgpu says of an adapter."""
-        told = {key: str(info.get(key) or "") for key in ("device", "adapter_type", "backend_type")}
-        name = told["device"] or str(info.get("vendor") or "") or "a GPU without a name"
-        driver = str(info.get("description") or "")
+        told = {key: printable(info.get(key) or "") for key in _TOLD}
+        name = told["device"] or told["vendor"] or "a GPU without a name"
+        driver = told["description"]
         return Adapter(number, name, told["adapter_type"], told["backend_type"], driver)
 
     @property
@@ -163,7 +164,7 @@ def asked_apart() -> tuple[list[Adapter], str]:
         return [], f"the driver crashed when it was asked (signal {-answer.returncode})"
     if answer.returncode > 0:
         last = answer.stderr.strip().splitlines()[-1:] or [f"exit code {answer.returncode}"]
-        return [], last[0]
+        return [], printable(last[0])
     try:
         rows = json.loads(answer.stdout.strip().splitlines()[-1])
     except (ValueError, IndexError):
@@ -196,7 +197,7 @@ def chosen(wish: str | None = None) -> Adapter:
         fitting = [a for a in found if wanted in a.name.lower()]
     if not fitting:
         known = "; ".join(map(str, found))
-        raise DeviceError(f"there is no adapter '{wish}'; adapters: {known}")
+        raise DeviceError(f"there is no adapter '{printable(wish, 80)}'; adapters: {known}")
     return min(fitting, key=lambda a: a.rank)
 
 

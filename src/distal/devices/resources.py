@@ -14,7 +14,7 @@ from typing import Any, assert_never
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError
+from distal.diagnostics import LoadError, printable
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
 
 _COMPONENT: dict[Kind, Any] = {Kind.FLOAT: np.float32, Kind.INT: np.int32, Kind.UINT: np.uint32}
@@ -63,13 +63,13 @@ def _picture(data: Any) -> NDArray[np.float32]:
     """A picture, top row first, (height, width, 4)."""
     if not isinstance(data, str | Path):
         return _with_channels(_numbers(data), 2)
-    from PIL import Image, UnidentifiedImageError  # noqa: PLC0415 (only a file's data needs it)
+    from PIL import Image  # noqa: PLC0415 (only a file's data needs it)
 
     try:
         with Image.open(data) as picture:
             return _with_channels(np.asarray(picture.convert("RGBA")), 2)
-    except (OSError, UnidentifiedImageError) as error:
-        raise LoadError(f"the texture '{data}' cannot be read: {error}") from error
+    except Exception as error:  # Pillow raises of every kind on broken files
+        raise LoadError(f"the texture '{data}' cannot be read: {printable(error)}") from error
 
 
 def _numbers(data: Any) -> NDArray[Any]:

@@ -103,8 +103,9 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
             file = openexr.InputFile(str(path))
             header = file.header()
             window = header["dataWindow"]
-            width, height = (int(v) + 1 for v in (window.max.x, window.max.y))
-            if not 0 < max(width, height) <= LARGEST_SIDE_PX:
+            width = int(window.max.x) - int(window.min.x) + 1
+            height = int(window.max.y) - int(window.min.y) + 1
+            if not (0 < width <= LARGEST_SIDE_PX and 0 < height <= LARGEST_SIDE_PX):
                 raise ValueError(f"it claims {width}x{height} pixels")
             file.channels(header["channels"])  # a file cut short has a whole header
         bits = 16 if str(header["channels"]["R"].type) == "HALF" else 32

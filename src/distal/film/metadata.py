@@ -10,22 +10,32 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
+from distal.diagnostics import LONGEST_MESSAGE, printable
 from distal.version import __version__
+
+_First = TypeVar("_First")
 
 PREFIX: Final = "distal:"
 # What is larger was not rendered here: refused before its pixels take memory.
 LARGEST_SIDE_PX: Final = 16384
+# Characters of a text, and modules beside a scene: more was not written here.
+_LONGEST_TEXT: Final = 2**20
+_MOST_NEIGHBOURS: Final = 10_000
 _HEAD_PNG: Final = b"\x89PNG\r\n\x1a\n"
 _HEAD_EXR: Final = b"\x76\x2f\x31\x01"
 
 
 class ReadError(Exception):
     """A picture's file that cannot be read, or does not say where it came from, in one line."""
+
+    def __init__(self, message: str) -> None:
+        # It quotes what stands in files that others made.
+        super().__init__(printable(message, LONGEST_MESSAGE))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,36 +158,35 @@ def provenance(found: Mapping[str, str]) -> Provenance:
         return json.loads(found[key]) if key in found else otherwise
 
     try:
+        if any(len(text) > _LONGEST_TEXT for text in found.values()):
+            raise ValueError("a text is too long")
         plane = json_of("distal:plane", None)
         steering = json_of("distal:steering", None)
         stage = json_of("distal:stage", None)
         exposure = found.get("distal:exposure")
-        read = Provenance(
+        return Provenance(
             source=found.get("distal:source", ""),
             source_hash=found.get("distal:source-hash", ""),
-            neighbours=tuple(map(str, json_of("distal:neighbours", []))),
-            parameters=dict(json_of("distal:parameters", {})),
-            time=float(found.get("distal:time", "0")),
+            neighbours=_places(json_of("distal:neighbours", [])),
+            parameters=_values(json_of("distal:parameters", {})),
+            time=_number(float(found.get("distal:time", "0"))),
             index=int(found.get("distal:index", "0")),
             seed=int(found.get("distal:seed", "0")),
             mouse=_numbers(json_of("distal:mouse", [0.0] * 4), 4),
             samples=int(found.get("distal:samples", "1")),
             view=found.get("distal:view", "color"),
-            plane=None if plane is None else (_numbers(plane[0], 3), _numbers(plane[1:], 1)[0]),
-            transparent=json_of("distal:transparent", False) is True,
-            exposure=None if exposure is None else float(exposure),
+            plane=None if plane is None else _pair(plane, lambda normal: _numbers(normal, 3)),
+            transparent=_flag(found.get("distal:transparent", "false")),
+            exposure=None if exposure is None else _number(float(exposure)),
             tone_map=found.get("distal:tone-map"),
             steering=None if steering is None else _numbers(steering, 5),
-            stage=None if stage is None else (dict(stage[0]), _numbers(stage[1:], 1)[0]),
+            stage=None if stage is None else _pair(stage, _values),
             layers=tuple(filter(None, found.get("distal:layers", "").split(","))),
-            freeze=found.get("distal:freeze") == "true",
+            freeze=_flag(found.get("distal:freeze", "false")),
             device=found.get("distal:device", ""),
         )
-    except (ValueError, TypeError, LookupError, RecursionError):
+    except (ValueError, TypeError, LookupError, RecursionError, OverflowError):
         raise ReadError("what it says about itself is garbled") from None
-    if not math.isfinite(read.time):
-        raise ReadError("what it says about itself is garbled")
-    return read
 
 
 def read(path: Path) -> Record:
@@ -224,8 +233,47 @@ def _size(text: str | None, otherwise: tuple[int, int]) -> tuple[int, int]:
     return int(found[1]), int(found[2])
 
 
+def _number(given: Any) -> float:
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise TypeError("a number is wanted")
+    value = float(given)
+    if not math.isfinite(value):
+        raise ValueError("a finite number is wanted")
+    return value
+
+
 def _numbers(given: Any, count: int) -> tuple[float, ...]:
-    values = tuple(float(value) for value in given)
-    if len(values) != count or not all(map(math.isfinite, values)):
-        raise ValueError(f"{count} finite numbers are wanted")
-    return values
+    if not isinstance(given, list) or len(given) != count:
+        raise ValueError(f"{count} numbers are wanted")
+    return tuple(map(_number, given))
+
+
+def _pair(given: Any, first: Callable[[Any], _First]) -> tuple[_First, float]:
+    if not isinstance(given, list) or len(given) != 2:
+        raise ValueError("a pair is wanted")
+    return first(given[0]), _number(given[1])
+
+
+def _flag(text: str) -> bool:
+    if text not in ("true", "false"):
+        raise ValueError("true or false is wanted")
+    return text == "true"
+
+
+def _values(given: Any) -> dict[str, Any]:
+    """Values of parameters: numbers, words, or lists of numbers."""
+    if not isinstance(given, dict):
+        raise TypeError("values by name are wanted")
+    for value in given.values():
+        parts = value if isinstance(value, list) else [value]
+        if not all(isinstance(part, str | int | float) for part in parts):
+            raise TypeError("a parameter's value is a number, a word or a list")
+    return given
+
+
+def _places(given: Any) -> tuple[str, ...]:
+    if not isinstance(given, list) or not all(isinstance(place, str) for place in given):
+        raise TypeError("a list of files is wanted")
+    if len(given) > _MOST_NEIGHBOURS or len(set(given)) != len(given):
+        raise ValueError("each file is named once")
+    return tuple(given)

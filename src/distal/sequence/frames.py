@@ -44,7 +44,7 @@ class Frames:
         try:
             with Image.open(self.files[index]) as picture:
                 return picture.info.get(KEY) == self._key(index)
-        except (OSError, SyntaxError, ValueError):
+        except Exception:  # Pillow raises of every kind on broken files
             return False
 
     def write(self, index: int, picture: Picture) -> None:

@@ -14,6 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, Final
 
+from distal.diagnostics import printable
 from distal.film.replacement import (
     SaveError,
     check_destination,
@@ -53,8 +54,14 @@ class Store:
         """
         check_destination(self.output)
         try:
+            if self.folder.is_symlink():
+                raise SaveError(f"cannot write {self.folder}: it is a link")
             self.folder.mkdir(exist_ok=True)
-            self._lock = open(self.folder / LOCK, "w")  # noqa: SIM115 (held until close)
+            # Nothing here is a link by our hand: what it leads to would be written or emptied.
+            for path in self.folder.iterdir():
+                if path.is_symlink():
+                    path.unlink()
+            self._lock = open(self.folder / LOCK, "a")  # noqa: SIM115 (held until close)
             self._hold()
             known = self._known()
             changed = [] if known is None else _changed(known, manifest)
@@ -117,7 +124,7 @@ class Store:
     def _known(self) -> dict[str, Any] | None:
         try:
             found = json.loads((self.folder / MANIFEST).read_text("utf-8"))
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             return None
         return found if isinstance(found, dict) else None
 
@@ -142,5 +149,6 @@ def _changed(known: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
         elif name == "parameters":
             told.append("parameters have changed")
         else:
-            told.append(f"{name.replace('_', ' ')} was {known.get(name)}, is {value}")
+            was = printable(known.get(name), 80)
+            told.append(f"{name.replace('_', ' ')} was {was}, is {value}")
     return told

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.diagnostics import CompileError, DeviceError, LoadError
+from distal.diagnostics import CompileError, DeviceError, LoadError, printable, printable_lines
 from distal.film.replacement import SaveError
 from distal.loading import EXAMPLE_PREFIX
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
@@ -60,7 +60,7 @@ class Origin:
     def title(self) -> str:
         """What a person calls it: most scenes are named "scene" in their files."""
         stem = Path(self.path.removeprefix(EXAMPLE_PREFIX)).stem
-        return stem if self.name is None else f"{stem}:{self.name}"
+        return printable(stem if self.name is None else f"{stem}:{self.name}")
 
 
 class Application:
@@ -232,6 +232,7 @@ class Application:
             traceback.print_exception(error)  # a fault of ours
         if isinstance(error, LoadError | SaveError | DeviceError):
             text = f"error: {text}"
+        text = printable_lines(text)
         if text != self._told:
             print(text, file=sys.stderr, flush=True)
             self._log("trouble", text=text)
@@ -367,7 +368,7 @@ class Application:
                 self._say(self._tell(result).splitlines()[0])
             else:
                 self._say(f"saved {result.name}")
-                print(f"saved {result}", file=sys.stderr, flush=True)
+                print(printable_lines(f"saved {result}"), file=sys.stderr, flush=True)
                 self._log("saved", path=str(result))
             self.wake()
 
