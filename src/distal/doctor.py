@@ -12,6 +12,7 @@ import importlib.util
 import os
 import platform
 import shutil
+import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -21,6 +22,7 @@ from pathlib import Path
 from typing import Final
 
 from distal.diagnostics import LONGEST_MESSAGE, printable
+from distal.packages import PACKAGES
 from distal.version import __version__
 
 
@@ -55,36 +57,23 @@ class Finding:
             object.__setattr__(self, field, printable(getattr(self, field), LONGEST_MESSAGE))
 
 
-@dataclass(frozen=True, slots=True)
-class Package:
-    """A package of the registry; ``extra`` is the extra that brings it, "" for the core."""
-
-    name: str
-    extra: str
-    purpose: str
-
-    @property
-    def remedy(self) -> str:
-        """The command that installs it."""
-        return f"pip install 'distal[{self.extra}]'" if self.extra else f"pip install {self.name}"
-
-
-PACKAGES: Final = (
-    Package("numpy", "", "arrays and the reference"),
-    Package("llvmlite", "", "the CPU device"),
-    Package("pillow", "", "PNG files"),
-    Package("typer", "", "this command"),
-    Package("rich", "", "this command"),
-    Package("wgpu", "gpu", "GPU work"),
-    Package("rendercanvas", "gpu", "windows"),
-    Package("glfw", "gpu", "windows"),
-    Package("av", "video", "video files"),
-    Package("OpenEXR", "exr", "EXR files"),
-    Package("anywidget", "notebook", "sliders in notebooks"),
-    Package("fonttools", "text", "letters of fonts"),
-)
-
 _PROBE: Final = "doctor-probe"
+_LOADING_S: Final = 60
+_MARK: Final = "distal-doctor "
+_TRY: Final = f"""
+import sys
+from distal.packages import imported
+for module in sys.argv[1:]:
+    fault = ""
+    try:
+        imported(module)
+        if module == "llvmlite":
+            from distal.devices.jit import llvm_binding
+            llvm_binding()
+    except Exception as error:
+        fault = str(error) or type(error).__name__
+    print({_MARK!r} + " ".join(fault.split()), flush=True)
+"""
 
 
 def examine() -> list[Finding]:
@@ -172,7 +161,10 @@ def _cache() -> Iterator[Finding]:
 
 
 def _packages() -> Iterator[Finding]:
+    """What is installed, and what of that cannot be loaded."""
+    faults = _faults([package.imported_as for package in PACKAGES])
     for package in PACKAGES:
+        fault = faults.get(package.imported_as, "")
         area = f"packages [{package.extra}]" if package.extra else "packages"
         try:
             version = importlib.metadata.version(package.name)
@@ -181,7 +173,43 @@ def _packages() -> Iterator[Finding]:
             detail = f"missing ({package.purpose})"
             yield Finding(area, package.name, state, detail, package.remedy)
         else:
-            yield Finding(area, package.name, State.READY, version)
+            if not fault:
+                yield Finding(area, package.name, State.READY, version)
+                continue
+            state = State.OPTIONAL if package.extra else State.BROKEN
+            what, _, remedy = fault.rpartition("; ")
+            yield Finding(area, package.name, state, f"{version}: {what or fault}", remedy)
+
+
+def _faults(modules: list[str]) -> dict[str, str]:
+    """What importing each module says; each may end the process that tries it."""
+    path = os.pathsep.join(filter(None, sys.path))
+    found: dict[str, str] = {}
+    while len(found) < len(modules):
+        try:
+            tried = subprocess.run(
+                [sys.executable, "-c", _TRY, *modules[len(found) :]],
+                capture_output=True,
+                text=True,
+                timeout=_LOADING_S,
+                stdin=subprocess.DEVNULL,
+                env={**os.environ, "PYTHONPATH": path},
+            )
+            answer, end = tried.stdout, f"ends the process that imports it ({tried.returncode})"
+        except subprocess.TimeoutExpired as error:
+            answer, end = _text(error.stdout), f"does not load within {_LOADING_S} s"
+        except OSError as error:
+            return {module: f"cannot be tried: {error}" for module in modules}
+        lines = [line for line in answer.splitlines() if line.startswith(_MARK)]
+        for line in lines:
+            found[modules[len(found)]] = line.removeprefix(_MARK)
+        if len(found) < len(modules):
+            found[modules[len(found)]] = end
+    return found
+
+
+def _text(output: str | bytes | None) -> str:
+    return output.decode("utf-8", "replace") if isinstance(output, bytes) else output or ""
 
 
 def _gpu() -> Iterator[Finding]:

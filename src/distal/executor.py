@@ -30,6 +30,7 @@ from distal.call_values import (
     with_names,
 )
 from distal.compiler import run_passes
+from distal.device_names import AUTO, CPU, DEVICE_NAMES, GPU, GPU_FRAGMENT, REFERENCE
 from distal.devices.base import Kernel
 from distal.diagnostics import DeviceError
 from distal.film.picture import Picture, Provenance
@@ -56,12 +57,11 @@ from distal.uniform_values import (
 KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
 # Name -> the module that prepares kernels for it, and what it is told besides.
 DEVICES: Final[dict[str, tuple[str, dict[str, str]]]] = {
-    "cpu": ("distal.devices.cpu", {}),
-    "reference": ("distal.devices.reference", {}),
-    "gpu": ("distal.devices.gpu", {"path": "compute"}),
-    "gpu-fragment": ("distal.devices.gpu", {"path": "fragment"}),
+    CPU: ("distal.devices.cpu", {}),
+    GPU: ("distal.devices.gpu", {"path": "compute"}),
+    GPU_FRAGMENT: ("distal.devices.gpu", {"path": "fragment"}),
+    REFERENCE: ("distal.devices.reference", {}),
 }
-AUTO: Final = "auto"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +103,8 @@ class PythonExecutor:
 
         Args:
             image: An image, a scene, or a view of one.
-            device: "cpu", "reference", "gpu", "gpu-fragment", or "auto": a GPU if there is one in
-                hardware, else the CPU. A suffix picks the adapter: "gpu:nvidia".
+            device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
+                "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
             options: Besides: ``settings``, values of a scene's numbers by name, for this picture
                 only; ``freeze``: make constants of the numbers, for a picture that is worth its
                 own compilation.
@@ -292,7 +292,7 @@ class PythonExecutor:
     def _kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
         name, _, adapter = device.partition(":")
         if name not in DEVICES or (adapter and not name.startswith("gpu")):
-            known = ", ".join((AUTO, *DEVICES))
+            known = ", ".join(DEVICE_NAMES)
             raise ValueError(f"there is no device '{device}'; devices: {known}")
         key = (lowered.digest, device, precision)
         with self._lock:

@@ -22,6 +22,7 @@ from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
+from distal.packages import explained
 
 # What a file may define for us.
 SceneCode: TypeAlias = Func | Composed
@@ -253,7 +254,7 @@ def _failure(file: Path, error: Exception) -> str:
     else:
         shown = name
     lines = [
-        f"{type(error).__name__}: {error}",
+        str(explained(error) or f"{type(error).__name__}: {error}"),
         f"  --> {shown if line is None else f'{shown}:{line}'}",
     ]
     if line is not None:

@@ -10,6 +10,8 @@ import importlib
 from os import PathLike
 from typing import Any
 
+from distal.packages import explained
+
 
 class Presenter:
     """Hands a picture on to the room that shows it."""
@@ -18,11 +20,8 @@ class Presenter:
         """A live picture in a notebook."""
         try:
             room = importlib.import_module("distal.notebook.widget")
-        except ModuleNotFoundError as error:
-            if (error.name or "").startswith("distal"):
-                raise
-            message = f"{error.name} is missing: pip install 'distal[notebook]'"
-            raise ModuleNotFoundError(message, name=error.name) from None
+        except Exception as error:
+            raise explained(error) or error from None
         return room.show(obj, **options)
 
     def export(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:

@@ -47,3 +47,11 @@ def main() -> None:
         application()
     except KeyboardInterrupt:
         sys.exit(130)
+    except Exception as error:
+        from distal.packages import explained
+
+        found = explained(error)  # typer, rich or what they need
+        if found is None:
+            raise
+        print(f"error: {found}", file=sys.stderr)
+        sys.exit(1)

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Annotated, ParamSpec
 import typer
 
 import distal
+from distal import device_names
 from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.messages import say
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
+from distal.packages import explained
 
 if TYPE_CHECKING:
     from distal.lang.functions import Image
@@ -42,11 +44,11 @@ application = typer.Typer(
 class Device(StrEnum):
     """What renders."""
 
-    AUTO = "auto"
-    CPU = "cpu"
-    GPU = "gpu"
-    GPU_FRAGMENT = "gpu-fragment"
-    REFERENCE = "reference"
+    AUTO = device_names.AUTO
+    CPU = device_names.CPU
+    GPU = device_names.GPU
+    GPU_FRAGMENT = device_names.GPU_FRAGMENT
+    REFERENCE = device_names.REFERENCE
 
 
 def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
@@ -65,28 +67,17 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
         except (LoadError, SaveError, DeviceError) as error:
             say(f"error: {error}")
             raise typer.Exit(1) from None
-        except ModuleNotFoundError as error:
-            mend = _mend(error.name or "")
-            if mend is None:
-                raise
-            say(f"error: {mend}")
-            raise typer.Exit(1) from None
-        except MemoryError as error:
-            say(f"error: not enough memory: {error}".rstrip(": "))
-            raise typer.Exit(1) from None
         except KeyboardInterrupt:
             raise typer.Exit(130) from None
+        except Exception as error:
+            found = error if isinstance(error, MemoryError) else explained(error)
+            if found is None:
+                raise
+            short = "not enough memory: " if isinstance(found, MemoryError) else ""
+            say(f"error: {short}{found}".rstrip(": "))
+            raise typer.Exit(1) from None
 
     return run
-
-
-def _mend(package: str) -> str | None:
-    """What is missing and how to get it; None for what is not ours to tell."""
-    from distal.doctor import PACKAGES
-
-    name = "pillow" if package == "PIL" else package  # Python knows it by another name
-    known = {package.name: package for package in PACKAGES}
-    return f"{name} is missing: {known[name].remedy}" if name in known else None
 
 
 SceneArgument = Annotated[

@@ -21,7 +21,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.diagnostics import DeviceError, printable
+from distal.diagnostics import LONGEST_MESSAGE, DeviceError, printable
+from distal.packages import PackageError, loading, raised_in
 
 _ANSWER_TIMEOUT_S: Final = 30  # a driver may compile shaders of its own at its first start
 _KINDS: Final = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
@@ -38,6 +39,7 @@ _LIMITS: Final = (
     "max-bindings-per-bind-group",
 )
 _TOLD: Final = ("device", "adapter_type", "backend_type", "vendor", "description")
+_NEEDED: Final = ("gpu", "GPUError", "GPUOutOfMemoryError")
 _NO_WGPU: Final = "wgpu is not installed: pip install 'distal[gpu]'"
 NO_ADAPTER: Final = (
     "no GPU adapter: install the GPU's driver, or in software: apt-get install"
@@ -96,7 +98,7 @@ class Resolved:
     """What a wish comes to.
 
     Attributes:
-        device: "gpu", "gpu-fragment", "cpu" or "reference".
+        device: As ``render`` takes it, with "auto" decided and without the adapter.
         adapter: The adapter's name; None for the best one, or for a device without.
         reason: Why it is this one, in words.
     """
@@ -209,6 +211,8 @@ def _handles() -> list[Any]:
             return list(wgpu.gpu.enumerate_adapters_sync())
     except RuntimeError:  # so says wgpu where no driver is installed
         return []
+    except Exception as error:
+        raise DeviceError(f"wgpu cannot list the GPUs: {_short(error)}; or --device cpu") from error
 
 
 def wgpu_module() -> Any:
@@ -218,13 +222,13 @@ def wgpu_module() -> Any:
         DeviceError: It is not installed, or cannot be loaded.
     """
     try:
-        module = importlib.import_module("wgpu")
-    except ModuleNotFoundError as error:
-        if error.name != "wgpu":
-            raise
-        raise DeviceError(_NO_WGPU) from None
-    except OSError as error:
-        raise DeviceError(f"wgpu cannot be loaded: {error}; or --device cpu") from error
+        with loading("wgpu"):
+            module = importlib.import_module("wgpu")
+            for name in _NEEDED:  # half an installation lacks them
+                getattr(module, name)
+    except PackageError as error:
+        told = _NO_WGPU if error.is_missing else f"{error}; or --device cpu"
+        raise DeviceError(told) from error
     # Without a handler Python prints them; whoever has set up logging still gets them. The logger
     # is of wgpu's own class, so wgpu has to make it.
     logger = logging.getLogger("wgpu")
@@ -261,7 +265,6 @@ class Gpu:
     """
 
     def __init__(self, adapter: Adapter, handle: Any) -> None:
-        wgpu = wgpu_module()
         self.adapter = adapter
         self.lock = threading.RLock()
         self.is_lost = False
@@ -273,7 +276,7 @@ class Gpu:
                     required_features=["float32-filterable"] if self.filters_floats else [],
                     required_limits=limits,
                 )
-        except (RuntimeError, wgpu.GPUError) as error:
+        except Exception as error:  # of wgpu, its binding or the driver
             raise DeviceError(f"{adapter.name} cannot be used: {_short(error)}") from error
 
     def limit(self, name: str) -> int:
@@ -297,7 +300,10 @@ class Gpu:
                 raise DeviceError(
                     f"{self.adapter.name} has not enough memory; a smaller picture, or --device cpu"
                 ) from error
-            except (wgpu.GPUError, RuntimeError) as error:
+            except Exception as error:
+                is_ours = not isinstance(error, wgpu.GPUError | RuntimeError)
+                if is_ours and not raised_in(error, "wgpu"):
+                    raise
                 if _tells_of_loss(error):
                     self.drop()
                     raise DeviceError(self._lost(doing)) from error
@@ -343,6 +349,7 @@ def _tells_of_loss(error: BaseException) -> bool:
 def _short(error: BaseException) -> str:
     """What wgpu says, on one line."""
     lines = (line.strip(" :") for line in str(error).splitlines())
-    return ": ".join(
+    words = ": ".join(
         line for line in lines if line and line not in ("Validation Error", "Caused by")
     )
+    return printable(words or type(error).__name__, LONGEST_MESSAGE)

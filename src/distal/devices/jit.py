@@ -12,14 +12,16 @@ from typing import Any
 
 from distal.devices.features import Level
 from distal.devices.features import machine as architecture_here
+from distal.packages import loading
 
 
 @cache
 def llvm_binding() -> Any:
     """LLVM, ready for this machine; loaded when something is compiled or run, 30 to 50 ms."""
-    llvm = importlib.import_module("llvmlite.binding")
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
+    with loading("llvmlite"):
+        llvm = importlib.import_module("llvmlite.binding")
+        llvm.initialize_native_target()
+        llvm.initialize_native_asmprinter()
     return llvm
 
 

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
-from distal.devices.features import chosen_level
+from distal.devices.features import Level, chosen_level
 from distal.devices.jit import compile_object
 from distal.devices.kernel_key import kernel_key
+from distal.packages import PackageError
 
 _NAME: Final = "levels"
 _WIDTH: Final = 16  # values at once, whatever the machine's registers hold
@@ -46,6 +47,13 @@ def _code(bits: int) -> Executable | None:
         level = chosen_level()
     except ValueError:
         return None
+    try:
+        return _made(level, bits)
+    except PackageError:  # the reference needs no LLVM
+        return None
+
+
+def _made(level: Level, bits: int) -> Executable:
     text = _text(bits)
     key = kernel_key(level, bits, _NAME, text)
     kept = Cache(default_folder())

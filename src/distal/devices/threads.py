@@ -69,7 +69,7 @@ def run(
     started: list[threading.Thread] = []
     try:
         _start(workers, started)
-        _watch(workers, work, progress, cancel)
+        _watch(started, work, progress, cancel)
     except BaseException:
         work.stop[0] = 1
         raise
@@ -81,7 +81,7 @@ def run(
         raise failures[0]
     if progress is not None:
         progress(1.0)
-    return count
+    return len(started)
 
 
 def _checked(threads: int | None) -> int | None:
@@ -101,7 +101,12 @@ def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> 
         previous = threading.stack_size(_STACK_BYTES)
         try:
             for thread in workers:
-                thread.start()
+                try:
+                    thread.start()
+                except RuntimeError:  # the system lends no more; those that run do all the work
+                    if not started:
+                        raise MemoryError("the system starts no thread") from None
+                    break
                 started.append(thread)
         finally:
             threading.stack_size(previous)

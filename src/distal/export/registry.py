@@ -66,7 +66,7 @@ def export(
             ``time`` (seconds). Of a page also ``size`` (width and height in pixels), ``duration``
             (seconds after which the time begins anew), ``title``, ``embed`` (a fragment for other
             pages), ``panel``, ``poster`` (whether there are any), ``views`` (those to include), and
-            ``device`` (what renders the poster).
+            ``device`` (what renders the poster, as for ``Scene.render``).
 
     Raises:
         SaveError: The suffix is unknown, or the file cannot be written.

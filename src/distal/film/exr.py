@@ -8,7 +8,6 @@ scan lines. Knows nothing of scenes. Channels are called as compositors find the
 
 from __future__ import annotations
 
-import importlib
 import io
 import os
 from collections.abc import Iterator, Mapping
@@ -20,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.film.metadata import LARGEST_SIDE_PX, PREFIX, ReadError
+from distal.packages import imported
 
 BITS: Final = (16, 32)
 
@@ -52,9 +52,9 @@ def encode(
         bits: Of a channel: 16, half floats, or 32.
 
     Raises:
-        ModuleNotFoundError: OpenEXR is missing.
+        PackageError: OpenEXR is missing or broken.
     """
-    openexr = importlib.import_module("OpenEXR")
+    openexr = imported("OpenEXR")
     associated = light.copy()
     # Where nothing covers a pixel its color is nothing too, even if it is infinite.
     np.multiply(light[..., :3], light[..., 3:], out=associated[..., :3], where=light[..., 3:] != 0)
@@ -95,9 +95,9 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
 
     Raises:
         ReadError: The file is broken or cut short.
-        ModuleNotFoundError: OpenEXR is missing.
+        PackageError: OpenEXR is missing or broken.
     """
-    openexr = importlib.import_module("OpenEXR")
+    openexr = imported("OpenEXR")
     try:
         with _quiet():
             file = openexr.InputFile(str(path))
@@ -121,9 +121,9 @@ def decode(data: bytes) -> dict[str, NDArray[Any]]:
 
     Raises:
         ReadError: The file is broken.
-        ModuleNotFoundError: OpenEXR is missing.
+        PackageError: OpenEXR is missing or broken.
     """
-    openexr = importlib.import_module("OpenEXR")
+    openexr = imported("OpenEXR")
     try:
         with _quiet(), openexr.File(io.BytesIO(data), separate_channels=True) as file:
             return {name: channel.pixels for name, channel in file.channels().items()}

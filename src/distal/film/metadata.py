@@ -194,7 +194,7 @@ def read(path: Path) -> Record:
 
     Raises:
         ReadError: There is no such file, it is no picture, is broken, or says nothing.
-        ModuleNotFoundError: It is an EXR, and OpenEXR is missing.
+        PackageError: It is an EXR, and OpenEXR is missing or broken.
     """
     try:
         with path.open("rb") as file:

@@ -8,7 +8,7 @@ were made.
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from distal.film import metadata, png
 from distal.film.metadata import Provenance
 from distal.film.replacement import SaveError, check_destination, replacement
+from distal.packages import PackageError, imported
 
 # Suffix -> the bits of a channel that its files may have; the first are its usual ones.
 FORMATS: Final = {".png": (8, 16), ".exr": (16, 32)}
@@ -165,8 +166,8 @@ def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
         The suffix, and the bits of a channel.
 
     Raises:
-        SaveError: The suffix is unknown, it has no such bits, its package is missing, or no file
-            can stand there.
+        SaveError: The suffix is unknown, it has no such bits, its package is missing or broken, or
+            no file can stand there.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
@@ -175,9 +176,11 @@ def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
     usual = FORMATS[suffix]
     if bits is not None and bits not in usual:
         raise SaveError(f"cannot write {path}: a channel has {usual[0]} or {usual[1]} bits")
-    if suffix == ".exr" and importlib.util.find_spec("OpenEXR") is None:
-        mend = "OpenEXR is missing: pip install 'distal[exr]'"
-        raise SaveError(f"cannot write {path}: {mend}")
+    if suffix == ".exr":
+        try:
+            imported("OpenEXR")
+        except PackageError as error:
+            raise SaveError(f"cannot write {path}: {error}") from None
     check_destination(path)
     return suffix, bits or usual[0]
 

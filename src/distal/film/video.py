@@ -7,7 +7,6 @@ imported when it is first needed.
 
 from __future__ import annotations
 
-import importlib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from typing import Any, Final
 
 from distal.devices.features import host_features
 from distal.film.replacement import SaveError
+from distal.packages import PackageError, imported
 
 # A quality is a number from 0 to 100; these are its names.
 QUALITIES: Final[Mapping[str, float]] = {"low": 60.0, "medium": 70.0, "high": 80.0}
@@ -215,11 +215,9 @@ def library() -> Any:
     """PyAV.
 
     Raises:
-        SaveError: It is not installed.
+        SaveError: It is missing or broken.
     """
     try:
-        return importlib.import_module("av")
-    except ModuleNotFoundError as error:
-        if error.name != "av":
-            raise
-        raise SaveError("videos need PyAV: pip install 'distal[video]'") from None
+        return imported("av")
+    except PackageError as error:
+        raise SaveError(f"videos need PyAV: {error}") from error

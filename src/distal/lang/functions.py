@@ -105,7 +105,8 @@ class Image(Func, Presentable):
             size: Width and height in pixels.
             time: ``frame.time`` in seconds.
             params: Values of parameters by name; the others have their defaults.
-            device: "cpu" or "reference".
+            device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
+                "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
             threads: How many to use; None for all the machine lends.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.

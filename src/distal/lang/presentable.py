@@ -39,7 +39,8 @@ class Presentable:
         Args:
             path: ``page.html``, or a text: ``.frag``, ``.glsl``, ``.wgsl``, ``.fs`` (ISF).
             options: ``target`` for a text; for a page ``size``, ``time``, ``duration``, ``params``,
-                ``title``, ``views``, ``embed``, ``panel``, ``poster``.
+                ``title``, ``view``, ``views``, ``embed``, ``panel``, ``poster``, and
+                ``device``, which renders the poster, as for ``render``.
 
         Raises:
             CompileError: The scene code has mistakes, or says what the target cannot do.
@@ -58,7 +59,7 @@ class Presentable:
             duration: Seconds.
             options: ``fps``, ``size``, ``start``, ``samples``, ``loop``, ``quality``, ``params``,
                 ``view``, ``device``, ``threads``, ``keep_frames``, ``fresh``, ``progress``,
-                ``cancel``.
+                ``cancel``. The devices are those of ``render``.
 
         Raises:
             CompileError: The scene code has mistakes.

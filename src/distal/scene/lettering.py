@@ -8,7 +8,6 @@ first known font of the machine that has all.
 
 from __future__ import annotations
 
-import importlib
 import math
 import os
 import sys
@@ -20,6 +19,7 @@ from typing import Any, Final
 
 from distal.diagnostics import Span
 from distal.frontend.problems import did_you_mean
+from distal.packages import imported
 from distal.scene.conversion import beside
 from distal.scene.outlines import Edge, Outline, font_tools, made_of, outline_pen
 from distal.scene.places import author_place
@@ -221,7 +221,7 @@ def _open_file(file: str, changed: int) -> Face:
 @lru_cache(maxsize=1)
 def _pillows_face() -> Face | None:
     """The font inside Pillow, or None where Pillow was built without FreeType."""
-    images: Any = importlib.import_module("PIL.ImageFont")
+    images: Any = imported("PIL.ImageFont")
     data = getattr(images.load_default(10), "font_bytes", None)
     if not data:
         return None

@@ -7,7 +7,6 @@ at the author's line. Reading paths and fonts is left to fontTools, an optional 
 
 from __future__ import annotations
 
-import importlib
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -18,6 +17,7 @@ import numpy as np
 
 from distal.diagnostics import Span
 from distal.lang.resources import Buffer
+from distal.packages import PackageError, imported
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
 
@@ -92,12 +92,13 @@ def font_tools(module: str, place: Span | None) -> Any:
     """A module of fontTools.
 
     Raises:
-        SceneValueError: It is not installed.
+        SceneValueError: It is missing or broken.
     """
     try:
-        return importlib.import_module(f"fontTools.{module}")
-    except ImportError:
-        refuse("outlines need the package fontTools", "pip install 'distal[text]'", place)
+        return imported(f"fontTools.{module}")
+    except PackageError as error:
+        why = "" if error.is_missing else f": {error}"
+        refuse(f"outlines need the package fontTools{why}", "pip install 'distal[text]'", place)
 
 
 def outline_pen(glyphs: Any, place: Span | None) -> Any:

@@ -126,7 +126,8 @@ def video(
         samples: Rays for each pixel of a scene.
         loop: Whether gif, apng and webp are played again and again; else once.
         quality: "low", "medium", "high", a number from 0 to 100, or "lossless".
-        device: What renders.
+        device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
+            "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
         threads: CPU threads that render; all when None.
         keep_frames: A folder for every frame as a PNG file besides; it is made.
         fresh: Render all again, even where an earlier call was broken off.

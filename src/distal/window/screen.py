@@ -18,6 +18,7 @@ from rendercanvas.glfw import RenderCanvas  # type: ignore[import-untyped, unuse
 
 from distal.devices.adapters import adapters, chosen, opened, wgpu_module
 from distal.diagnostics import DeviceError
+from distal.packages import loading
 from distal.window.presenters import Maker, PixelMaker, TextureMaker
 from distal.window.surface import Surface
 
@@ -38,7 +39,8 @@ def check_display() -> None:
         raise DeviceError(f"{_NO_WINDOW}: no display (DISPLAY is not set)")
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        ready = glfw.init()
+        with loading("glfw"):
+            ready = glfw.init()
     if not ready:
         reason = _words_of_glfw(str(said[-1].message)) if said else "the display does not answer"
         raise DeviceError(f"{_NO_WINDOW}: {reason}")
