@@ -13,7 +13,7 @@ from typing import assert_never
 from distal.backends.code import Code, Level, Line, infix, prefix
 from distal.backends.expressions import ExpressionWriter
 from distal.backends.literals import INT_MIN
-from distal.backends.module_names import globals_of
+from distal.backends.module_text import comment_text
 from distal.backends.names import Namer
 from distal.diagnostics import Span
 from distal.ir.nodes import (
@@ -64,7 +64,7 @@ def falls_through(body: tuple[Stmt, ...]) -> bool:
 
 def place(span: Span) -> str:
     """File and line for a comment; the name of the file only, the same on every machine."""
-    return f"{PurePath(span.file.replace(chr(92), '/')).name}:{span.line}"
+    return f"{comment_text(PurePath(span.file.replace(chr(92), '/')).name)}:{span.line}"
 
 
 class FunctionWriter(ExpressionWriter):
@@ -125,10 +125,13 @@ class FunctionWriter(ExpressionWriter):
     def copy_parameters(self, fn: Function) -> None:
         """Where parameters cannot be used as they are: bind copies."""
 
+    def mentioned(self, fn: Function) -> frozenset[str]:
+        """The module-scope names that the function's text may mention."""
+        return self.names.mentioned(fn)
+
     def name_locals(self, fn: Function, namer: Namer | None = None) -> None:
         """Give every parameter and local its name in the text."""
-        taken = globals_of(fn, self.names)
-        self.local_namer = namer or Namer(self.names.reserved, taken)
+        self.local_namer = namer or self.names.namer.inner(self.mentioned(fn))
         self.locals = {p.name: self.local_namer.name(p.name) for p in fn.params}
         self.variables = set()
         for stmt in statements_in(fn.body):

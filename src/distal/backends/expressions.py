@@ -16,7 +16,6 @@ from distal.backends.code import Code, Level, Line, infix, prefix, tight
 from distal.backends.constants import is_table
 from distal.backends.dialect import Dialect
 from distal.backends.module_names import ModuleNames
-from distal.backends.names import Namer
 from distal.diagnostics import Span
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
@@ -80,7 +79,7 @@ class ExpressionWriter(Dialect):
         self.depth = 0
         self.span: Span | None = None
         self.locals: dict[str, str] = {}
-        self.local_namer = Namer(frozenset())
+        self.local_namer = names.local_namer()
 
     def line(self, text: str) -> None:
         """Append a line at the current depth."""

@@ -7,6 +7,7 @@ is one, and the interface. The text of functions and of programs is written by
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
 from distal.backends.base import Artifact
@@ -17,22 +18,26 @@ from distal.backends.glsl_uniforms import beyond_room
 from distal.backends.glsl_writer import trust_macro
 from distal.backends.interface import interface
 from distal.backends.keywords import (
+    GLSL_CANVAS_MACROS,
     GLSL_CANVAS_NAMES,
     GLSL_FUNCTIONS,
     GLSL_KEYWORDS,
+    GLSL_PREFIXES,
     ISF_NAMES,
+    ISF_PARTS,
+    ISF_PREFIXES,
+    SHADERTOY_MACROS,
     SHADERTOY_NAMES,
 )
-from distal.backends.module_names import ModuleNames, name_module, reachable
+from distal.backends.module_names import ModuleNames, Vocabulary, name_module, reachable
 from distal.backends.module_text import joined, per_frame_reads, without_frame
+from distal.backends.names import Reserved
 from distal.backends.packing import Packing, pack
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import Type
 from distal.ir.walk import expressions_in
-
-_RESERVED: Final = GLSL_KEYWORDS | GLSL_FUNCTIONS
 
 TARGETS: Final = (
     Target("glsl-es300", "glsl", FramePlace.VERTEX, rough=True, one_way=True),
@@ -53,14 +58,13 @@ TARGETS: Final = (
 )
 
 _TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
-_FIRST_NAMES: Final = {
-    "glsl-es300": frozenset({"fragment_color"}),
-    "glsl-330": frozenset({"fragment_color"}),
+_HOST_NAMES: Final = {
     "glsl-es100": GLSL_CANVAS_NAMES,
     "glslcanvas": GLSL_CANVAS_NAMES,
     "isf": ISF_NAMES,
     "shadertoy": SHADERTOY_NAMES,
 }
+_HOST_MACROS: Final = {"glslcanvas": GLSL_CANVAS_MACROS, "shadertoy": SHADERTOY_MACROS}
 _VERSIONS: Final = {
     "glsl-es300": "300 es",
     "glsl-330": "330",
@@ -90,6 +94,17 @@ def emit(module: Module, target: Target) -> Artifact:
     return Artifact(text, _interface(program, target), vertex, places, vertex_places)
 
 
+def vocabulary(target: Target) -> Vocabulary:
+    """What no name of the author's may be in a text for the target."""
+    # A macro takes its word from everything: from locals and fields too.
+    macros = {*_HOST_MACROS.get(target.name, ()), *(_TRUST.values() if target.rough else ())}
+    is_isf = target.name == "isf"
+    prefixes = (*GLSL_PREFIXES, *(ISF_PREFIXES if is_isf else ()))
+    fields = Reserved(GLSL_KEYWORDS | macros, prefixes, ISF_PARTS if is_isf else ())
+    host = _HOST_NAMES.get(target.name, frozenset())
+    return Vocabulary(fields, fields | GLSL_FUNCTIONS | host | DIALECTS[target.name].names)
+
+
 def _program(module: Module, target: Target) -> Program:
     dialect = DIALECTS[target.name]
     fixed = {
@@ -97,19 +112,16 @@ def _program(module: Module, target: Target) -> Program:
         for uniform in module.uniforms
         if uniform.origin is Origin.FRAME and uniform.name in dialect.texts
     }
-    first = _FIRST_NAMES[target.name]
+    words = vocabulary(target)
     header: tuple[str, ...] = ()
     assign = _RESOURCE_NAMES.get(target.name)
     resources = assign(module.resources) if assign is not None else {}
     if target.name == "isf" and module.kind is EntryKind.IMAGE:
-        isf = IsfHeader.of(module, _RESERVED | ISF_NAMES)
+        isf = IsfHeader.of(module, words.names)
         fixed |= isf.texts
-        first |= isf.names
+        words = replace(words, names=words.names | isf.names)
         header, resources = isf.lines, isf.resources
-    # A macro takes its word from everything: from locals and fields too.
-    macros = frozenset(_TRUST.values()) if target.rough else frozenset()
-    words, keywords = _RESERVED | macros, GLSL_KEYWORDS | macros
-    names = name_module(module, words, keywords, first, fixed, resources)
+    names = name_module(module, words, fixed, resources)
     packing = None
     if target.frame is FramePlace.VERTEX:
         packing = pack(_sent(module))

@@ -18,8 +18,9 @@ from typing import Any, Final
 
 from distal.backends.code import Code
 from distal.backends.glsl_writer import Glsl100Writer
+from distal.backends.keywords import isf_picture_names
 from distal.backends.module_names import ModuleNames
-from distal.backends.names import Namer
+from distal.backends.names import Namer, Reserved
 from distal.diagnostics import CompileError
 from distal.ir.nodes import (
     Module,
@@ -53,13 +54,13 @@ class IsfHeader:
     names: frozenset[str]
 
     @classmethod
-    def of(cls, module: Module, reserved: frozenset[str]) -> IsfHeader:
+    def of(cls, module: Module, reserved: Reserved) -> IsfHeader:
         """The header of a module.
 
         Raises:
             CompileError: It reads what no host can give it.
         """
-        namer = Namer(reserved | {ISF_MOUSE})
+        namer = Namer(reserved)
         inputs: list[dict[str, Any]] = []
         texts: dict[str, str] = {}
         for uniform in module.uniforms:
@@ -82,7 +83,9 @@ class IsfHeader:
         if resources:
             paths = {resources[r.name]: {"PATH": _file_name(r)} for r in module.resources}
             described["IMPORTED"] = paths
-        names = frozenset([*(i["NAME"] for i in inputs), *resources.values()])
+        names = frozenset(i["NAME"] for i in inputs).union(
+            resources.values(), *map(isf_picture_names, resources.values())
+        )
         return cls(_comment(described), texts, resources, names)
 
 
@@ -211,10 +214,12 @@ def sampler_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str
     argument is a plain name; and they do not say what lies outside a picture.
     """
     name, function = names.resources[resource.name], names.accessors[resource.name]
-    inside = "fract(coord)" if resource.wrap == "repeat" else "clamp(coord, 0.0, 1.0)"
+    coord, inside = map(names.local_namer().name, ("coord", "inside"))
+    repeats = resource.wrap == "repeat"
+    value = f"fract({coord})" if repeats else f"clamp({coord}, 0.0, 1.0)"
     return [
-        f"vec4 {function}(vec2 coord) {{",
-        f"    vec2 inside = {inside};",
-        f"    return IMG_NORM_PIXEL({name}, inside);",
+        f"vec4 {function}(vec2 {coord}) {{",
+        f"    vec2 {inside} = {value};",
+        f"    return IMG_NORM_PIXEL({name}, {inside});",
         "}",
     ]

@@ -7,6 +7,7 @@ row by row, in a width of the host's choice, and a uniform with the count: WebGL
 from __future__ import annotations
 
 from distal.backends.module_names import ModuleNames
+from distal.backends.module_text import comment_text
 from distal.diagnostics import CompileError
 from distal.ir.nodes import ResourceDeclaration
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
@@ -67,7 +68,7 @@ def resource_lines(resource: ResourceDeclaration, names: ModuleNames, target: st
     name = names.resources[resource.name]
     if isinstance(resource.type, Texture):
         if target in ("shadertoy", "isf"):
-            return [f"// {name}: {resource.name} ({resource.type}, {resource.wrap})"]
+            return [f"// {name}: {comment_text(resource.name)} ({resource.type}, {resource.wrap})"]
         precision = "highp " if target == "glsl-es300" else ""
         return [f"uniform {precision}{_SAMPLERS[resource.type.shape]} {name};"]
     assert isinstance(resource.type, Buffer)
@@ -82,52 +83,58 @@ def resource_lines(resource: ResourceDeclaration, names: ModuleNames, target: st
 def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
     """The function that reads one texel or element, the index clamped."""
     name, function = names.resources[resource.name], names.accessors[resource.name]
+    local = names.local_namer().name
+    index = local("index")
     if isinstance(resource.type, Buffer):
+        at, width = map(local, ("at", "width"))
         element = resource.type.element
         lanes = "" if component_count(element) == 4 else "." + "xyzw"[: component_count(element)]
         count = names.counts[resource.name]
-        texel = f"texelFetch({name}, ivec2(at % width, at / width), 0){lanes}"
+        texel = f"texelFetch({name}, ivec2({at} % {width}, {at} / {width}), 0){lanes}"
         return [
-            f"{element} {function}(int index) {{",
-            f"    int at = max(min(index, {count} - 1), 0);",
-            f"    int width = textureSize({name}, 0).x;",
+            f"{element} {function}(int {index}) {{",
+            f"    int {at} = max(min({index}, {count} - 1), 0);",
+            f"    int {width} = textureSize({name}, 0).x;",
             f"    return {texel if kind_of(element) is not Kind.BOOL else f'{element}({texel})'};",
             "}",
         ]
     assert isinstance(resource.type, Texture)
     if resource.type.shape is TextureShape.CUBE:
-        return _cube_accessor(name, function)
+        return _cube_accessor(resource, names)
     rank = "ivec2" if resource.type.shape is TextureShape.FLAT else "ivec3"
-    inside = f"clamp(index, {rank}(0), textureSize({name}, 0) - 1)"
+    inside = f"clamp({index}, {rank}(0), textureSize({name}, 0) - 1)"
     return [
-        f"vec4 {function}({rank} index) {{",
+        f"vec4 {function}({rank} {index}) {{",
         f"    return texelFetch({name}, {inside}, 0);",
         "}",
     ]
 
 
-def _cube_accessor(name: str, function: str) -> list[str]:
+def _cube_accessor(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
     """A cube's texel: sampled at its very centre, since GLSL fetches none from a cube.
 
     The direction through a face's centre and axes: OpenGL ES 3.0.6, table 3.21.
     """
+    name, function = names.resources[resource.name], names.accessors[resource.name]
+    local = names.local_namer().name
+    index, size, at, s, direction = map(local, ("index", "size", "at", "s", "direction"))
     return [
-        f"vec4 {function}(ivec3 index) {{",
-        f"    int size = textureSize({name}, 0).x;",
-        "    vec2 at = vec2(clamp(index.xy, 0, size - 1));",
-        "    vec2 s = (2.0 * at + 1.0) / float(size) - 1.0;",
-        "    vec3 direction = vec3(-s.x, -s.y, -1.0);",
-        "    if (index.z <= 0) {",
-        "        direction = vec3(1.0, -s.y, -s.x);",
-        "    } else if (index.z == 1) {",
-        "        direction = vec3(-1.0, -s.y, s.x);",
-        "    } else if (index.z == 2) {",
-        "        direction = vec3(s.x, 1.0, s.y);",
-        "    } else if (index.z == 3) {",
-        "        direction = vec3(s.x, -1.0, -s.y);",
-        "    } else if (index.z == 4) {",
-        "        direction = vec3(s.x, -s.y, 1.0);",
+        f"vec4 {function}(ivec3 {index}) {{",
+        f"    int {size} = textureSize({name}, 0).x;",
+        f"    vec2 {at} = vec2(clamp({index}.xy, 0, {size} - 1));",
+        f"    vec2 {s} = (2.0 * {at} + 1.0) / float({size}) - 1.0;",
+        f"    vec3 {direction} = vec3(-{s}.x, -{s}.y, -1.0);",
+        f"    if ({index}.z <= 0) {{",
+        f"        {direction} = vec3(1.0, -{s}.y, -{s}.x);",
+        f"    }} else if ({index}.z == 1) {{",
+        f"        {direction} = vec3(-1.0, -{s}.y, {s}.x);",
+        f"    }} else if ({index}.z == 2) {{",
+        f"        {direction} = vec3({s}.x, 1.0, {s}.y);",
+        f"    }} else if ({index}.z == 3) {{",
+        f"        {direction} = vec3({s}.x, -1.0, -{s}.y);",
+        f"    }} else if ({index}.z == 4) {{",
+        f"        {direction} = vec3({s}.x, -{s}.y, 1.0);",
         "    }",
-        f"    return textureLod({name}, direction, 0.0);",
+        f"    return textureLod({name}, {direction}, 0.0);",
         "}",
     ]

@@ -7,6 +7,7 @@ vertex text that computes the per-frame part. How a function looks is said in
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -19,9 +20,8 @@ from distal.backends.glsl_isf import ISF_MOUSE, IsfWriter, sampler_lines
 from distal.backends.glsl_resources import accessor_lines, resource_lines
 from distal.backends.glsl_uniforms import constant_line, constant_lines, default_text
 from distal.backends.glsl_writer import Glsl100Writer, GlslWriter
-from distal.backends.module_names import ModuleNames, globals_of, reachable, types_in
+from distal.backends.module_names import ModuleNames, reachable, types_in
 from distal.backends.module_text import per_frame_reads, uniform_comment
-from distal.backends.names import Namer
 from distal.backends.packing import Packing, value_text, vector_texts
 from distal.ir.nodes import (
     EntryKind,
@@ -71,6 +71,12 @@ class Dialect:
     numbers: Declares
     initialised: bool
     texts: dict[str, str]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """What stands in its texts by name: no name of the author's is one of them."""
+        texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
+        return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
 
 
 _PRECISION = ("precision highp float;", "precision highp int;")
@@ -194,7 +200,7 @@ def vertex_lines(program: Program) -> list[Line]:
     writer.span = None
     writer.line("void main() {")
     writer.depth = 1
-    _start_main(program, writer, ())
+    writer.local_namer = program.names.local_namer()
     corner = writer.temporary(
         "corner",
         Code("vec2(float(gl_VertexID % 2), float(gl_VertexID / 2))"),
@@ -226,21 +232,6 @@ def _write_functions(writer: GlslWriter, functions: Sequence[Function]) -> None:
         writer.line("")
 
 
-def _start_main(program: Program, writer: GlslWriter, taken: Iterable[str]) -> None:
-    """Names for what main binds: nothing of module scope is hidden there."""
-    names = program.names
-    everything = {*names.uniforms.values(), *names.frame.values(), *names.functions.values()}
-    everything |= {
-        *names.tables,
-        *names.constants,
-        *names.structs.values(),
-        *names.resources.values(),
-        *program.vectors,
-        *taken,
-    }
-    writer.local_namer = Namer(names.reserved, frozenset(everything))
-
-
 def _write_main(
     program: Program, writer: GlslWriter, entry: Function, in_functions: set[str]
 ) -> None:
@@ -249,8 +240,7 @@ def _write_main(
         writer.line(f"// {place(entry.span)}")
     dialect = program.dialect
     writer.line(f"{dialect.main} {{")
-    _start_main(program, writer, globals_of(entry, program.names))
-    writer.name_locals(entry, writer.local_namer)
+    writer.name_locals(entry, program.names.local_namer())
     writer.depth = 1
     coord = entry.params[0]
     if dialect.coord.isidentifier():

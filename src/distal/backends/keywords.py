@@ -52,6 +52,10 @@ _GLSL_WORDS: Final = _words(
     """
 )
 
+# gl_, GL_: names and macros of the language (GL_ES is 1). webgl_, _webgl_: the WebGL specification,
+# "Supported GLSL Constructs".
+GLSL_PREFIXES: Final = ("gl_", "GL_", "webgl_", "_webgl_")
+
 GLSL_KEYWORDS: Final = (
     _GLSL_WORDS
     | _GLSL_OPAQUE
@@ -139,20 +143,32 @@ WGSL_PREDECLARED: Final = (
     | {f"mat{size}{letter}" for size in _MATRIX_SIZES for letter in ("", "f", "h")}
 )
 
-# Names that the places a text is dropped into declare before it.
+# Names that the hosts a text is given to declare before it, and what a host replaces in a text.
 SHADERTOY_NAMES: Final = _words(
     """
     iResolution iTime iTimeDelta iFrame iFrameRate iChannelTime iChannelResolution iMouse iDate
-    iSampleRate iChannel0 iChannel1 iChannel2 iChannel3 iCh0 iCh1 iCh2 iCh3 fragColor fragCoord
-    shadertoy_out_color st_assert HW_PERFORMANCE
+    iSampleRate iBlockOffset iChannel0 iChannel1 iChannel2 iChannel3 iCh0 iCh1 iCh2 iCh3
+    shadertoy_out_color st_assert mainCubemap
     """
 )
-GLSL_CANVAS_NAMES: Final = _words("u_resolution u_time u_delta u_date u_mouse u_frame")
+SHADERTOY_MACROS: Final = frozenset({"HW_PERFORMANCE"})
+# glslCanvas has 8 texture units at least; each picture of data-textures has the next number.
+GLSL_CANVAS_NAMES: Final = _words(
+    "u_resolution u_time u_delta u_date u_mouse u_frame a_position a_texcoord v_texcoord"
+) | {f"{stem}{i}" for stem in ("u_tex", "u_buffer") for i in range(32)}
+GLSL_CANVAS_MACROS: Final = frozenset({"PLATFORM_WEBGL"})
+# VVISF-GL and interactive-shader-format-js. Both replace the parts, also inside longer names.
 ISF_NAMES: Final = _words(
-    """
-    PASSINDEX RENDERSIZE TIME TIMEDELTA FRAMEINDEX DATE isf_FragNormCoord isf_FragCoord
-    isf_fragCoord isf_vertShaderInit vv_FragNormCoord vv_vertShaderInit position IMG_PIXEL
-    IMG_NORM_PIXEL IMG_THIS_PIXEL IMG_THIS_NORM_PIXEL IMG_SIZE VVSAMPLER_2DBYPIXEL
-    VVSAMPLER_2DBYNORM VVSAMPLER_2DRECTBYPIXEL VVSAMPLER_2DRECTBYNORM inputImage
-    """
+    "PASSINDEX RENDERSIZE TIME TIMEDELTA FRAMEINDEX DATE VERTEXDATA position inputImage"
 )
+ISF_PREFIXES: Final = ("isf_", "vv_", "VVSAMPLER_", "VVISF_")
+ISF_PARTS: Final = (
+    *("IMG_PIXEL", "IMG_NORM_PIXEL", "IMG_THIS_PIXEL", "IMG_THIS_NORM_PIXEL", "IMG_SIZE"),
+    *("vv_FragNormCoord", "vv_vertShaderInit"),
+)
+
+
+def isf_picture_names(picture: str) -> frozenset[str]:
+    """What an ISF host declares besides a picture of that name."""
+    stems = ("imgRect", "imgSize", "flip", "normTexCoord", "texCoord")
+    return frozenset(f"_{picture}_{stem}" for stem in stems)

@@ -6,18 +6,24 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from distal.backends.constants import is_literal_operation, is_table
-from distal.backends.names import Namer, safe_name
-from distal.ir.nodes import (
-    Call,
-    Expr,
-    Function,
-    Module,
-    PerFrame,
-    Resource,
-    Uniform,
-)
+from distal.backends.names import Namer, Reserved, safe_name
+from distal.ir.nodes import Call, Expr, Function, Module, PerFrame, Resource, Uniform
 from distal.ir.types import Array, Buffer, Struct, Type
 from distal.ir.walk import expressions_in, nodes_in
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """What a target reserves.
+
+    Attributes:
+        fields: For a struct's fields too: keywords and macros.
+        names: For everything else: those, what the language predeclares, what the host declares,
+            and what the writer itself declares at module scope.
+    """
+
+    fields: Reserved
+    names: Reserved
 
 
 @dataclass(slots=True)
@@ -25,7 +31,6 @@ class ModuleNames:
     """Names of module scope; each map goes from the IR's name to the text's."""
 
     namer: Namer
-    reserved: frozenset[str]
     uniforms: dict[str, str] = field(default_factory=dict)
     resources: dict[str, str] = field(default_factory=dict)
     accessors: dict[str, str] = field(default_factory=dict)  # reads one texel or element
@@ -38,30 +43,53 @@ class ModuleNames:
     structs: dict[Type, str] = field(default_factory=dict)
     fields: dict[tuple[Struct, str], str] = field(default_factory=dict)
 
+    def local_namer(self) -> Namer:
+        """A namer for a function of the writer's own: it hides nothing of module scope."""
+        return self.namer.inner()
+
+    def mentioned(self, function: Function) -> frozenset[str]:
+        """The module-scope names that a function's text may mention, the writer's own aside."""
+        found = {self.structs[t] for t in types_of(function) if t in self.structs}
+        found |= {*self.tables, *self.constants}
+        for e in expressions_in(function.body):
+            match e:
+                case Call(callee):
+                    found.add(self.functions[callee])
+                case Uniform(name):
+                    found.add(self.uniforms[name])
+                case PerFrame(name):
+                    found.add(self.frame[name])
+                case Resource(name):
+                    found |= {self.resources[name], self.accessors[name], self.counts[name]}
+                    found.add(self.samplers[name])
+                case _:
+                    pass
+        return frozenset(found)
+
 
 def name_module(
     module: Module,
-    reserved: frozenset[str],
-    keywords: frozenset[str],
-    first: Iterable[str] = (),
+    vocabulary: Vocabulary,
     fixed_uniforms: dict[str, str] | None = None,
     fixed_resources: dict[str, str] | None = None,
+    *,
+    has_members: bool = False,
 ) -> ModuleNames:
     """Names for everything in a module.
 
     Args:
         module: What is named.
-        reserved: Words that nothing may be called.
-        keywords: Those of them that not even a struct's field may be called.
-        first: Names that the backend itself puts at module scope.
-        fixed_uniforms: Uniforms whose text is settled by the place the program runs in.
+        vocabulary: What nothing may be called.
+        fixed_uniforms: Uniforms whose text is decided by the host.
         fixed_resources: The same of textures.
+        has_members: Whether uniforms and per-frame values are members of structs of the text's own.
     """
-    namer = Namer(reserved, frozenset(first))
-    names = ModuleNames(namer, reserved)
+    namer = Namer(vocabulary.names)
+    names = ModuleNames(namer)
     fixed = fixed_uniforms or {}
+    of_uniforms, of_frame = (Namer(vocabulary.fields) if has_members else namer for _ in range(2))
     for uniform in module.uniforms:
-        names.uniforms[uniform.name] = fixed.get(uniform.name) or namer.name(uniform.name)
+        names.uniforms[uniform.name] = fixed.get(uniform.name) or of_uniforms.name(uniform.name)
     for resource in module.resources:
         fixed_name = (fixed_resources or {}).get(resource.name)
         names.resources[resource.name] = fixed_name or namer.name(resource.name)
@@ -69,11 +97,11 @@ def name_module(
         names.counts[resource.name] = namer.name(f"{resource.name}_count")
         names.samplers[resource.name] = namer.name(f"{resource.name}_sampler")
     for name, _ in module.frame:
-        names.frame[name] = namer.name(name)
+        names.frame[name] = of_frame.name(name)
     for type in types_in(module, module.functions):
         if isinstance(type, Struct):
             names.structs[type] = namer.name(type.name)
-            local = Namer(keywords)
+            local = Namer(vocabulary.fields)
             names.fields |= {(type, name): local.name(name) for name, _ in type.fields}
         elif isinstance(type, Array):
             names.structs[type] = namer.name(_array_name(type))
@@ -97,7 +125,7 @@ def _array_name(type: Type) -> str:
         case Array(element, length):
             return f"Array_{_array_name(element).removeprefix('Array_')}_{length}"
         case _:
-            return safe_name(str(type), frozenset())
+            return safe_name(str(type), Reserved(frozenset()))
 
 
 def reachable(module: Module, roots: Iterable[Expr]) -> tuple[Function, ...]:
@@ -123,11 +151,17 @@ def types_in(module: Module, functions: Iterable[Function]) -> Iterator[Type]:
     for e in nodes_in(*frame):
         yield from _parts(e.type, seen)
     for function in functions:
-        for param in function.params:
-            yield from _parts(param.type, seen)
-        yield from _parts(function.result, seen)
-        for e in expressions_in(function.body):
-            yield from _parts(e.type, seen)
+        yield from types_of(function, seen)
+
+
+def types_of(function: Function, seen: set[Type] | None = None) -> Iterator[Type]:
+    """The structs and arrays that a function uses, those in ``seen`` left out."""
+    seen = set() if seen is None else seen
+    for param in function.params:
+        yield from _parts(param.type, seen)
+    yield from _parts(function.result, seen)
+    for e in expressions_in(function.body):
+        yield from _parts(e.type, seen)
 
 
 def _parts(type: Type, seen: set[Type]) -> Iterator[Type]:
@@ -146,32 +180,3 @@ def _parts(type: Type, seen: set[Type]) -> Iterator[Type]:
             yield from _parts(element, seen)
         case _:
             return
-
-
-def globals_of(function: Function, names: ModuleNames) -> frozenset[str]:
-    """The module-scope names that a function's text mentions: its locals keep clear of them."""
-    found = {names.structs[t] for t in _mentioned_types(function) if t in names.structs}
-    found |= {*names.tables, *names.constants}
-    for e in expressions_in(function.body):
-        match e:
-            case Call(callee):
-                found.add(names.functions[callee])
-            case Uniform(name):
-                found.add(names.uniforms[name])
-            case PerFrame(name):
-                found.add(names.frame[name])
-            case Resource(name):
-                found |= {names.resources[name], names.accessors[name], names.counts[name]}
-                found.add(names.samplers[name])
-            case _:
-                pass
-    return frozenset(found)
-
-
-def _mentioned_types(function: Function) -> Iterator[Type]:
-    seen: set[Type] = set()
-    yield from _parts(function.result, seen)
-    for param in function.params:
-        yield from _parts(param.type, seen)
-    for e in expressions_in(function.body):
-        yield from _parts(e.type, seen)

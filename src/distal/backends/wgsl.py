@@ -12,13 +12,14 @@ from typing import Any, Final
 
 from distal.backends.base import Artifact
 from distal.backends.interface import interface
-from distal.backends.keywords import WGSL_KEYWORDS, WGSL_PREDECLARED
 from distal.backends.module_names import ModuleNames, name_module
 from distal.backends.module_text import joined, per_frame_reads, without_frame
+from distal.backends.names import Namer
 from distal.backends.wgsl_functions import function_interface
 from distal.backends.wgsl_layout import lay_out
+from distal.backends.wgsl_names import OWN, VOCABULARY
 from distal.backends.wgsl_resources import texture_binding
-from distal.backends.wgsl_stages import OWN_NAMES, Program, program_lines
+from distal.backends.wgsl_stages import Program, program_lines
 from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import VEC2, Kind, Vector
@@ -28,7 +29,6 @@ TARGETS: Final = (
     Target("wgsl-compute", "wgsl", FramePlace.HOST),
 )
 
-_RESERVED: Final = WGSL_KEYWORDS | WGSL_PREDECLARED
 _RESOLUTION: Final = "resolution"
 _TILE: Final = "tile"
 
@@ -53,7 +53,7 @@ def _with_resolution(module: Module) -> Module:
 
 
 def _program(module: Module, target: Target) -> Program:
-    names = name_module(module, _RESERVED, WGSL_KEYWORDS, OWN_NAMES)
+    names = name_module(module, VOCABULARY, has_members=True)
     # A value that only later values are made of stays a local of frame_main.
     read = per_frame_reads(module.functions)
     frame = lay_out(tuple((name, value.type) for name, value in module.frame if name in read))
@@ -70,10 +70,7 @@ def _tile_name(module: Module, names: ModuleNames) -> str:
     """What the member of the uniforms is called that says which part of the picture is computed."""
     if module.kind is EntryKind.FUNCTION:
         return ""
-    name = _TILE
-    while name in names.uniforms.values():
-        name += "_"
-    return name
+    return Namer(VOCABULARY.fields, names.uniforms.values()).name(_TILE)
 
 
 def _interface(program: Program, target: Target) -> dict[str, Any]:
@@ -100,15 +97,15 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
             return result
         result |= function_interface(module.function(module.entry))
     elif program.compute:
-        result["stages"] = {"compute": "compute_main"}
+        result["stages"] = {"compute": OWN.compute_main}
         result["workgroup"] = [8, 8]
         result["output"] = {"group": 0, "binding": 3, "layout": "vec4f, row by row, top row first"}
     else:
-        result["stages"] = {"vertex": "vertex_main", "fragment": "fragment_main"}
+        result["stages"] = {"vertex": OWN.vertex_main, "fragment": OWN.fragment_main}
     if module.kind is EntryKind.IMAGE:
         result["entry"] = next(reversed(result["stages"].values()))
     if module.frame:
-        result["stages"]["frame"] = "frame_main"
+        result["stages"]["frame"] = OWN.frame_main
         result["frame"] = {
             "place": "dispatch",
             "size": program.frame.size,

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final, assert_never
 
 from distal.backends.module_names import ModuleNames
+from distal.backends.wgsl_names import OWN
 from distal.backends.wgsl_writer import WgslWriter
 from distal.ir.nodes import Function
 from distal.ir.types import (
@@ -92,7 +93,7 @@ def function_interface(function: Function) -> dict[str, Any]:
     """What a host must provide; nothing for a function that no host can call."""
     if maps_pixels(function):
         return {
-            "stages": {"compute": "pixels_main"},
+            "stages": {"compute": OWN.pixels_main},
             "workgroup": [WORKGROUP],
             "input": {"group": 0, "binding": 4, "layout": "vec4f"},
             "output": {"group": 0, "binding": 3, "layout": "vec4f"},
@@ -102,7 +103,7 @@ def function_interface(function: Function) -> dict[str, Any]:
     layout = "u32, a run for each leaf, a word for each point"
     output = {"group": 0, "binding": 3, "layout": layout, "leaves": leaf_count(function.result)}
     found = {
-        "stages": {"compute": "points_main"},
+        "stages": {"compute": OWN.points_main},
         "workgroup": [WORKGROUP],
         "output": output,
     }
@@ -116,14 +117,14 @@ def function_binding_lines(function: Function) -> list[str]:
     if maps_pixels(function):
         return [
             "",
-            "@group(0) @binding(3) var<storage, read_write> pixels: array<vec4f>;",
-            "@group(0) @binding(4) var<storage, read> source: array<vec4f>;",
+            f"@group(0) @binding(3) var<storage, read_write> {OWN.pixels}: array<vec4f>;",
+            f"@group(0) @binding(4) var<storage, read> {OWN.source}: array<vec4f>;",
         ]
     if not _is_callable(function):
         return []
-    lines = ["", "@group(0) @binding(3) var<storage, read_write> results: array<u32>;"]
+    lines = ["", f"@group(0) @binding(3) var<storage, read_write> {OWN.results}: array<u32>;"]
     if function.params:
-        lines.append("@group(0) @binding(4) var<storage, read> arguments: array<u32>;")
+        lines.append(f"@group(0) @binding(4) var<storage, read> {OWN.arguments}: array<u32>;")
     return lines
 
 
@@ -134,18 +135,19 @@ def function_entry_lines(
     mapping = maps_pixels(function)
     if not mapping and not _is_callable(function):
         return []
-    here, count, value = (names.namer.name(n) for n in ("here", "points", "value"))
+    local = names.local_namer().name
+    id, groups, here, count, value = map(local, ("id", "groups", "here", "points", "value"))
     called = names.functions[function.name]
     lines = [
         f"@compute @workgroup_size({WORKGROUP})",
-        f"fn {'pixels_main' if mapping else 'points_main'}(",
-        "    @builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u",
+        f"fn {OWN.pixels_main if mapping else OWN.points_main}(",
+        f"    @builtin(global_invocation_id) {id}: vec3u, @builtin(num_workgroups) {groups}: vec3u",
         ") {",
         *first,
-        f"    let {here} = id.x + id.y * groups.x * {WORKGROUP}u;",
+        f"    let {here} = {id}.x + {id}.y * {groups}.x * {WORKGROUP}u;",
     ]
     leaves = 1 if mapping else leaf_count(function.result)
-    total = "arrayLength(&pixels)" if mapping else f"arrayLength(&results) / {leaves}u"
+    total = f"arrayLength(&{OWN.pixels})" if mapping else f"arrayLength(&{OWN.results}) / {leaves}u"
     lines += [
         f"    let {count} = {total};",
         f"    if ({here} >= {count}) {{",
@@ -153,12 +155,12 @@ def function_entry_lines(
         "    }",
     ]
     if mapping:
-        return [*lines, f"    pixels[{here}] = {called}(source[{here}]);", "}", ""]
-    words = (f"arguments[{i}u * {count} + {here}]" for i in range(_LARGEST_LEAVES))
+        return [*lines, f"    {OWN.pixels}[{here}] = {called}({OWN.source}[{here}]);", "}", ""]
+    words = (f"{OWN.arguments}[{i}u * {count} + {here}]" for i in range(_LARGEST_LEAVES))
     given = ", ".join(_read(p.type, words, writer) for p in function.params)
     lines.append(f"    let {value} = {called}({given});")
     for i, leaf in enumerate(_leaves(value, function.result, names)):
-        lines.append(f"    results[{i}u * {count} + {here}] = {leaf};")
+        lines.append(f"    {OWN.results}[{i}u * {count} + {here}] = {leaf};")
     return [*lines, "}", ""]
 
 

@@ -63,47 +63,54 @@ def binding_lines(resource: ResourceDeclaration, names: ModuleNames, number: int
 def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
     """The function that reads one texel or element, the index clamped."""
     name, function = names.resources[resource.name], names.accessors[resource.name]
+    local = names.local_namer().name
+    index = local("index")
     if isinstance(resource.type, Buffer):
         element = _element_name(resource.type.element, shared=False)
-        read = f"{name}[max(min(index, i32(arrayLength(&{name})) - 1), 0)]"
+        read = f"{name}[max(min({index}, i32(arrayLength(&{name})) - 1), 0)]"
         read = f"{read} != 0u" if element == "bool" else read
-        return [f"fn {function}(index: i32) -> {element} {{", f"    return {read};", "}"]
+        return [f"fn {function}({index}: i32) -> {element} {{", f"    return {read};", "}"]
     assert isinstance(resource.type, Texture)
     if resource.type.shape is TextureShape.CUBE:
-        return _cube_accessor(name, names.samplers[resource.name], function)
+        return _cube_accessor(resource, names)
     rank = "vec2i" if resource.type.shape is TextureShape.FLAT else "vec3i"
+    last = local("last")
     return [
-        f"fn {function}(index: {rank}) -> vec4f {{",
-        f"    let last = {rank}(textureDimensions({name})) - 1;",
-        f"    return textureLoad({name}, clamp(index, {rank}(0), last), 0);",
+        f"fn {function}({index}: {rank}) -> vec4f {{",
+        f"    let {last} = {rank}(textureDimensions({name})) - 1;",
+        f"    return textureLoad({name}, clamp({index}, {rank}(0), {last}), 0);",
         "}",
     ]
 
 
-def _cube_accessor(name: str, sampler: str, function: str) -> list[str]:
+def _cube_accessor(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
     """A cube's texel: sampled at its very centre, since WGSL loads none from a cube.
 
     The direction through a face's centre and axes is that of OpenGL and Vulkan alike.
     """
+    name, function = names.resources[resource.name], names.accessors[resource.name]
+    sampler = names.samplers[resource.name]
+    local = names.local_namer().name
+    index, size, at, s, direction = map(local, ("index", "size", "at", "s", "direction"))
     faces = (
-        ("index.z <= 0", "1.0, -s.y, -s.x"),
-        ("index.z == 1", "-1.0, -s.y, s.x"),
-        ("index.z == 2", "s.x, 1.0, s.y"),
-        ("index.z == 3", "s.x, -1.0, -s.y"),
-        ("index.z == 4", "s.x, -s.y, 1.0"),
+        (f"{index}.z <= 0", f"1.0, -{s}.y, -{s}.x"),
+        (f"{index}.z == 1", f"-1.0, -{s}.y, {s}.x"),
+        (f"{index}.z == 2", f"{s}.x, 1.0, {s}.y"),
+        (f"{index}.z == 3", f"{s}.x, -1.0, -{s}.y"),
+        (f"{index}.z == 4", f"{s}.x, -{s}.y, 1.0"),
     )
     chain = []
-    for i, (test, direction) in enumerate(faces):
+    for i, (test, axis) in enumerate(faces):
         chain.append(f"    {'} else if' if i else 'if'} ({test}) {{")
-        chain.append(f"        direction = vec3f({direction});")
+        chain.append(f"        {direction} = vec3f({axis});")
     return [
-        f"fn {function}(index: vec3i) -> vec4f {{",
-        f"    let size = i32(textureDimensions({name}).x);",
-        "    let at = vec2f(clamp(index.xy, vec2i(0), vec2i(size - 1)));",
-        "    let s = (2.0 * at + 1.0) / f32(size) - 1.0;",
-        "    var direction = vec3f(-s.x, -s.y, -1.0);",
+        f"fn {function}({index}: vec3i) -> vec4f {{",
+        f"    let {size} = i32(textureDimensions({name}).x);",
+        f"    let {at} = vec2f(clamp({index}.xy, vec2i(0), vec2i({size} - 1)));",
+        f"    let {s} = (2.0 * {at} + 1.0) / f32({size}) - 1.0;",
+        f"    var {direction} = vec3f(-{s}.x, -{s}.y, -1.0);",
         *chain,
         "    }",
-        f"    return textureSampleLevel({name}, {sampler}, direction, 0.0);",
+        f"    return textureSampleLevel({name}, {sampler}, {direction}, 0.0);",
         "}",
     ]

@@ -20,33 +20,14 @@ from distal.backends.code import Code, Line
 from distal.backends.expense import Expense
 from distal.backends.module_names import ModuleNames, called_by, reachable, types_in
 from distal.backends.module_text import per_frame_reads, uniform_comment
-from distal.backends.names import Namer
 from distal.backends.wgsl_functions import function_binding_lines, function_entry_lines
 from distal.backends.wgsl_layout import Layout, shared_type
+from distal.backends.wgsl_names import OWN
 from distal.backends.wgsl_resources import accessor_lines, binding_lines, fetched_resources
 from distal.backends.wgsl_writer import WgslWriter
 from distal.ir.nodes import EntryKind, Expr, Function, Module, Resource
 from distal.ir.types import Kind, Matrix, Struct, Type, Vector, kind_of
 from distal.ir.walk import expressions_in, nodes_in
-
-# Names that the text declares itself at module scope.
-OWN_NAMES = frozenset(
-    {
-        *(
-            "uniforms",
-            "Uniforms",
-            "frame",
-            "Frame",
-            "frame_input",
-            "uniforms_input",
-            "frame_output",
-            "pixels",
-            "pixel",
-        ),
-        *("vertex_main", "fragment_main", "compute_main", "frame_main"),
-        *("source", "arguments", "results", "pixels_main", "points_main"),
-    }
-)
 
 # Uniforms and per-frame values are read once a pixel, into variables of its own. Where a uniform is
 # a load like any other it would be loaded each time that a loop comes by: on lavapipe 8 % of the
@@ -74,9 +55,9 @@ def program_lines(program: Program) -> list[Line]:
     is_image = module.kind is EntryKind.IMAGE
     entry = module.function(module.entry)
     if is_image:
-        names.functions[entry.name] = "pixel"
+        names.functions[entry.name] = OWN.pixel
     expense = Expense(module)
-    reads = {name: f"frame.{names.frame[name]}" for name, _ in module.frame}
+    reads = {name: f"{OWN.frame}.{names.frame[name]}" for name, _ in module.frame}
     writer = WgslWriter(names, expense, reads, {})
     functions = (*reachable(module, expressions_in(entry.body)), entry)
     for function in functions:
@@ -111,7 +92,7 @@ def _write_frame(
         names.functions[f]: names.namer.name(f"{names.functions[f]}_of_frame")
         for f in sorted(stale)
     }
-    reads = {name: f"frame_output.{names.frame[name]}" for name, _ in module.frame}
+    reads = {name: f"{OWN.frame_output}.{names.frame[name]}" for name, _ in module.frame}
     own = WgslWriter(names, writer.expense, reads, others)
     own.tables, own.variables_of_constants = writer.tables, writer.variables_of_constants
     own.lines = writer.lines
@@ -124,21 +105,19 @@ def _write_frame(
     own.span = None
     own.line("// Run once for each picture, before the pixels.")
     own.line("@compute @workgroup_size(1)")
-    own.line("fn frame_main() {")
+    own.line(f"fn {OWN.frame_main}() {{")
     own.lines += map(Line, copy_lines(program, frame=False))
     own.depth = 1
     # A value that was computed is read from its local.
     own.frame = dict(reads)
-    taken = {*names.functions.values(), *names.structs.values(), *names.resources.values()}
-    taken |= {*names.tables, *names.constants, *OWN_NAMES}
-    own.local_namer = Namer(names.reserved, frozenset(taken))
+    own.local_namer = names.local_namer()
     for name, value in module.frame:
         code = own.expression(value)
         local = own.local_namer.name(name)
         own.line(own.declaration(local, code, value.type, mutable=isinstance(value.type, Struct)))
         if program.frame.has(name):
             shared = _to_shared(Code(local), value.type)
-            own.line(f"frame_output.{names.frame[name]} = {shared};")
+            own.line(f"{OWN.frame_output}.{names.frame[name]} = {shared};")
         own.frame = {**own.frame, name: local}
     own.depth = 0
     own.line("}")
@@ -156,61 +135,62 @@ def copy_lines(program: Program, *, frame: bool = True) -> list[str]:
     """The first lines of an entry point: what it reads of uniforms and of per-frame values."""
     lines = []
     if program.module.uniforms and program.uniforms.size <= _COPIED_BYTES:
-        lines += _copy("uniforms", program.uniforms, program.names.uniforms)
+        names = program.names.uniforms
+        lines += _copy(OWN.uniforms, OWN.uniforms_input, program.uniforms, names)
     if frame and program.module.frame and program.frame.size <= _COPIED_BYTES:
-        lines += _copy("frame", program.frame, program.names.frame)
+        lines += _copy(OWN.frame, OWN.frame_input, program.frame, program.names.frame)
     return lines
 
 
-def _copy(name: str, layout: Layout, names: Mapping[str, str]) -> list[str]:
+def _copy(name: str, source: str, layout: Layout, names: Mapping[str, str]) -> list[str]:
     """The copy of a struct; member by member where naga 29 fails on the whole (matrices of two)."""
     if not any(isinstance(m.type, Matrix) and m.type.size == 2 for m in layout.members):
-        return [f"    {name} = {name}_input;"]
+        return [f"    {name} = {source};"]
     members = (names.get(m.name, m.name) for m in layout.members)
-    return [f"    {name}.{member} = {name}_input.{member};" for member in members]
+    return [f"    {name}.{member} = {source}.{member};" for member in members]
 
 
-def _input_lines(binding: int, name: str, type: str, size: int) -> list[str]:
+def _input_lines(binding: int, name: str, source: str, type: str, size: int) -> list[str]:
     """The binding of a struct of values that stay the same, and the variable that copies it."""
     here = f"@group(0) @binding({binding}) var<uniform>"
     if size > _COPIED_BYTES:
         return [f"{here} {name}: {type};"]
-    return [f"{here} {name}_input: {type};", f"var<private> {name}: {type};"]
+    return [f"{here} {source}: {type};", f"var<private> {name}: {type};"]
 
 
 def _entry_points(program: Program) -> list[str]:
-    height = f"uniforms.{program.resolution}.y"
+    tile, resolution = (f"{OWN.uniforms}.{n}" for n in (program.tile, program.resolution))
     if program.compute:
         return [
             "@compute @workgroup_size(8, 8)",
-            "fn compute_main(@builtin(global_invocation_id) id: vec3u) {",
+            f"fn {OWN.compute_main}(@builtin(global_invocation_id) id: vec3u) {{",
             *copy_lines(program),
-            f"    let part = uniforms.{program.tile};",
-            f"    let size = select(vec2u(uniforms.{program.resolution}), part.zw, part.z > 0u);",
+            f"    let part = {tile};",
+            f"    let size = select(vec2u({resolution}), part.zw, part.z > 0u);",
             "    if (id.x >= size.x || id.y >= size.y) {",
             "        return;",
             "    }",
             "    // The picture's top row comes first; coordinates count from the bottom.",
             "    let center = vec2f(id.xy + part.xy) + 0.5;",
-            f"    let coord = vec2f(center.x, {height} - center.y);",
-            "    pixels[id.y * size.x + id.x] = pixel(coord);",
+            f"    let coord = vec2f(center.x, {resolution}.y - center.y);",
+            f"    {OWN.pixels}[id.y * size.x + id.x] = {OWN.pixel}(coord);",
             "}",
             "",
         ]
     return [
         "// One triangle over the whole picture.",
         "@vertex",
-        "fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {",
+        f"fn {OWN.vertex_main}(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {{",
         "    let corner = vec2f(f32(index % 2u), f32(index / 2u));",
         "    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);",
         "}",
         "",
         "@fragment",
-        "fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {",
+        f"fn {OWN.fragment_main}(@builtin(position) position: vec4f) -> @location(0) vec4f {{",
         *copy_lines(program),
         "    // Positions count from the top, coordinates from the bottom.",
-        f"    let center = position.xy + vec2f(uniforms.{program.tile}.xy);",
-        f"    return pixel(vec2f(center.x, {height} - center.y));",
+        f"    let center = position.xy + vec2f({tile}.xy);",
+        f"    return {OWN.pixel}(vec2f(center.x, {resolution}.y - center.y));",
         "}",
         "",
     ]
@@ -221,7 +201,7 @@ def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line
     lines: list[str] = []
     writer = WgslWriter(names, Expense(module), {}, {})
     if module.uniforms:
-        lines += ["", "struct Uniforms {"]
+        lines += ["", f"struct {OWN.uniforms_type} {{"]
         for uniform in module.uniforms:
             type = writer.type_name(shared_type(uniform.type))
             comment = uniform_comment(uniform)
@@ -229,21 +209,22 @@ def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line
         if program.tile:
             note = "the part to compute: corner, size; zeros: the whole picture"
             lines.append(f"    {program.tile}: vec4u,  // {note}")
-        lines += ["}", "", *_input_lines(0, "uniforms", "Uniforms", program.uniforms.size)]
+        own = (OWN.uniforms, OWN.uniforms_input, OWN.uniforms_type)
+        lines += ["}", "", *_input_lines(0, *own, program.uniforms.size)]
     if module.frame:
-        lines += ["", "// Values that are the same in all pixels, computed by frame_main."]
-        lines.append("struct Frame {")
+        lines += ["", f"// Values that are the same in all pixels, computed by {OWN.frame_main}."]
+        lines.append(f"struct {OWN.frame_type} {{")
         for member in program.frame.members:
             type = writer.type_name(shared_type(member.type))
             lines.append(f"    {names.frame[member.name]}: {type},")
         lines += [
             "}",
             "",
-            *_input_lines(1, "frame", "Frame", program.frame.size),
-            "@group(0) @binding(2) var<storage, read_write> frame_output: Frame;",
+            *_input_lines(1, OWN.frame, OWN.frame_input, OWN.frame_type, program.frame.size),
+            f"@group(0) @binding(2) var<storage, read_write> {OWN.frame_output}: {OWN.frame_type};",
         ]
     if program.compute and module.kind is EntryKind.IMAGE:
-        lines += ["", "@group(0) @binding(3) var<storage, read_write> pixels: array<vec4f>;"]
+        lines += ["", f"@group(0) @binding(3) var<storage, read_write> {OWN.pixels}: array<vec4f>;"]
     elif program.compute:
         lines += function_binding_lines(module.function(module.entry))
     nodes: list[Expr] = [*nodes_in(*(value for _, value in module.frame))]

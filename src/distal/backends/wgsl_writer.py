@@ -19,6 +19,7 @@ from distal.backends.constants import is_literal_operation, is_table
 from distal.backends.expense import EAGER_OPERATIONS, Expense
 from distal.backends.literals import float_literal, int_literal
 from distal.backends.module_names import ModuleNames
+from distal.backends.wgsl_names import OWN
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -162,7 +163,7 @@ class WgslWriter(FunctionWriter):
         return literal_code(text)
 
     def uniform(self, e: Uniform) -> Code:
-        return self.shared(f"uniforms.{self.names.uniforms[e.name]}", e.type)
+        return self.shared(f"{OWN.uniforms}.{self.names.uniforms[e.name]}", e.type)
 
     def per_frame(self, e: PerFrame) -> Code:
         text = self.frame[e.name]
@@ -179,6 +180,9 @@ class WgslWriter(FunctionWriter):
         return super().call(self.other_functions.get(function, function), args)
 
     # Statements
+
+    def mentioned(self, fn: Function) -> frozenset[str]:
+        return super().mentioned(fn).union(self.other_functions.values())
 
     def header(self, fn: Function) -> str:
         params = ", ".join(f"{self.locals[p.name]}: {self.type_name(p.type)}" for p in fn.params)

@@ -53,7 +53,7 @@ from distal.ir.types import (
     is_static,
 )
 from distal.ir.verify_types import check_types
-from distal.ir.walk import children, expressions, nodes_in, root_of
+from distal.ir.walk import children, expressions, expressions_in, nodes_in, root_of
 
 DEEPEST = 200
 
@@ -85,6 +85,8 @@ def verify(module: Module, stage: str | None = None) -> None:
         checker.function(function)
         functions[function.name] = function
     assert module.entry in functions, f"no entry function {module.entry}"
+    if stage in _PER_FRAME:
+        checker.frame_is_read()
     _unique("uniform", [u.name for u in module.uniforms])
     _unique("resource", [r.name for r in module.resources])
     entry = functions[module.entry]
@@ -121,6 +123,14 @@ class _Checker:
             checker._frame = self._frame
             checker.expression(value, {}, f"per-frame value {name}")
             self._frame[name] = value.type
+
+    def frame_is_read(self) -> None:
+        """A backend would declare and compute what nobody reads."""
+        roots = [value for _, value in self._module.frame]
+        for function in self._module.functions:
+            roots += expressions_in(function.body)
+        unread = self._frame.keys() - {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
+        assert not unread, f"nothing reads the per-frame values {sorted(unread)}"
 
     def function(self, function: Function) -> None:
         where = function.name

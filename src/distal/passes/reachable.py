@@ -1,6 +1,7 @@
-"""Which functions a module's entry and its per-frame part still call.
+"""Which functions and per-frame values a module's entry still needs.
 
-What flows in: a module. What flows out: the same without functions that nothing calls.
+What flows in: a module. What flows out: the same without functions that nothing calls and without
+per-frame values that nothing reads.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from dataclasses import replace
 
 from distal.ir.nodes import Call, Expr, Function, FunctionRef, Module
 from distal.ir.walk import expressions_in, nodes_in
+from distal.passes.per_frame_values import reads
 
 
 def called_in(*roots: Expr) -> set[str]:
@@ -39,9 +41,29 @@ def closure(functions: tuple[Function, ...], roots: set[str]) -> set[str]:
 
 
 def drop_unused(module: Module) -> Module:
-    """The module without functions that neither the entry nor the per-frame part reaches."""
-    roots = {module.entry} | called_in(*(value for _, value in module.frame))
-    found = closure(module.functions, roots)
-    if len(found) == len(module.functions):
+    """The module without functions and per-frame values that the entry does not reach."""
+    called, read = _reached(module)
+    if len(called) == len(module.functions) and len(read) == len(module.frame):
         return module
-    return replace(module, functions=tuple(f for f in module.functions if f.name in found))
+    functions = tuple(f for f in module.functions if f.name in called)
+    frame = tuple((name, value) for name, value in module.frame if name in read)
+    return replace(module, functions=functions, frame=frame)
+
+
+def _reached(module: Module) -> tuple[set[str], set[str]]:
+    """The functions and the per-frame values that are called and read, directly or not."""
+    values = dict(module.frame)
+    called, read = closure(module.functions, {module.entry}), set[str]()
+    new_functions, new_values = called, read
+    while True:
+        roots = [values[name] for name in new_values]
+        for function in module.functions:
+            if function.name in new_functions:
+                roots += expressions_in(function.body)
+        new_values = reads(roots) - read
+        if not new_values:
+            return called, read
+        read = read | new_values
+        new_functions = closure(module.functions, called_in(*(values[n] for n in new_values)))
+        new_functions -= called
+        called = called | new_functions
