@@ -22,6 +22,7 @@ from distal.backends.keywords import (
     GLSL_CANVAS_NAMES,
     GLSL_FUNCTIONS,
     GLSL_KEYWORDS,
+    GLSL_METHODS,
     GLSL_PREFIXES,
     ISF_NAMES,
     ISF_PARTS,
@@ -100,7 +101,8 @@ def vocabulary(target: Target) -> Vocabulary:
     macros = {*_HOST_MACROS.get(target.name, ()), *(_TRUST.values() if target.rough else ())}
     is_isf = target.name == "isf"
     prefixes = (*GLSL_PREFIXES, *(ISF_PREFIXES if is_isf else ()))
-    fields = Reserved(GLSL_KEYWORDS | macros, prefixes, ISF_PARTS if is_isf else ())
+    words = GLSL_KEYWORDS | GLSL_METHODS | macros
+    fields = Reserved(words, prefixes, ISF_PARTS if is_isf else ())
     host = _HOST_NAMES.get(target.name, frozenset())
     return Vocabulary(fields, fields | GLSL_FUNCTIONS | host | DIALECTS[target.name].names)
 

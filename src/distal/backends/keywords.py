@@ -63,6 +63,9 @@ GLSL_KEYWORDS: Final = (
     | {f"{stem}{size}" for stem in ("mat", "dmat") for size in _MATRIX_SIZES}
 )
 
+# The method of arrays: glslang takes each ``.length`` for it, that of a struct too.
+GLSL_METHODS: Final = frozenset({"length"})
+
 GLSL_FUNCTIONS: Final = _words(
     """
     radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2
@@ -84,6 +87,8 @@ GLSL_FUNCTIONS: Final = _words(
     noise4 EmitVertex EndPrimitive barrier memoryBarrier groupMemoryBarrier imageLoad imageStore
     imageSize atomicAdd atomicMin atomicMax atomicAnd atomicOr atomicXor atomicExchange
     atomicCompSwap atomicCounter main mainImage mainSound mainVR
+    absoluteDifference addSaturate average averageRounded countLeadingZeros countTrailingZeros
+    multiply32x16 subtractSaturate
     """
 )
 

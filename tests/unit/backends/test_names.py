@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from distal.backends.clike import place
 from distal.backends.keywords import (
     GLSL_FUNCTIONS,
     GLSL_KEYWORDS,
@@ -13,6 +14,7 @@ from distal.backends.keywords import (
     WGSL_PREDECLARED,
 )
 from distal.backends.names import Namer, Reserved, safe_name
+from distal.diagnostics import Span
 
 GLSL = Reserved(GLSL_KEYWORDS | GLSL_FUNCTIONS, GLSL_PREFIXES)
 ISF = Reserved(GLSL.words, GLSL_PREFIXES, ISF_PARTS)
@@ -86,3 +88,7 @@ def test_languages_keep_different_words() -> None:
     assert safe_name("fn", WGSL) == "fn_"
     assert safe_name("half", WGSL) == "half"
     assert safe_name("half", GLSL) == "half_"
+
+
+def test_a_files_name_stands_in_comments_as_every_compiler_takes_it() -> None:
+    assert place(Span("/scenes/größe.py", 3, 0, 1, "")) == "groe.py:3"
