@@ -7,6 +7,7 @@ Needs the standard library only.
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from distal.backends import emit, get_target, target_names
 from distal.backends.base import Artifact
@@ -18,6 +19,7 @@ from distal.ir.target import Target
 from distal.ir.verify import verify
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.pipeline import PASS_NAMES, PIPELINE
 from distal.prelude_library import PreludeLibrary
@@ -48,6 +50,8 @@ def run_passes(
 
 def _run_passes(module: Module, target: Target, precision: int, after: str | None) -> Module:
     context = Context(target, PreludeLibrary(), precision)
+    # The passes rely on callees before callers; each keeps it, which ``verify`` checks.
+    module = replace(module, functions=in_call_order(module.functions, module.entry))
     if VERIFY:
         verify(module)
     for name, run in PIPELINE:

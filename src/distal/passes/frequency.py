@@ -188,7 +188,8 @@ class _Rewriting:
         if self._hoisting.keeps_constants and not _leaves(form, Uniform):
             # A number an author hands on reads better as an argument.
             return e
-        return form
+        # Never a call: what it calls may stand after this function.
+        return self._carried(form, Wish(e.name, 1), self._calls.rate)
 
     def _call(self, call: Call, args: tuple[Expr, ...], here: Here) -> Expr:
         """A call that stays, with the work that its callee left to it."""
