@@ -321,6 +321,13 @@ def _access() -> Iterator[Case]:
             return build.index(a[0], _within(a[1], size))
 
         yield _case("[i]", (type, INT), element)
+        for outside in (-1, type.size):
+            # What folds to a constant is clamped as well.
+            yield _case(
+                f"[{outside}]",
+                (type,),
+                lambda a, outside=outside: build.index(a[0], build.integer(outside)),
+            )
     yield from _compositions()
     yield from _aggregates()
 

@@ -267,7 +267,8 @@ def _subscript(body: Body, node: ast.Subscript) -> Value:
     if isinstance(base, Display):
         position = constant_int(body.expression(node.slice))
         if position is not None:
-            return base.items[in_range(body, position, len(base.items), node)]
+            check_index(body, position, len(base.items), node)
+            return base.items[position]
         return element(body, body.bind(array_name(node.value), settle(body, base, node)), node)
     return element(body, settle(body, base, node.value), node)
 
@@ -293,11 +294,7 @@ def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:
     length = _length(body, base, node)
     position = constant_int(index)
     if position is not None:
-        if length is None:
-            if position < 0:
-                raise body.problem("the end of a buffer is not known now", node, "count from 0")
-        else:
-            position = in_range(body, position, length, node)
+        check_index(body, position, length, node)
         return _constant_element(body, base, position, node)
     value = settle(body, index, node.slice)
     if isinstance(base.type, Struct):
@@ -336,11 +333,23 @@ def _constant_element(body: Body, base: Expr, position: int, node: ast.expr) -> 
             return Index(base, integer(position), element_type(base.type), span=span)
 
 
-def in_range(body: Body, position: int, length: int, node: ast.expr) -> int:
-    """A constant index as one from 0; negative ones count from the end, as in Python."""
-    if not -length <= position < length:
+LONGEST_QUOTE: Final = 40  # letters of the author's code inside a hint
+
+
+def check_index(body: Body, position: int, length: int | None, node: ast.Subscript) -> None:
+    """Refuse a constant index outside 0 .. length - 1; the length of a buffer is not known.
+
+    A negative one is refused too, although Python counts it from the end: computed indices are
+    clamped, and one index must not mean two elements.
+    """
+    if position < 0 and (length is None or position >= -length):
+        text = ast.unparse(node.value)
+        name = text if len(text) <= LONGEST_QUOTE else "..."
+        inside = f"len({name}) - {-position}" if length is None else str(length + position)
+        message = f"index {position} is negative: indices count from 0, on every target"
+        raise body.problem(message, node, f"write {name}[{inside}]")
+    if length is not None and not 0 <= position < length:
         raise body.problem(f"index {position} is out of range: there are {length} elements", node)
-    return position % length
 
 
 def _tuple(body: Body, node: ast.Tuple) -> Value:

@@ -62,7 +62,6 @@ def returned(expression: str, result: str, **names: Any) -> str:
         ((1, 2.0, 3), "mat3(2) @ C", "vec3", None),
         ((1, 2.0, 3), "GENERIC(C)", "vec3", "GENERIC((vec3 1.0 2.0 3.0))"),
         ([1.5, 2.0], "C[1]", "float", "2.0"),
-        ([1.5, 2.0], "C[-1]", "float", "2.0"),
         ([1.5, 2.0], "float(len(C))", "float", "2.0"),
         ([1.5, 2], "C[i]", "float", "C[i]"),
         ([(0, 1.0), (2, 3)], "C[1]", "vec2", "(vec2 2.0 3.0)"),

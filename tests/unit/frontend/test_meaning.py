@@ -159,7 +159,7 @@ def lists(x: float) -> float:
     values = [0.0] * 4
     for i in range(len(values)):
         values[i] = x * float(i)
-    values[-1] += 100.0
+    values[3] += 100.0
     total = 0.0
     for v in values:
         total = total * 0.5 + v
