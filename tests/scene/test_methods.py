@@ -18,6 +18,7 @@ from distal import Shape, Shape2D
 from distal.executor_hook import executor
 from distal.fields.ease import EASES
 from distal.fields.edges import BLENDS
+from distal.lang import func, sin, vec3
 from distal.scene.library import OPERATORS
 from tests.scene import method_cases as cases
 from tests.scene.method_cases import FLATS, SMALL, Case, Child
@@ -145,37 +146,32 @@ def other_values(case: Case, name: str) -> list[Any]:
     return found
 
 
-def matters(case: Case, arguments: dict[str, Any], points: Any) -> bool:
-    """Whether other arguments give another field: there, or of a child that is far from 0."""
-    before, after = (
-        asked(called(case, k, case.child), points) for k in (case.arguments, arguments)
-    )
-    if np.abs(before - after).max() > 1000.0 * TOLERANCE * case.child.size:
-        return True
+def matters_far_away(case: Case, arguments: dict[str, Any], flat: bool) -> bool:
+    """Whether other arguments give another field of a child that is far from 0."""
     far = replace(case.child, level=4.0)
-    around = np.random.default_rng(3).uniform(-2.0, 2.0, (200, points.shape[1]))
+    around = np.random.default_rng(3).uniform(-2.0, 2.0, (200, 2 if flat else 3))
     before, after = (asked(called(case, k, far), around) for k in (case.arguments, arguments))
     return bool(np.abs(before - after).max() > 0.01)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_method_has_the_field_of_its_formula(case):
+    tolerance = TOLERANCE * case.child.size
     arguments = dict(case.arguments)
     points, expected = places_and_values(case, arguments)
-    np.testing.assert_allclose(
-        asked(called(case, arguments, case.child), points),
-        expected,
-        atol=TOLERANCE * case.child.size,
-    )
+    before = asked(called(case, arguments, case.child), points)
+    np.testing.assert_allclose(before, expected, atol=tolerance)
     for name in arguments:
         for value in () if name in case.fixed else other_values(case, name):
             changed = arguments | {name: value}
             there, wanted = places_and_values(case, changed)
-            found = asked(called(case, changed, case.child), there)
-            np.testing.assert_allclose(
-                found, wanted, atol=TOLERANCE * case.child.size, err_msg=f"{name}={value}"
-            )
-            assert matters(case, changed, points), f"{name}={value} changes nothing"
+            shape = called(case, changed, case.child)
+            # At the points of before too: to see a change.
+            both = asked(shape, np.concatenate([there, points]))
+            found, after = both[: len(there)], both[len(there) :]
+            np.testing.assert_allclose(found, wanted, atol=tolerance, err_msg=f"{name}={value}")
+            if not np.abs(after - before).max() > 1000.0 * tolerance:
+                assert matters_far_away(case, changed, is_flat(case)), f"{name}={value}: no change"
 
 
 def methods_of(kind: type) -> set[str]:
@@ -298,6 +294,18 @@ def test_signs_of_operators_are_their_methods():
         assert made.node.rule is OPERATORS[name]
         assert made.node.children == (a.node, b.node), sign
     assert (~a).node.rule is OPERATORS["complement"]
+
+
+@func
+def ripple(p: vec3) -> float:
+    return sin(3.0 * p.x) * p.y
+
+
+def test_a_function_displaces_as_its_shape_does():
+    a = shape_of(cases.MIXED, False)
+    p = np.random.default_rng(1).uniform(-0.9, 0.9, (COUNT, 3))
+    expected = formula_of(cases.MIXED, False)(p) - 0.3 * np.sin(3.0 * p[:, 0]) * p[:, 1]
+    np.testing.assert_allclose(asked(a.displace(ripple, 0.3), p), expected, atol=2e-6)
 
 
 def test_every_ease_is_its_number():
