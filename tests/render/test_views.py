@@ -11,7 +11,7 @@ import pytest
 from distal.executor_hook import executor
 from distal.fields.claims import Bounds
 from distal.lang import func, length, vec2, vec3, vec4
-from distal.render import camera, film, legend, local_views, settings, views
+from distal.render import camera, film, layers, legend, local_views, settings, views
 from distal.render.camera import Ray
 from distal.render.march import March
 from distal.render.material import Surface
@@ -188,6 +188,12 @@ def test_a_slice_is_shown_where_the_ray_meets_its_plane():
 
 def lines_at(d: float) -> Any:
     return asked(views.isolines, np.array([d]), 0.1)[0]
+
+
+def test_views_and_layers_are_called_by_their_names():
+    assert {n: f.__name__ for n, f in views.VIEWS.items()} == {n: f"view_{n}" for n in views.VIEWS}
+    known = layers.LAYERS
+    assert {n: f.__name__ for n, f in known.items()} == {n: f"layer_{n}" for n in known}
 
 
 def test_lines_of_equal_distance_lie_a_spacing_apart():

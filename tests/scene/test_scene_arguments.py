@@ -21,6 +21,8 @@ from distal import (
 )
 from distal.frontend import lower
 from distal.ir.printer import print_identity
+from distal.render import normals
+from distal.scene.picture import NORMALS, RENDERERS
 
 SIZE = (18, 12)
 EYE = Camera((0.4, 1.2, 3.0), (0.1, 0.3, 0.0), fov=0.9)
@@ -91,6 +93,13 @@ def test_a_number_changes_the_picture(name, as_it_is):
 def test_a_choice_changes_the_program(name):
     assert program() == program(exposure=1.2)
     assert program(**{name: OTHERS[name]}) != program()
+
+
+def test_choices_are_called_by_their_names():
+    assert [getattr(normals, name.upper()) for name in NORMALS] == list(range(len(NORMALS)))
+    assert {n: f.__name__ for n, f in RENDERERS.items()} == {
+        n: f"seen_{n}" for n in ("plain", "mirrored", "refracted")
+    }
 
 
 LAMPS = Box(9.0, 9.0, 0.2).translate(z=-4.1).paint(emissive((1.0, 0.0, 0.0))) | Sphere(
