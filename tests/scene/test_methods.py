@@ -20,8 +20,10 @@ from distal.fields.ease import EASES
 from distal.fields.edges import BLENDS
 from distal.lang import func, sin, vec3
 from distal.scene.library import OPERATORS
-from tests.scene import method_cases as cases
-from tests.scene.method_cases import FLATS, SMALL, Case, Child
+from tests.scene import method_fields as cases
+from tests.scene.method_cases import SOLIDS
+from tests.scene.method_cases_flat import FLATS
+from tests.scene.method_fields import SMALL, Case, Child
 
 # What makes no shape of another by an operator, and which test looks at it.
 NO_OPERATOR = {
@@ -39,7 +41,7 @@ NO_OPERATOR = {
     "export": "shows",
     "video": "shows",
 }
-ALL = [*((case, False) for case in cases.SOLIDS), *((case, True) for case in FLATS)]
+ALL = [*((case, False) for case in SOLIDS), *((case, True) for case in FLATS)]
 CASES = [replace(case, flat=flat) for case, flat in ALL]
 COUNT = 60
 # Numbers of a shape are floats of 32 bits.
