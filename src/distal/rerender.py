@@ -271,8 +271,11 @@ def _refused(file: str, shown: str) -> str | None:
     if parts.suffix != ".py":
         return f"it names no .py file, only '{shown}'"
     # A colon is a drive, or a stream of another file, on Windows.
-    is_plain = not any(c in "\\:" for c in file) and printable(file, len(file)) == file
-    if not is_plain or parts.is_absolute() or ".." in parts.parts:
+    is_hidden = any(part.startswith(".") for part in parts.parts)
+    is_plain = (
+        not is_hidden and not any(c in "\\:" for c in file) and printable(file, len(file)) == file
+    )
+    if not is_plain or parts.is_absolute():
         return f"it names '{shown}', which is no plain path below its folder"
     return None
 

@@ -41,10 +41,20 @@ def run(tmp_path, monkeypatch):
     folder = tmp_path / "in"
     (folder / "sub").mkdir(parents=True)
     (tmp_path / "out").mkdir()
+    (folder / ".hidden").mkdir()
     monkeypatch.chdir(folder)
     evil = f"open({str(tmp_path / 'ran')!r}, 'w')\n{SCENE}"
     for place in (
-        *("../out/evil.py", "evil.txt", "evil", "evil.py.old", ".py", "evil.py:scene"),
+        *(
+            "../out/evil.py",
+            ".hidden/evil.py",
+            "evil.txt",
+            "evil",
+            "evil.py.old",
+            ".py",
+            "..py",
+            "evil.py:scene",
+        ),
         *("a\\b.py", "C:evil.py", "gro\u202evil.py", "new\nline.py", "\x1b[2Jx.py"),
     ):
         Path(place).write_text(evil)
@@ -100,7 +110,14 @@ def with_texts(base, **texts):
 @pytest.mark.parametrize(
     "source",
     [
-        *("../out/evil.py", "../out/evil.py:scene", "./../out/evil.py", "sub/../../out/evil.py"),
+        *(
+            "../out/evil.py",
+            "../out/evil.py:scene",
+            "./../out/evil.py",
+            "..py",
+            ".hidden/evil.py",
+            "sub/../../out/evil.py",
+        ),
         *("ABSOLUTE", "ABSOLUTE:scene", "/ABSOLUTE", "file://ABSOLUTE"),
         *(
             "evil",

@@ -7,9 +7,11 @@ message and exit code. Knows no command.
 from __future__ import annotations
 
 import functools
+import os
+import sys
 from collections.abc import Callable, Sequence
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, ParamSpec
+from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
 
 import typer
 
@@ -17,6 +19,7 @@ import distal
 from distal import device_names
 from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.messages import say
+from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.film.replacement import SaveError
 from distal.packages import explained
@@ -51,12 +54,30 @@ class Device(StrEnum):
     REFERENCE = device_names.REFERENCE
 
 
+# Commands that load no NumPy.
+_WITHOUT_ARRAYS: Final = ("compile", "doctor", "examples")
+_NUMPY_BYTES: Final = 96 * 2**20  # measured: 85 with one thread of OpenBLAS, 41 for each more
+
+
+def prepare_for_arrays() -> None:
+    """Refuse a limit under which NumPy's BLAS would end the process with words of its own.
+
+    Raises:
+        MemoryError: What is left is too little.
+    """
+    if is_limited() and "numpy" not in sys.modules:
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # distal multiplies no large matrices
+        require(_NUMPY_BYTES, "NumPy")
+
+
 def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
     """Turn an author's mistake into its message and exit code; anything else is our fault."""
 
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
         try:
+            if command.__name__ not in _WITHOUT_ARRAYS:
+                prepare_for_arrays()
             command(*args, **kwargs)
         except UsageError as error:
             say(f"error: {error}")

@@ -8,8 +8,12 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from typing import Final
 
 from distal.devices.jit import llvm_binding, machine_here
+from distal.devices.memory_limit import require
+
+_LOADER_BYTES: Final = 16 * 2**20
 
 
 class Executable:
@@ -17,6 +21,7 @@ class Executable:
 
     def __init__(self, code: bytes) -> None:
         llvm = llvm_binding()
+        require(_LOADER_BYTES + 4 * len(code), "loading machine code")
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine_here())
         self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         self._engine.finalize_object()

@@ -6,13 +6,20 @@ What flows in: a module's text and a feature level. What flows out: an object fi
 from __future__ import annotations
 
 import importlib
+import os
+import subprocess
 import sys
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
-from distal.devices.features import Level
+from distal.devices.features import Level, level_named
 from distal.devices.features import machine as architecture_here
+from distal.devices.memory_limit import is_limited, require
+from distal.diagnostics import printable
 from distal.packages import loading
+
+_APART: Final = "from distal.devices.jit import _serve; _serve()"
+_LLVM_BYTES: Final = 32 * 2**20  # its tables of targets and a loader, with room to spare
 
 
 @cache
@@ -20,6 +27,8 @@ def llvm_binding() -> Any:
     """LLVM, ready for this machine; loaded when something is compiled or run, 30 to 50 ms."""
     with loading("llvmlite"):
         llvm = importlib.import_module("llvmlite.binding")
+        assert llvm.ffi.lib is not None  # loads the library itself
+        require(_LLVM_BYTES, "LLVM")
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
     return llvm
@@ -56,7 +65,43 @@ def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:
 
 
 def compile_object(text: str, level: Level, *, assembly: bool = False) -> Any:
-    """The object file of a module, or its assembly text."""
+    """The object file of a module, or its assembly text.
+
+    Raises:
+        PackageError: LLVM is missing or cannot be loaded.
+        MemoryError: A limit of this process leaves LLVM too little.
+    """
+    if is_limited():
+        return _compiled_apart(text, level, assembly)
+    return _compiled(text, level, assembly)
+
+
+def _compiled_apart(text: str, level: Level, assembly: bool) -> Any:
+    """The same in a process of its own: LLVM ends the process where it gets no memory."""
+    path = os.pathsep.join(filter(None, sys.path))
+    made = subprocess.run(
+        [sys.executable, "-c", _APART, level.name, str(int(assembly))],
+        input=text.encode(),
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": path},
+    )
+    if made.returncode != 0:
+        last = made.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
+        why = f" ({printable(last[0])})" if last else ""
+        raise MemoryError(f"LLVM cannot compile the scene within ulimit{why}")
+    return made.stdout.decode() if assembly else made.stdout
+
+
+def _serve() -> None:
+    """Compile what stands on stdin; what ``_compiled_apart`` runs."""
+    name, assembly = sys.argv[1:]
+    text = sys.stdin.buffer.read().decode()
+    made = _compiled(text, level_named(name), assembly == "1")
+    sys.stdout.buffer.write(made.encode() if isinstance(made, str) else made)
+    sys.stdout.flush()
+
+
+def _compiled(text: str, level: Level, assembly: bool) -> Any:
     llvm = llvm_binding()
     if level.architecture != architecture_here():
         # Every target there is, which takes a tenth of a second.

@@ -49,7 +49,7 @@ def _code(bits: int) -> Executable | None:
         return None
     try:
         return _made(level, bits)
-    except PackageError:  # the reference needs no LLVM
+    except (PackageError, MemoryError):  # the reference needs no LLVM
         return None
 
 
