@@ -18,7 +18,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.film.metadata import LARGEST_SIDE_PX, PREFIX, ReadError
+from distal.film.exr_header import read_header
+from distal.film.metadata import PREFIX, ReadError
 from distal.packages import imported
 
 BITS: Final = (16, 32)
@@ -95,25 +96,13 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
 
     Raises:
         ReadError: The file is broken or cut short.
-        PackageError: OpenEXR is missing or broken.
     """
-    openexr = imported("OpenEXR")
     try:
-        with _quiet():
-            file = openexr.InputFile(str(path))
-            header = file.header()
-            window = header["dataWindow"]
-            width = int(window.max.x) - int(window.min.x) + 1
-            height = int(window.max.y) - int(window.min.y) + 1
-            if not (0 < width <= LARGEST_SIDE_PX and 0 < height <= LARGEST_SIDE_PX):
-                raise ValueError(f"it claims {width}x{height} pixels")
-            file.channels(header["channels"])  # a file cut short has a whole header
-        bits = 16 if str(header["channels"]["R"].type) == "HALF" else 32
-    except Exception as error:  # its C++ raises what it likes on broken files
-        why = (str(error).splitlines() or ["it cannot be read"])[0]
-        raise ReadError(f"{path} is broken: it is no whole EXR: {why}") from None
-    texts = {key: _text(value) for key, value in header.items() if key.startswith(PREFIX)}
-    return (width, height), bits, texts
+        header = read_header(path)
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{path} is broken: it is no whole EXR: {error}") from None
+    texts = {key: text for key, text in header.texts.items() if key.startswith(PREFIX)}
+    return header.size, header.bits["R"], texts
 
 
 def decode(data: bytes) -> dict[str, NDArray[Any]]:
@@ -129,10 +118,6 @@ def decode(data: bytes) -> dict[str, NDArray[Any]]:
             return {name: channel.pixels for name, channel in file.channels().items()}
     except Exception:
         raise ReadError("it is no whole EXR") from None
-
-
-def _text(value: Any) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
 @contextmanager
