@@ -12,6 +12,7 @@ import importlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import PurePath
 from types import ModuleType, TracebackType
 from typing import Any, Final
 
@@ -113,6 +114,8 @@ def explained(error: BaseException) -> PackageError | MemoryError | None:
     if not isinstance(error, Exception):
         return None
     package = _missing(error) or _importing(error.__traceback__)
+    if package is None and isinstance(error, SyntaxError):
+        package = _of_file(error.filename or "")
     if package is None and isinstance(error, ImportError):
         package = _BY_MODULE.get((error.name or "").partition(".")[0])
     if package is None and isinstance(error, AttributeError) and isinstance(error.obj, ModuleType):
@@ -132,6 +135,12 @@ def raised_in(error: BaseException, module: str) -> bool:
 
 def _missing(error: BaseException) -> Package | None:
     return _BY_MODULE.get(error.name or "") if isinstance(error, ModuleNotFoundError) else None
+
+
+def _of_file(name: str) -> Package | None:
+    """The package that a file belongs to, by the folder that is nearest to it."""
+    known = (_BY_MODULE.get(part) for part in reversed(PurePath(name).parts[:-1]))
+    return next(filter(None, known), None)
 
 
 def _importing(at: TracebackType | None) -> Package | None:
