@@ -25,6 +25,7 @@ from distal.cli.base import (
     reporting,
 )
 from distal.diagnostics import LoadError, excerpt
+from distal.lang.srgb import hex_of
 
 if TYPE_CHECKING:
     from distal.scene.probe import Probed
@@ -101,7 +102,7 @@ def _shape(found: Probed) -> Iterator[str]:
 def _material(found: Probed) -> Iterator[str]:
     surface, call = found.seen.surface, found.material.call
     color = tuple(surface.color)
-    told = [f"{call.what}: color {_point(color)} {_hex(color)}"]
+    told = [f"{call.what}: color {_point(color)} {hex_of(color)}"]
     told += [
         f"{name} {value:.3g}"
         for name in ("diffuse", "specular", "transmission", "roughness", "metal")
@@ -116,12 +117,3 @@ def _material(found: Probed) -> Iterator[str]:
 
 def _point(p: Iterable[float]) -> str:
     return f"({', '.join(f'{c:.4g}' for c in p)})"
-
-
-def _hex(color: Iterable[float]) -> str:
-    """Linear light as an author writes it."""
-    from distal.lang import vec3
-    from distal.render.tonemap import encode_srgb
-
-    encoded = (min(max(c, 0.0), 1.0) for c in encode_srgb(vec3(*color)))
-    return "#" + "".join(f"{round(255.0 * c):02x}" for c in encoded)

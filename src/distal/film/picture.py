@@ -19,9 +19,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.executor_hook import executor
 from distal.film import metadata, png
 from distal.film.metadata import Provenance
 from distal.film.replacement import SaveError, check_destination, replacement
+from distal.lang.srgb import decode_srgb
 from distal.packages import PackageError, imported
 
 # Suffix -> the bits of a channel that its files may have; the first are its usual ones.
@@ -151,11 +153,12 @@ def _checked(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _decoded(array: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Light from values encoded in sRGB; the straight part goes on below 0."""
-    color = array[..., :3]
-    curved = ((np.maximum(color, 0.0) + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4)
+    """Light from values encoded in sRGB."""
     linear = array.copy()
-    linear[..., :3] = np.where(color > np.float32(0.04045), curved, color / np.float32(12.92))
+    color = array[..., :3]
+    # The reference device: no machine code is made for what is asked once.
+    light = executor().call(decode_srgb, (color.reshape(-1, 3),), {}, device="reference")
+    linear[..., :3] = light.reshape(color.shape)
     return linear
 
 

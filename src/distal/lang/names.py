@@ -79,7 +79,19 @@ class LangForm:
         raise TypeError(f"{self.name} works in scene code only: call it in a @func")
 
 
-select = LangForm(
+class Select(LangForm):
+    """``select``: of plain numbers it is known without a device."""
+
+    def __call__(self, *args: Any) -> Any:
+        """One of two numbers; refused of anything else, as every form is outside scene code."""
+        if len(args) == 3 and isinstance(args[0], bool):
+            condition, *values = args
+            if all(isinstance(v, int | float) for v in values):
+                return values[0] if condition else values[1]
+        return LangForm.__call__(self, *args)
+
+
+select = Select(
     "select",
     "select(condition, yes, no)",
     "yes where the condition holds, else no; a bvec picks each component.",

@@ -7,9 +7,9 @@ kind of thing) or ``ValueError`` (the right kind, out of reach). Knows no ``Para
 
 from __future__ import annotations
 
+import importlib
 import math
 import operator
-import re
 from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Final, TypeAlias
@@ -94,15 +94,12 @@ def as_color(label: str, value: object) -> tuple[float, ...]:
 
 
 def _decode_hex(label: str, text: str) -> tuple[float, ...]:
-    if not re.fullmatch(r"#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})", text):
+    # Found when asked for: it is scene code, and imports what imports this module.
+    srgb = importlib.import_module("distal.lang.srgb")
+    linear: tuple[float, ...] | None = srgb.linear_of(text)
+    if linear is None:
         raise ValueError(f"'{label}' takes a color like #rrggbb, not '{text:.40}'")
-    digits = text[1:] if len(text) == 7 else "".join(2 * c for c in text[1:])
-    return tuple(_linear(int(digits[i : i + 2], 16) / 255.0) for i in (0, 2, 4))
-
-
-def _linear(encoded: float) -> float:
-    """The inverse of sRGB's encoding, IEC 61966-2-1."""
-    return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
+    return linear
 
 
 def as_point(label: str, value: object, sizes: tuple[int, ...]) -> tuple[float, ...]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from distal.lang import clamp, func, log2, mat3, max, min, mix, select, vec3, vec4
+from distal.lang import clamp, func, log2, mat3, max, min, mix, vec3, vec4
+from distal.lang.srgb import decode_srgb as decode_srgb
+from distal.lang.srgb import encode_srgb as encode_srgb
 
 NONE = 0
 REINHARD = 1
@@ -10,20 +12,6 @@ ACES = 2
 AGX = 3
 NEUTRAL = 4
 NAMES = ("none", "reinhard", "aces", "agx", "neutral")
-
-
-@func
-def encode_srgb(c: vec3) -> vec3:
-    """Linear light to sRGB's curve (IEC 61966-2-1)."""
-    x = max(c, 0.0)
-    return select(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1.0 / 2.4) - 0.055)
-
-
-@func
-def decode_srgb(c: vec3) -> vec3:
-    """From sRGB's curve to linear light."""
-    x = max(c, 0.0)
-    return select(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
 
 
 @func

@@ -21,13 +21,13 @@ from distal.lang import (
     vec3,
     vec4,
 )
+from distal.lang.srgb import encode_srgb
 from distal.render.bounce import just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.march import March, march
 from distal.render.material import Surface
 from distal.render.normals import exact_normal
-from distal.render.tonemap import encode_srgb
 from distal.render.trace import first_surface
 
 EMPTY = vec3(0.08, 0.08, 0.1)
