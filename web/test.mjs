@@ -12,7 +12,9 @@ const folder = join(here, ".test");
 rmSync(folder, { recursive: true, force: true });
 await build({
   absWorkingDir: here,
-  entryPoints: readdirSync(join(here, "test")).map((name) => `test/${name}`),
+  entryPoints: readdirSync(join(here, "test"))
+    .filter((name) => name.endsWith(".test.ts"))
+    .map((name) => `test/${name}`),
   outdir: folder,
   outExtension: { ".js": ".mjs" },
   bundle: true,

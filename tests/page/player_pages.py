@@ -98,6 +98,7 @@ def payload(*programs: dict[str, Any], **changes: Any) -> dict[str, Any]:
         "views": [
             {"name": name, "label": name.capitalize(), "program": i} for i, name in enumerate(names)
         ],
+        "view": names[0],
         "poster": None,
         "files": ["scene.py"],
         "programs": {"encoding": "plain", "data": list(programs)},

@@ -357,9 +357,9 @@ def test_drags_orbit_and_pan_the_wheel_zooms_a_double_click_resets(tmp_path: Pat
 
 def test_the_elevation_stays_below_the_zenith(tmp_path: Path) -> None:
     with opened(tmp_path, steered()) as page:
-        page.ask("player.setSteering({ pitch: 9 })")
+        page.ask("player.hands.drag(0, 9, false)")
         assert page.ask("player.steering().pitch") == pytest.approx(3.14159265 / 2 - 0.02 - 0.3)
-        page.ask("player.setSteering({ pitch: -9, zoom: 0.5 })")
+        page.ask("player.hands.drag(0, -9, false), player.setSteering({ zoom: 0.5 })")
         assert page.ask("player.steering().pitch") == pytest.approx(-3.14159265 / 2 + 0.02 - 0.3)
         assert page.ask("player.code()").startswith("params={}, steering=Steering(pitch=-1.8508")
 
@@ -524,17 +524,24 @@ def test_keys_do_what_the_list_of_keys_says(tmp_path: Path) -> None:
         page.settle()
         assert page.ask("player.view") == "normal"
         assert close(page.color(10, 10), (0, 255, 0))
-        keys.press("v")
+        keys.press("V")
         assert page.ask("player.view") == "color"
+        keys.press(".")
+        keys.press(">")
+        assert page.ask("player.time") == pytest.approx(0.25 + 1 / 60)
+        keys.press("Home")
+        assert page.ask("player.time") == 0
+        keys.press("]")
+        assert page.page.get_by_role("combobox", name="Speed").input_value() == "2"
         keys.press(" ")
         assert page.ask("player.playing") is True
         keys.press(" ")
         assert page.ask("player.playing") is False
         panel = page.page.get_by_role("region", name="Settings")
         assert panel.is_visible()
-        keys.press("h")
+        keys.press("p")
         assert not panel.is_visible()
-        keys.press("?")
+        keys.press("h")
         assert page.page.get_by_role("dialog").is_visible()
         keys.press("Escape")
         assert not page.page.get_by_role("dialog").is_visible()
@@ -543,7 +550,11 @@ def test_keys_do_what_the_list_of_keys_says(tmp_path: Path) -> None:
 def test_the_list_of_keys_tells_of_the_mouse_that_a_picture_reads(tmp_path: Path) -> None:
     body = "uniform vec4 mouse;\nvoid main() { fragment_color = vec4(mouse.xy, 0.0, 1.0); }\n"
     reading = payload(program(body, pages.MOUSE))
-    for scene, said in ((reading, "Drag, ← → ↑ ↓"), (steered(), "Right drag"), (reddish(), "")):
+    for scene, said in (
+        (reading, "The mouse that"),
+        (steered(), "Right or shift drag"),
+        (reddish(), ""),
+    ):
         with opened(tmp_path, scene, viewport=WIDE) as page:
             page.page.keyboard.press("?")
             words = page.page.get_by_role("dialog").inner_text()

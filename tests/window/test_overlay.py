@@ -28,7 +28,7 @@ FULL = Reading(
     status="raymarcher   color   60 fps   12.3 ms   640x480   cpu",
     rows=ROWS,
     chosen=1,
-    time=(3.25, 10.0),
+    time=(3.25, 0.0, 10.0),
     trouble=MISTAKE,
     help=True,
     note="saved raymarcher-3.25s.png",
@@ -56,7 +56,7 @@ def test_panels_stay_on_the_window(size: tuple[int, int], ratio: float) -> None:
 def test_what_says_the_same_is_the_same_panel() -> None:
     drawn = Overlay()
     first = drawn.panels(FULL, (640, 480), 1.0)
-    again = drawn.panels(replace(FULL, time=(3.5, 10.0)), (640, 480), 1.0)
+    again = drawn.panels(replace(FULL, time=(3.5, 0.0, 10.0)), (640, 480), 1.0)
     assert [a is b for a, b in zip(first, again, strict=True)].count(False) == 1
     resized = drawn.panels(FULL, (800, 480), 1.0)
     assert not any(a is b for a, b in zip(first, resized, strict=True))
@@ -66,7 +66,7 @@ def test_what_says_the_same_is_the_same_panel() -> None:
 @pytest.mark.parametrize("ratio", [1, 2])
 def test_bars_end_where_the_pointer_finds_them(ratio: int) -> None:
     size = (640 * ratio, 480 * ratio)
-    read = Reading(rows=ROWS, chosen=0, time=(2.5, 10.0))
+    read = Reading(rows=ROWS, chosen=0, time=(2.5, 0.0, 10.0))
     picture = composed(Overlay().panels(read, size, ratio), size)
     table = Table.of(640, 480, len(ROWS), 0)
     ends = [(table.track(n), row.share) for n, row in enumerate(ROWS) if row.share is not None]

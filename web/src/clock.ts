@@ -4,19 +4,15 @@
  * Pure: the host tells how many seconds went by. It knows neither a frame nor a slider.
  */
 
-/** An endless clock is scrubbed within windows of this many seconds. */
-export const WINDOW_S = 10;
+import * as rules from "./generated/interaction";
+
 /** A tab that was away, or one slow frame, must not make the scene leap. */
 const LONGEST_STEP_S = 0.25;
-
-export const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
 export class Clock {
   time: number;
   playing = false;
   speed = 1;
-  /** Frames since it was set: what the scene reads as its frame number. */
-  index = 0;
 
   constructor(
     readonly start: number,
@@ -25,32 +21,35 @@ export class Clock {
     this.time = start;
   }
 
+  /** What the scene reads as its frame number. */
+  get index(): number {
+    return rules.indexAt(this.time);
+  }
+
   /** Goes on by what passed on the wall, in seconds. */
   advance(seconds: number): void {
     const step = Math.min(Math.max(seconds, 0), LONGEST_STEP_S) * this.speed;
-    this.time = this.#looped(this.time + step);
-    this.index += 1;
+    this.time = rules.advanced(this.time, step, this.start, this.duration);
   }
 
   /** Jumps. */
   set(time: number): void {
-    if (!Number.isFinite(time)) return;
-    this.time = time;
-    this.index = 0;
+    if (Number.isFinite(time)) this.time = time;
   }
 
-  /** The ends of the slider: the loop, or the window around the time. */
+  /** Jumps as far as a hand may. */
+  jump(time: number): void {
+    this.set(rules.jumped(time, this.start, this.duration));
+  }
+
+  /** Faster or slower by so many of the offered speeds. */
+  changeSpeed(steps: number): void {
+    this.speed = rules.speedAfter(this.speed, steps);
+  }
+
+  /** The ends of the slider: the loop, or the seconds from the start that hold the time. */
   range(): [number, number] {
-    if (this.duration) return [this.start, this.start + this.duration];
-    const window = Math.floor((this.time - this.start) / WINDOW_S);
-    const low = this.start + window * WINDOW_S;
-    return [low, low + WINDOW_S];
-  }
-
-  #looped(time: number): number {
-    const length = this.duration;
-    if (!length) return time;
-    const past = (time - this.start) % length;
-    return this.start + (past < 0 ? past + length : past);
+    const { start, duration } = this;
+    return [rules.firstTime(start, duration), rules.lastTime(this.time, start, duration)];
   }
 }

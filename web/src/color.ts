@@ -1,17 +1,16 @@
 /**
- * Colors of a picker: sRGB "#rrggbb" (IEC 61966-2-1) to and from linear light.
+ * Colors of a picker: "#rrggbb" to and from linear light.
  *
- * Pure. This is the picker's own encoding and no formula of the scene.
+ * Pure. The curve is generated from its definition in Python.
  */
+
+import { decodeSrgb, encodeSrgb } from "./generated/srgb";
 
 /** Linear red, green, blue as the nearest "#rrggbb". */
 export function hexOf(linear: readonly number[]): string {
   const bytes = linear.map((light) => {
-    const l = Math.min(Math.max(light, 0), 1);
-    const encoded = l <= 0.0031308 ? 12.92 * l : 1.055 * l ** (1 / 2.4) - 0.055;
-    return Math.round(255 * encoded)
-      .toString(16)
-      .padStart(2, "0");
+    const code = Math.floor(Math.min(255 * encodeSrgb(light), 255) + 0.5);
+    return code.toString(16).padStart(2, "0");
   });
   return `#${bytes.join("")}`;
 }
@@ -21,8 +20,5 @@ export function linearOf(text: string): number[] | null {
   const short = text.trim().replace(/^#?/, "");
   const hex = short.length === 3 ? short.replace(/./g, "$&$&") : short;
   if (!/^[0-9a-f]{6}$/i.test(hex)) return null;
-  return [0, 2, 4].map((at) => {
-    const encoded = parseInt(hex.slice(at, at + 2), 16) / 255;
-    return encoded <= 0.04045 ? encoded / 12.92 : ((encoded + 0.055) / 1.055) ** 2.4;
-  });
+  return [0, 2, 4].map((at) => decodeSrgb(parseInt(hex.slice(at, at + 2), 16) / 255));
 }

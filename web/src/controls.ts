@@ -7,8 +7,10 @@
 
 import { hexOf, linearOf } from "./color";
 import { ICONS, icon, make, rename } from "./dom";
+import { POINT_STEP } from "./generated/interaction";
+import { shown } from "./numbers";
 import type { Parameter, Value } from "./payload";
-import { checked, positionCount, positionOf, same, shown, valueAt } from "./values";
+import { checked, positionCount, positionOf, same, valueAt } from "./values";
 
 export interface Row {
   element: HTMLElement;
@@ -158,7 +160,7 @@ function colored({ label }: Parameter, id: string, give: Give): Control {
 function placed({ label, default: fallback }: Parameter, id: string, give: Give): Control {
   let now = fallback as number[];
   const fields = now.map((_, axis) => {
-    const made = numberField({ step: 0.05 }, (value) => give(now.with(axis, value)));
+    const made = numberField({ step: POINT_STEP }, (value) => give(now.with(axis, value)));
     made.field.setAttribute("aria-label", `${label} ${"xyz"[axis]}`);
     made.field.onchange = () => made.show(now[axis]!, true);
     return made;

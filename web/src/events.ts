@@ -10,6 +10,7 @@ export interface Events {
   /** A parameter has another value, whoever gave it. */
   parameter: { name: string; value: Value };
   time: { time: number; playing: boolean };
+  speed: { speed: number };
   view: { name: string };
   steering: Steering;
   error: { message: string; log: string };

@@ -6,6 +6,7 @@
  */
 
 import { make } from "./dom";
+import type { Needs } from "./generated/bindings";
 import { listen } from "./gestures";
 import { helpOf } from "./help";
 import { press } from "./keyboard";
@@ -70,8 +71,7 @@ export class Frame {
   }
 
   showHelp(): void {
-    const { camera, readsMouse } = this.#player;
-    const dialog = helpOf((action) => this.#has(action), camera ? "camera" : readsMouse && "mouse");
+    const dialog = helpOf((needs) => this.#has(needs));
     this.#box.append(dialog);
     dialog.onclose = () => dialog.remove();
     dialog.showModal();
@@ -116,7 +116,7 @@ export class Frame {
   listen(isMovable: boolean): void {
     const { canvas } = this;
     canvas.classList.toggle("movable", isMovable);
-    if (isMovable) listen(canvas, this.#player.hand, (event) => this.#takesWheel(event));
+    if (isMovable) listen(canvas, this.#player.hands, (event) => this.#takesWheel(event));
     if (this.#end.signal.aborted || this.#isListening) return;
     this.#isListening = true;
     const { signal } = this.#end;
@@ -180,13 +180,14 @@ export class Frame {
     this.#onPanel(isOpen);
   }
 
-  #has(action: string): boolean {
-    const { payload, camera } = this.#player;
-    if (action === "arrow" || action === "zoom" || action === "reset") return !!camera;
-    if (action === "toggle") return payload.time.animated;
-    if (action === "nextView") return payload.views.length > 1;
-    if (action === "fullScreen") return document.fullscreenEnabled;
-    return action !== "panel" || !payload.embed;
+  #has(needs: Needs): boolean {
+    const { payload, camera, readsMouse } = this.#player;
+    if (needs === "camera") return !!camera;
+    if (needs === "mouse") return readsMouse;
+    if (["pause", "back", "begin", "slower"].includes(needs)) return payload.time.animated;
+    if (needs === "nextView") return payload.views.length > 1;
+    if (needs === "fullScreen") return document.fullscreenEnabled;
+    return needs !== "parameters" || !payload.embed;
   }
 
   /** Whether the page is there for this player alone, and not a text around it. */

@@ -2,17 +2,21 @@
  * Pointers and wheels to movements of a hand.
  *
  * In: events of the canvas. Out: drags in parts of the picture's height, places in parts of the
- * picture from its lower left, zoom factors. It knows neither camera nor scene.
+ * picture from its lower left, zoom factors, notches. It knows neither camera nor scene.
  */
+
+import { notchesOf } from "./generated/interaction";
 
 export interface Hand {
   /** A drag, right and down, in picture heights; `pan`: with the right button or two fingers. */
   drag(right: number, down: number, pan: boolean): void;
-  zoom(factor: number): void;
+  /** Two fingers: above 1 they came together. */
+  pinch(factor: number): void;
+  wheel(notches: number): void;
   press(x: number, y: number): void;
   move(x: number, y: number): void;
   release(): void;
-  reset(): void;
+  doubleClick(): void;
 }
 
 interface Place {
@@ -20,8 +24,9 @@ interface Place {
   y: number;
 }
 
-/** Lines and pages of a wheel that does not count pixels. */
-const WHEEL_UNIT_PX = [1, 16, 400];
+const LEFT = 0;
+/** Back and forth on the side of a mouse are the browser's. */
+const HIGHEST_BUTTON = 2;
 
 /** Listens on a canvas. `takesWheel` says whether the wheel is ours or scrolls the page. */
 export function listen(
@@ -43,11 +48,12 @@ export function listen(
   };
 
   canvas.addEventListener("pointerdown", (event) => {
+    if (event.button > HIGHEST_BUTTON) return;
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    panning = event.button !== 0 || event.shiftKey;
+    panning = event.button !== LEFT || event.shiftKey;
     canvas.classList.add("held");
-    if (pointers.size === 1) hand.press(...within(event));
+    if (pointers.size === 1 && event.button === LEFT) hand.press(...within(event));
   });
   canvas.addEventListener("pointermove", (event) => {
     const last = pointers.get(event.pointerId);
@@ -61,22 +67,20 @@ export function listen(
     const pan = panning || others.length > 0;
     hand.drag((next.x - last.x) * share, (next.y - last.y) * share, pan);
     const other = others[0]?.[1];
-    if (other) hand.zoom(distance(last, other) / Math.max(distance(next, other), 1));
+    if (other) hand.pinch(distance(last, other) / Math.max(distance(next, other), 1));
     else hand.move(...within(event));
   });
   canvas.addEventListener("pointerup", release);
   canvas.addEventListener("pointercancel", release);
   canvas.addEventListener("lostpointercapture", release);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("dblclick", () => hand.reset());
+  canvas.addEventListener("dblclick", () => hand.doubleClick());
   canvas.addEventListener(
     "wheel",
     (event) => {
       if (!takesWheel(event)) return;
       event.preventDefault();
-      const way = event.deltaY * WHEEL_UNIT_PX[event.deltaMode]!;
-      // A pinch on a touch pad arrives as a wheel with ctrl, in small steps.
-      hand.zoom(Math.exp(Math.min(Math.max(way * (event.ctrlKey ? 0.01 : 0.0015), -1), 1)));
+      hand.wheel(notchesOf(event.deltaY, event.deltaMode, event.ctrlKey));
     },
     { passive: false },
   );

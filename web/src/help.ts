@@ -1,28 +1,10 @@
 /** The list of keys and gestures, as a dialog. */
 
 import { make } from "./dom";
-import { KEYS, type Actions } from "./keyboard";
+import { HELP, type Needs } from "./generated/bindings";
 
-/** What a hand on the picture moves. */
-const GESTURES = {
-  camera: [
-    ["Drag", "Turn around the scene"],
-    ["Right drag, two fingers", "Move the scene"],
-    ["Wheel, pinch", "Nearer, farther"],
-    ["Double click", "Reset the camera"],
-  ],
-  mouse: [
-    ["Drag, ← → ↑ ↓", "The mouse that the picture reads"],
-    ["R, double click", "Reset the mouse"],
-  ],
-} as const;
-
-export function helpOf(
-  has: (action: keyof Actions) => boolean,
-  moved: keyof typeof GESTURES | false,
-): HTMLDialogElement {
-  const rows: (readonly [string, string])[] = moved ? [...GESTURES[moved]] : [];
-  for (const [keys, meaning, needs] of KEYS) if (has(needs)) rows.push([keys, meaning]);
+export function helpOf(has: (needs: Needs) => boolean): HTMLDialogElement {
+  const rows = HELP.filter(([, , needs]) => has(needs));
   const list = make("dl");
   for (const [keys, meaning] of rows) list.append(make("dt", {}, keys), make("dd", {}, meaning));
   const close = make("button", { type: "submit", className: "text" }, "Close");

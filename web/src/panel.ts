@@ -5,9 +5,9 @@
  * In: the player. Out: an element that follows the player's events.
  */
 
-import { SPEEDS } from "./clock";
 import { rowOf, type Row } from "./controls";
 import { make } from "./dom";
+import { SPEEDS } from "./generated/interaction";
 import type { Player } from "./player";
 
 const SCALES = [
@@ -85,7 +85,9 @@ function pictureGroup(player: Player): HTMLElement {
   const rows = [resolution];
   if (player.payload.time.animated) {
     const speeds = SPEEDS.map((speed) => [String(speed), `${speed}×`] as const);
-    rows.push(menu("Speed", speeds, "1", (value) => player.setSpeed(+value))[0]);
+    const [row, select] = menu("Speed", speeds, "1", (value) => player.setSpeed(+value));
+    player.on("speed", ({ speed }) => (select.value = String(speed)));
+    rows.push(row);
   }
   return group("Picture", ...rows);
 }

@@ -86,6 +86,8 @@ export interface Payload {
   parameters: Parameter[];
   values: Values;
   views: View[];
+  /** Which of the views is shown first. */
+  view: string;
   poster: string | null;
   files: string[];
   programs: { encoding: "plain"; data: Program[] } | { encoding: "deflate-raw"; data: string };

@@ -10,6 +10,7 @@ import { Clock } from "./clock";
 import { pythonOf } from "./code";
 import { Emitter, type Events } from "./events";
 import { Frame, type Theme } from "./frame";
+import { Hands, movesOf } from "./hands";
 import type { Actions } from "./keyboard";
 import { Mouse } from "./mouse";
 import { failureOf } from "./notices";
@@ -32,6 +33,8 @@ export interface Options {
 export class Player {
   readonly payload: Payload;
   readonly camera: Camera | null;
+  /** What the hand on the canvas does. */
+  readonly hands: Hands;
   #emitter = new Emitter();
   #clock: Clock;
   #mouse = new Mouse();
@@ -51,10 +54,30 @@ export class Player {
     options: Options = {},
   ) {
     this.payload = { ...payload, embed: options.embed ?? payload.embed };
-    const { time, steering, parameters, views } = payload;
+    const { time, steering, parameters } = payload;
     this.#clock = new Clock(time.start, time.duration);
     this.camera = steering && new Camera(steering.elevation);
-    this.#view = views[0]!.name;
+    this.#view = payload.view;
+    this.hands = new Hands(
+      this.camera,
+      this.#mouse,
+      () => this.readsMouse,
+      () => this.#steered(),
+    );
+    const sped = () => {
+      this.setSpeed(this.#clock.speed);
+      this.#frame.notices.brief(`Speed ${this.#clock.speed}×`);
+    };
+    this.actions = {
+      ...movesOf(this.hands, this.#clock, time.animated, () => this.#timed(), sped),
+      pause: () => time.animated && done(this.toggle()),
+      nextView: () => this.#turnViews(1),
+      lastView: () => this.#turnViews(-1),
+      fullScreen: () => document.fullscreenEnabled && done(this.toggleFullScreen()),
+      screenshot: () => done(void this.saveScreenshot()),
+      parameters: () => !this.payload.embed && done(this.togglePanel()),
+      help: () => done(this.showHelp()),
+    };
     for (const parameter of parameters) {
       const given = checked(parameter, payload.values[parameter.name]);
       this.#values[parameter.name] = given ?? parameter.default;
@@ -137,12 +160,12 @@ export class Player {
   /** Jumps to a time in seconds. */
   setTime(time: number): void {
     this.#clock.set(time);
-    this.#tellTime();
-    this.#renderer.change();
+    this.#timed();
   }
 
   setSpeed(speed: number): void {
     this.#clock.speed = clamp(speed, 0.01, 100);
+    this.#emitter.emit("speed", { speed: this.#clock.speed });
   }
 
   /** The clock waits while a hand holds the slider. */
@@ -178,9 +201,7 @@ export class Player {
 
   /** The author's own picture again. */
   resetCamera(): void {
-    this.camera?.reset();
-    this.#mouse.reset();
-    this.#steered();
+    this.hands.reset();
   }
 
   // The picture
@@ -248,45 +269,7 @@ export class Player {
   }
 
   /** What keys do; false where a key means nothing here and stays the page's. */
-  readonly actions: Actions = {
-    arrow: (right, up) => {
-      // The arrow is where the eye goes, and the hand would drag the other way.
-      if (this.camera) this.camera.orbit(-right, up);
-      else if (this.readsMouse) this.#mouse.nudge(right, up);
-      else return false;
-      return this.#steered();
-    },
-    zoom: (factor) => {
-      this.camera?.zoom(factor);
-      return !!this.camera && this.#steered();
-    },
-    toggle: () => this.payload.time.animated && done(this.toggle()),
-    reset: () => (!!this.camera || this.readsMouse) && done(this.resetCamera()),
-    nextView: () => {
-      const { views } = this.payload;
-      const next = views.findIndex(({ name }) => name === this.#view) + 1;
-      if (views.length > 1) this.setView(views[next % views.length]!.name);
-      return views.length > 1;
-    },
-    fullScreen: () => document.fullscreenEnabled && done(this.toggleFullScreen()),
-    screenshot: () => done(void this.saveScreenshot()),
-    panel: () => !this.payload.embed && done(this.togglePanel()),
-    help: () => done(this.showHelp()),
-  };
-
-  /** What the hand on the canvas does. */
-  readonly hand = {
-    drag: (right: number, down: number, pan: boolean) => {
-      if (pan) this.camera?.pan(right, down);
-      else this.camera?.orbit(right, down);
-      if (this.camera) this.#steered();
-    },
-    zoom: (factor: number) => void this.actions.zoom(factor),
-    press: (x: number, y: number) => this.#point(() => this.#mouse.press(x, y)),
-    move: (x: number, y: number) => this.#point(() => this.#mouse.move(x, y)),
-    release: () => this.#point(() => this.#mouse.release()),
-    reset: () => this.resetCamera(),
-  };
+  readonly actions: Actions;
 
   /** Whether the scene reads where the mouse is; only without a camera of its own. */
   get readsMouse(): boolean {
@@ -294,21 +277,25 @@ export class Player {
     return uniforms.some(({ origin, name }) => origin === "frame" && name === "mouse");
   }
 
-  #point(act: () => void): void {
-    if (!this.readsMouse) return;
-    act();
-    this.#renderer.change();
+  #turnViews(steps: number): boolean {
+    const { views } = this.payload;
+    const at = views.findIndex(({ name }) => name === this.#view) + steps + views.length;
+    if (views.length > 1) this.setView(views[at % views.length]!.name);
+    return views.length > 1;
   }
 
-  #steered(): true {
+  #steered(): void {
     if (this.camera) this.#emitter.emit("steering", this.camera.steering);
     this.#renderer.change();
-    return true;
   }
 
   #run(isPlaying: boolean): void {
     this.#clock.playing = isPlaying;
     this.#ticked = performance.now();
+    this.#timed();
+  }
+
+  #timed(): void {
     this.#tellTime();
     this.#renderer.change();
   }

@@ -28,9 +28,9 @@ export function toolbarOf(player: Player): HTMLElement {
     bar.append(iconButton("Full screen (F)", ICONS.full, () => player.toggleFullScreen()));
   }
   if (!embed) {
-    const panel = iconButton("Settings (H)", ICONS.panel, () => player.togglePanel());
+    const panel = iconButton("Settings (P)", ICONS.panel, () => player.togglePanel());
     player.on("panel", ({ isOpen }) => panel.setAttribute("aria-expanded", String(isOpen)));
-    bar.append(iconButton("Keys (?)", ICONS.help, () => player.showHelp()), panel);
+    bar.append(iconButton("Keys (H)", ICONS.help, () => player.showHelp()), panel);
   }
   return bar;
 }

@@ -1,12 +1,9 @@
 /**
- * Parameters as numbers: where a slider stands for a value and back, ranges, texts.
- *
- * Pure. A continuous slider has `POSITIONS` positions: about as many as a hand can tell apart.
+ * Parameters as numbers: where a slider stands for a value and back, ranges. Pure.
  */
 
+import * as rules from "./generated/interaction";
 import type { Parameter, Value } from "./payload";
-
-export const POSITIONS = 200;
 
 export function clamp(value: number, low: number, high: number): number {
   return Math.min(Math.max(value, low), high);
@@ -14,42 +11,18 @@ export function clamp(value: number, low: number, high: number): number {
 
 /** The positions of a slider: it runs from 0 to this number. */
 export function positionCount({ low, high, step }: Parameter): number {
-  // A step that does not divide the range leaves a last, shorter one, so that `high` is reached.
-  return step ? Math.ceil((high! - low!) / step - 1e-6) : POSITIONS;
+  return rules.positionCount(low!, high!, step);
 }
 
 /** Where a slider stands for a value. */
-export function positionOf(parameter: Parameter, value: number): number {
-  const { step, log } = parameter;
-  const low = parameter.low!;
-  const high = parameter.high!;
-  const count = positionCount(parameter);
-  const inside = clamp(value, low, high);
-  if (log) return (Math.log(inside / low) / Math.log(high / low)) * count;
-  return inside === high ? count : (inside - low) / (step ?? (high - low) / count);
+export function positionOf({ low, high, step, log }: Parameter, value: number): number {
+  return rules.positionOf(value, low!, high!, step, log);
 }
 
-/** The value for which a slider stands; the ends are `low` and `high` to the last bit. */
+/** The value for which a slider stands. */
 export function valueAt(parameter: Parameter, position: number): number {
-  const { step, log } = parameter;
-  const low = parameter.low!;
-  const high = parameter.high!;
-  const count = positionCount(parameter);
-  if (position <= 0) return low;
-  if (position >= count) return high;
-  if (log) {
-    const exact = low * (high / low) ** (position / count);
-    const value = step ? low + Math.round((exact - low) / step) * step : +exact.toPrecision(3);
-    return clamp(rounded(value, step ?? value / 100), low, high);
-  }
-  const unit = step ?? (high - low) / count;
-  return clamp(rounded(low + Math.round(position) * unit, unit), low, high);
-}
-
-/** A number without the digits far below `unit`: 0.1 + 0.2 is 0.3. */
-function rounded(value: number, unit: number): number {
-  const digits = clamp(3 - Math.floor(Math.log10(unit)), 0, 20);
-  return +value.toFixed(digits);
+  const { low, high, step, log, default: fallback } = parameter;
+  return rules.valueAt(position, low!, high!, step, log, fallback as number);
 }
 
 /** A value that the parameter may have, or null where it cannot be made one. */
@@ -69,9 +42,4 @@ export function checked(parameter: Parameter, value: unknown): Value | null {
 
 export function same(a: Value | undefined, b: Value | undefined): boolean {
   return String(a) === String(b);
-}
-
-/** A number as a person reads it: six digits at most. */
-export function shown(value: number): string {
-  return String(+value.toPrecision(6));
 }

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Parameter } from "../src/payload";
-import { checked, positionCount, positionOf, shown, valueAt } from "../src/values";
+import { shown } from "../src/numbers";
+import { checked, positionCount, positionOf, valueAt } from "../src/values";
 
 function slider(changes: Partial<Parameter>): Parameter {
   return {

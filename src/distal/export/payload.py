@@ -28,7 +28,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
-from distal.scene.viewable import COLOR, Viewable
+from distal.scene.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
 
 PACKAGE: Final = PurePath(distal.__file__).parent
@@ -77,7 +77,9 @@ def payload(
         ValueError: There is no such view or parameter, or a value is out of range.
     """
     programs = Programs(seen)
-    names = [view, *(name for name in (views or seen.views) if name != view)]
+    names = list(dict.fromkeys(views or seen.views))
+    if view not in names:
+        names.insert(0, view)
     shown = []
     for name in names:
         try:
@@ -88,8 +90,7 @@ def payload(
             if omit is not None:
                 omit(name, error)
             continue
-        label = name.removeprefix("local:").replace("_", " ")
-        shown.append({"name": name, "label": label[:1].upper() + label[1:], "program": number})
+        shown.append({"name": name, "label": view_label(name), "program": number})
     name = title or name_of(seen)
     return {
         "format": FORMAT,
@@ -104,6 +105,7 @@ def payload(
         "parameters": [_parameter(p) for p in seen.parameters],
         "values": _start_values(seen.parameters, params),
         "views": shown,
+        "view": view,
         "poster": poster,
         "files": programs.files,
         "programs": _packed(programs.made),

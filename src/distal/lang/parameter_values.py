@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Final, TypeAlias
 
+from distal.lang.number_text import shown
 from distal.lang.values import VectorValue
 
 Value: TypeAlias = "float | int | bool | tuple[float, ...]"
@@ -123,7 +124,7 @@ def read_coordinates(label: str, text: str) -> tuple[object, ...]:
 def joined(value: Value) -> str:
     """Coordinates as a person types them."""
     assert isinstance(value, tuple)
-    return ",".join(f"{c:.4g}" for c in value)
+    return ",".join(map(shown, value))
 
 
 def _plain(value: object) -> object:

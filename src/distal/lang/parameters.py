@@ -18,6 +18,7 @@ from typing import assert_never
 
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Type
 from distal.lang.expressions import Expression, Symbolic, uniform_of
+from distal.lang.number_text import shown
 from distal.lang.parameter_values import (
     TOGGLE_WORDS,
     Value,
@@ -173,16 +174,18 @@ class Parameter(Symbolic):
     def _within(self, value: int | float) -> int | float:
         assert self.low is not None and self.high is not None
         if not self.low <= value <= self.high:
-            raise ValueError(
-                f"'{self.label}' lies between {self.low:g} and {self.high:g}, not {value:g}"
-            )
+            low, high = shown(self.low), shown(self.high)
+            raise ValueError(f"'{self.label}' lies between {low} and {high}, not {shown(value)}")
         return value
 
     def describe(self) -> str:
         """Which values it takes, in a few words: "a number from 0 to 1 (default 0.3)"."""
         match self.kind:
             case ParameterKind.SLIDER:
-                return f"a number from {self.low:g} to {self.high:g} (default {self.default:g})"
+                assert self.low is not None and self.high is not None
+                assert isinstance(self.default, float | int)
+                low, high, default = map(shown, (self.low, self.high, self.default))
+                return f"a number from {low} to {high} (default {default})"
             case ParameterKind.INTEGER:
                 return f"a whole number from {self.low} to {self.high} (default {self.default})"
             case ParameterKind.TOGGLE:

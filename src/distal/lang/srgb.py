@@ -35,21 +35,21 @@ def linear_of(text: str) -> tuple[float, ...] | None:
     if not _HEX.fullmatch(text):
         return None
     digits = text[1:] if len(text) == 7 else "".join(2 * c for c in text[1:])
-    return tuple(_light(int(digits[i : i + 2], 16)) for i in (0, 2, 4))
+    return tuple(light_of(int(digits[i : i + 2], 16)) for i in (0, 2, 4))
 
 
 def hex_of(linear: Iterable[float]) -> str:
     """Linear red, green, blue as the nearest "#rrggbb"."""
-    return "#" + "".join(f"{_code(light):02x}" for light in linear)
+    return "#" + "".join(f"{code_of(light):02x}" for light in linear)
 
 
 @cache
-def _light(code: int) -> float:
+def light_of(code: int) -> float:
     """What one of 256 codes shows. The curve is the same for each channel: a float will do."""
     return float(decode_srgb.python_function(code / 255.0))
 
 
-def _code(light: float) -> int:
+def code_of(light: float) -> int:
     """The code that shows light best, from 0 to 255."""
     encoded = float(encode_srgb.python_function(light))
     return int(min(255.0 * encoded, 255.0) + 0.5)

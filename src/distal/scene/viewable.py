@@ -147,6 +147,12 @@ class _Elevation(Composed):
         return Picturing(assembly, self._scene).elevation()
 
 
+def view_label(view: str) -> str:
+    """What a person reads of a view: "local:half_way" is "Half way"."""
+    label = view.removeprefix("local:").replace("_", " ")
+    return label[:1].upper() + label[1:]
+
+
 def viewable(obj: Any, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Viewable:
     """The one interface over a scene, a shape and an ``@image``.
 

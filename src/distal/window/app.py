@@ -17,7 +17,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError, DeviceError, LoadError, printable, printable_lines
 from distal.film.replacement import SaveError
+from distal.lang.number_text import shown as number_text
 from distal.loading import EXAMPLE_PREFIX
+from distal.scene import interaction
+from distal.scene.viewable import view_label
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
 from distal.window.making import Making, Order
@@ -38,7 +41,6 @@ _FIGURES_S: Final = 0.25  # digits that change faster cannot be read
 _SLOW_S: Final = 0.4  # after which a person is told what is being waited for
 _REPEAT_AFTER_S: Final = 0.35
 _REPEAT_S: Final = 1 / 15
-_WHEEL_NOTCH: Final = 100.0
 _KIND_MISTAKES: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
 
 
@@ -205,9 +207,9 @@ class Application:
 
     def _figures(self, now: float) -> str:
         session, made, shown = self._session, self._making.made, self._making.shown
-        words = [self._origin.title, session.view]
+        words = [self._origin.title, view_label(session.view)]
         if session.clock.speed != 1.0:
-            words.append(f"{session.clock.speed:g}x")
+            words.append(f"{number_text(session.clock.speed)}x")
         if session.playing and now - self._status_at < _FIGURES_S and self._status:
             return self._status
         if made is not None and shown is not None:
@@ -345,11 +347,13 @@ class Application:
         self.wake()
 
     def _double_clicked(self, event: dict[str, Any]) -> None:
-        if self._session.viewable.steers and self._session.is_free(event["x"], event["y"]):
-            self._act(Action.RESET_CAMERA)
+        self._session.double_click(event["x"], event["y"], time.monotonic())
+        self.wake()
 
     def _wheeled(self, event: dict[str, Any]) -> None:
-        self._session.wheel(event["dy"] / _WHEEL_NOTCH, time.monotonic())
+        is_pinch = "Control" in event["modifiers"]
+        notches = interaction.notches_of(event["dy"], 0, is_pinch)  # in pixels
+        self._session.wheel(notches, time.monotonic())
         self.wake()
 
     def _save(self) -> None:

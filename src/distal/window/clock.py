@@ -6,11 +6,7 @@ each. Reads no clock itself.
 
 from __future__ import annotations
 
-from typing import Final
-
-SPEEDS: Final = (0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-# A finite float of 32 bits still tells frames apart here: 2 ** 20 s is twelve days.
-LATEST_S: Final = 1048576.0
+from distal.scene import interaction
 
 
 class Clock:
@@ -29,7 +25,7 @@ class Clock:
     def time(self, now: float) -> float:
         """The scene's seconds when the wall clock says ``now``."""
         passed = (now - self._since) * self.speed if self.running else 0.0
-        return min(self._time + passed, max(self._time, LATEST_S))
+        return interaction.advanced(self._time, passed, self._time, None)
 
     def run(self, running: bool, now: float) -> None:
         """Go on or stand still; the time stays what it is."""
@@ -43,5 +39,4 @@ class Clock:
     def change_speed(self, steps: int, now: float) -> None:
         """Go faster, or slower, by so many of the offered speeds; the time does not jump."""
         self.jump(self.time(now), now)
-        position = SPEEDS.index(self.speed) + steps
-        self.speed = SPEEDS[max(0, min(position, len(SPEEDS) - 1))]
+        self.speed = interaction.speed_after(self.speed, steps)

@@ -6,18 +6,19 @@ stands, and the parameter's value after a move. Knows no window.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, assert_never
 
+from distal.lang.number_text import precise, shown
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter, ParameterKind
+from distal.lang.srgb import code_of, light_of
+from distal.scene import interaction
 
-_STEPS: Final = 50  # moves from one end of a range to the other
 _FINER: Final = 10
-_POINT_STEP: Final = 0.05
-_COLOR_STEP: Final = 0.02
+_LAST_CODE: Final = 255
+_CODE_STEP: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +51,10 @@ class Dial:
                 return self.parameter.options[value]
             case ParameterKind.INTEGER:
                 return str(value)
-            case ParameterKind.SLIDER | ParameterKind.COLOR | ParameterKind.POINT:
-                return f"{self._number(value):.4g}"
+            case ParameterKind.COLOR:
+                return str(code_of(self._number(value)))
+            case ParameterKind.SLIDER | ParameterKind.POINT:
+                return shown(self._number(value))
             case _:
                 assert_never(self.parameter.kind)
 
@@ -60,11 +63,13 @@ class Dial:
         number = self._number(value)
         match self.parameter.kind:
             case ParameterKind.SLIDER | ParameterKind.INTEGER:
-                return self._share_of_range(number)
+                return interaction.position_of(number, *self._range) / self._count
             case ParameterKind.CHOICE:
                 return number / max(len(self.parameter.options) - 1, 1)
-            case ParameterKind.TOGGLE | ParameterKind.COLOR:
+            case ParameterKind.TOGGLE:
                 return number
+            case ParameterKind.COLOR:
+                return code_of(number) / _LAST_CODE
             case ParameterKind.POINT:
                 return None
             case _:
@@ -75,13 +80,13 @@ class Dial:
         share = min(max(share, 0.0), 1.0)
         match self.parameter.kind:
             case ParameterKind.SLIDER | ParameterKind.INTEGER:
-                return self._from_range(self._at_share(share))
+                return self._at(interaction.whole(share * self._count))
             case ParameterKind.CHOICE:
                 return round(share * (len(self.parameter.options) - 1))
             case ParameterKind.TOGGLE:
                 return share >= 0.5
             case ParameterKind.COLOR:
-                return self._with_part(value, share)
+                return self._with_code(value, round(share * _LAST_CODE))
             case ParameterKind.POINT:
                 return value
             case _:
@@ -89,29 +94,35 @@ class Dial:
 
     def moved(self, value: Value, steps: int, *, finely: bool = False) -> Value:
         """The value so many steps up or down; ends are ends, but choices go around."""
-        divisor = _FINER if finely else 1
         match self.parameter.kind:
-            case ParameterKind.SLIDER:
+            case ParameterKind.SLIDER | ParameterKind.INTEGER:
                 return self._slid(self._number(value), steps, finely)
-            case ParameterKind.INTEGER:
-                return self._from_range(self._number(value) + steps * (self.parameter.step or 1))
             case ParameterKind.CHOICE:
                 return int(self._number(value) + steps) % len(self.parameter.options)
             case ParameterKind.TOGGLE:
                 return steps > 0
             case ParameterKind.COLOR:
-                number = self._number(value) + steps * _COLOR_STEP / divisor
-                return self._with_part(value, min(max(number, 0.0), 1.0))
+                code = code_of(self._number(value)) + steps * (1 if finely else _CODE_STEP)
+                return self._with_code(value, code)
             case ParameterKind.POINT:
-                return self._with_part(value, self._number(value) + steps * _POINT_STEP / divisor)
+                way = steps * interaction.POINT_STEP / (_FINER if finely else 1)
+                return self._with_part(value, self._number(value) + way)
             case _:
                 assert_never(self.parameter.kind)
 
     def _slid(self, number: float, steps: int, finely: bool) -> Value:
-        if self.parameter.step is not None:
-            return self._from_range(number + steps * self.parameter.step)
-        count = _STEPS * _FINER if finely else _STEPS
-        return self._from_range(self._at_share(self._share_of_range(number) + steps / count))
+        """So many positions on; finely: tenths of them, where the slider has no steps."""
+        low, high, step, log = self._range
+        if finely and step is None:
+            parts = interaction.POSITIONS * _FINER
+            if log:
+                moved = precise(number * (high / low) ** (steps / parts), 4)
+            else:
+                unit = (high - low) / parts
+                moved = interaction.rounded(number + steps * unit, unit)
+            return interaction.clamped(moved, low, high)
+        at = interaction.whole(interaction.position_of(number, low, high, step, log))
+        return self._at(at + steps)
 
     def _number(self, value: Value) -> float:
         if isinstance(value, tuple):
@@ -124,33 +135,30 @@ class Dial:
         rounded = round(number, 9)  # ten steps of a tenth are one
         return tuple(rounded if i == self.part else v for i, v in enumerate(value))
 
-    def _share_of_range(self, number: float) -> float:
-        low, high = self._range
-        if self.parameter.log:
-            return math.log(number / low) / math.log(high / low)
-        return (number - low) / (high - low)
+    def _with_code(self, value: Value, code: int) -> Value:
+        """The color with one of its parts as a display's code from 0 to 255."""
+        assert isinstance(value, tuple)
+        light = light_of(min(max(code, 0), _LAST_CODE))
+        return tuple(light if i == self.part else v for i, v in enumerate(value))
 
-    def _at_share(self, share: float) -> float:
-        low, high = self._range
-        if self.parameter.log:
-            # The exponent in steps: at the ends the value is the end, to the last bit.
-            return low * math.pow(high / low, min(max(share, 0.0), 1.0))
-        return low + (high - low) * share
+    def _at(self, position: float) -> Value:
+        default = self.parameter.default
+        assert isinstance(default, int | float)
+        return self._value(interaction.value_at(position, *self._range, default))
 
-    def _from_range(self, number: float) -> Value:
-        """The nearest value that the parameter takes."""
-        low, high = self._range
-        step = self.parameter.step
-        if step is not None:
-            number = low + round((number - low) / step) * step
-        number = min(max(round(number, 9), low), high)
+    def _value(self, number: float) -> Value:
         return int(number) if self.parameter.kind is ParameterKind.INTEGER else number
 
     @property
-    def _range(self) -> tuple[float, float]:
+    def _count(self) -> float:
+        low, high, step, _ = self._range
+        return interaction.position_count(low, high, step)
+
+    @property
+    def _range(self) -> tuple[float, float, float | None, bool]:
         low, high = self.parameter.low, self.parameter.high
         assert low is not None and high is not None
-        return low, high
+        return low, high, self.parameter.step, self.parameter.log
 
 
 def dials(parameters: Sequence[Parameter]) -> list[Dial]:

@@ -1,100 +1,63 @@
-"""Which key does what, and how the help says it.
+"""Which key does what in a window.
 
-What flows in: a key or a typed character. What flows out: an action's name, or a row of the help.
-Does nothing itself.
+What flows in: a key or a typed character. What flows out: an action's name. The table of keys is
+``scene/bindings.py``, which pages share. Does nothing itself.
 """
 
 from __future__ import annotations
 
-from enum import Enum, auto
+from enum import Enum
 from typing import Final
+
+from distal.scene.bindings import BINDINGS
 
 
 class Action(Enum):
-    """What a key asks for."""
+    """What a key asks for: an action of ``BINDINGS``."""
 
-    PAUSE = auto()
-    BACK = auto()
-    FORTH = auto()
-    BEGIN = auto()
-    SLOWER = auto()
-    FASTER = auto()
-    NEXT_VIEW = auto()
-    LAST_VIEW = auto()
-    PARAMETERS = auto()
-    UP = auto()
-    DOWN = auto()
-    RESET_PARAMETER = auto()
-    RESET_CAMERA = auto()
-    HELP = auto()
-    OVERLAY = auto()
-    SCREENSHOT = auto()
-    FULL_SCREEN = auto()
-    QUIT = auto()
+    LEFT = "left"
+    RIGHT = "right"
+    UP = "up"
+    DOWN = "down"
+    NEARER = "nearer"
+    FARTHER = "farther"
+    RESET_CAMERA = "reset_camera"
+    PAUSE = "pause"
+    BACK = "back"
+    FORTH = "forth"
+    FRAME_BACK = "frame_back"
+    FRAME_FORTH = "frame_forth"
+    BEGIN = "begin"
+    SLOWER = "slower"
+    FASTER = "faster"
+    NEXT_VIEW = "next_view"
+    LAST_VIEW = "last_view"
+    PARAMETERS = "parameters"
+    SCREENSHOT = "screenshot"
+    FULL_SCREEN = "full_screen"
+    HELP = "help"
+    OVERLAY = "overlay"
+    RESET_PARAMETER = "reset_parameter"
+    QUIT = "quit"
 
 
-_NAMED: Final = {
-    " ": Action.PAUSE,
-    "ArrowLeft": Action.BACK,
-    "ArrowRight": Action.FORTH,
-    "ArrowUp": Action.UP,
-    "ArrowDown": Action.DOWN,
-    "Home": Action.BEGIN,
-    "Tab": Action.PARAMETERS,
-    "Backspace": Action.RESET_PARAMETER,
-    "Escape": Action.QUIT,
-    "F11": Action.FULL_SCREEN,
+# Typed characters, not keys: brackets stand elsewhere on every keyboard. Space is a key.
+_KEYS: Final = {
+    key: Action(binding.action)
+    for binding in BINDINGS
+    for key in (*binding.keys, *binding.window_keys)
 }
-# Typed characters, not keys: brackets stand elsewhere on every keyboard.
-_TYPED: Final = {
-    "[": Action.SLOWER,
-    "]": Action.FASTER,
-    "v": Action.NEXT_VIEW,
-    "V": Action.LAST_VIEW,
-    "r": Action.RESET_CAMERA,
-    "R": Action.RESET_CAMERA,
-    "h": Action.HELP,
-    "H": Action.HELP,
-    "?": Action.HELP,
-    "o": Action.OVERLAY,
-    "O": Action.OVERLAY,
-    "s": Action.SCREENSHOT,
-    "S": Action.SCREENSHOT,
-    "f": Action.FULL_SCREEN,
-    "F": Action.FULL_SCREEN,
-    "q": Action.QUIT,
-    "Q": Action.QUIT,
-}
-# Those that go on while the key is held.
-REPEATED: Final = frozenset({Action.BACK, Action.FORTH, Action.UP, Action.DOWN})
-
-HELP: Final = (
-    ("drag", "orbit, or the mouse of an @image"),
-    ("right or shift drag", "pan"),
-    ("wheel", "zoom"),
-    ("R, double click", "reset the camera"),
-    ("space", "pause and go on"),
-    ("left, right", "step in time (shift: one frame)"),
-    ("Home", "back to the start time"),
-    ("[  ]", "slower, faster"),
-    ("V, shift V", "next view, the one before"),
-    ("Tab", "parameters"),
-    ("up, down", "choose a parameter"),
-    ("left, right", "change it (shift: finely)"),
-    ("Backspace", "reset it (shift: all)"),
-    ("S", "save a picture"),
-    ("F", "full screen"),
-    ("O", "hide all this"),
-    ("H", "this help"),
-    ("Q, Esc", "close"),
-)
+# Those that go on while the key is held; a typed character is repeated by the system.
+REPEATED: Final = frozenset({Action.LEFT, Action.RIGHT, Action.UP, Action.DOWN})
 
 
 def action_of_key(key: str) -> Action | None:
     """What a key with a name means; "ArrowLeft", " "."""
-    return _NAMED.get(key)
+    return _KEYS.get(key) if len(key) > 1 or key == " " else None
 
 
 def action_of_character(character: str) -> Action | None:
     """What a typed character means."""
-    return _TYPED.get(character)
+    if character == " ":
+        return None
+    return _KEYS.get(character, _KEYS.get(character.lower()))

@@ -19,7 +19,6 @@ LABEL_SHARE: Final = 0.4
 VALUE_SHARE: Final = 0.2
 BAR_HEIGHT: Final = 30.0
 _BAR_TIME_WIDTH: Final = 76.0
-_FIRST_SPAN_S: Final = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,14 +49,6 @@ def time_track(width: float, height: float) -> Rectangle:
     strip = time_bar(width, height)
     left = MARGIN + _BAR_TIME_WIDTH
     return Rectangle(left, strip.y, max(width - left - MARGIN, 1.0), strip.height)
-
-
-def span(time: float) -> float:
-    """How many seconds the strip stands for: ten, doubled until the time is on it."""
-    seconds = _FIRST_SPAN_S
-    while seconds < time:
-        seconds *= 2
-    return seconds
 
 
 @dataclass(frozen=True, slots=True)

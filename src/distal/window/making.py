@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 from distal.window.pace import Pace
 from distal.window.presenters import Made, Maker
-from distal.window.session import FRAMES_PER_S, Shot
+from distal.window.session import Shot
 from distal.window.worker import Worker
 
 if TYPE_CHECKING:
     from distal.scene.viewable import Viewable
 
-_LEAST_GAP_S: Final = 1 / FRAMES_PER_S
+_LEAST_GAP_S: Final = 1 / 60
 _FIGURES_S: Final = 1.0  # frames are counted over the last second
 
 

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from distal.scene.bindings import HELP
 from distal.window import layout
-from distal.window.keys import HELP
 from distal.window.lettering import fixed_font, plain_font, shortened, shortened_inside, width
 from distal.window.reading import Reading, Row
 
@@ -193,15 +193,15 @@ def _status(text: str, place: _Place) -> Panel:
     return canvas.panel()
 
 
-def _time(time: tuple[float, float], is_paused: bool, place: _Place) -> Panel:
-    seconds, span = time
+def _time(time: tuple[float, float, float], is_paused: bool, place: _Place) -> Panel:
+    seconds, low, high = time
     strip = layout.time_bar(place.width, place.height)
     track = layout.time_track(place.width, place.height)
     canvas = _Canvas(strip, place, rounded=False)
     middle = strip.y + strip.height / 2
     canvas.text(layout.MARGIN + 16, middle, f"{seconds:.2f} s", _DIM if is_paused else _TEXT)
     _sign(canvas, layout.MARGIN + 2, middle, is_paused)
-    share = min(max(seconds / span, 0.0), 1.0)
+    share = min(max((seconds - low) / (high - low), 0.0), 1.0)
     canvas.box(track.x, middle - 2, track.width, 4, _TRACK, 2)
     canvas.box(track.x, middle - 2, track.width * share, 4, _ACCENT, 2)
     canvas.dot(track.x + track.width * share, middle, 5, _TEXT)
@@ -252,8 +252,8 @@ def _rows(rows: tuple[Row, ...], chosen: int, place: _Place) -> Panel:
 
 
 def _help(place: _Place) -> Panel:
-    left = max(_text_width(keys, place) for keys, _ in HELP)
-    across = left + max(_text_width(words, place) for _, words in HELP) + 52
+    left = max(_text_width(line.keys, place) for line in HELP)
+    across = left + max(_text_width(line.meaning, place) for line in HELP) + 52
     # A small window shows the beginning: lines that lie over each other are no help.
     line = min(21.0, max((place.height - 24) / len(HELP), _TEXT_SIZE + 2.0))
     shown = HELP[: max(int((place.height - 20) // line), 1)]
@@ -261,10 +261,10 @@ def _help(place: _Place) -> Panel:
     x, y = max((place.width - across) / 2, 0.0), max((place.height - down) / 2, 0.0)
     frame = layout.Rectangle(x, y, min(across, place.width), down)
     canvas = _Canvas(frame, place, _BACK_OF_HELP)
-    for number, (keys, words) in enumerate(shown):
+    for number, help_line in enumerate(shown):
         middle = y + 10 + line * (number + 0.5)
-        canvas.text(x + 16, middle, keys, _ACCENT)
-        canvas.text(x + 32 + left, middle, words)
+        canvas.text(x + 16, middle, help_line.keys, _ACCENT)
+        canvas.text(x + 32 + left, middle, help_line.meaning)
     return canvas.panel()
 
 

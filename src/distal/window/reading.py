@@ -36,7 +36,7 @@ class Reading:
         status: One line about what is seen, and how fast it is.
         rows: The parameters; None while they are not asked for.
         chosen: Which row keys move.
-        time: Seconds, and how many the strip stands for; None where nothing depends on them.
+        time: Seconds, and the ends of the strip; None where nothing depends on them.
         is_paused: Whether the time stands.
         help: Whether the keys are explained.
         trouble: A mistake's text, or "".
@@ -46,7 +46,7 @@ class Reading:
     status: str = ""
     rows: tuple[Row, ...] | None = None
     chosen: int = 0
-    time: tuple[float, float] | None = None
+    time: tuple[float, float, float] | None = None
     is_paused: bool = False
     help: bool = False
     trouble: str = ""
@@ -76,7 +76,7 @@ def reading(
         status=status,
         rows=rows,
         chosen=session.chosen,
-        time=(seconds, session.time_span) if session.animated else None,
+        time=(seconds, *session.time_range) if session.animated else None,
         is_paused=not session.playing,
         help=session.shows_help,
         trouble=trouble,

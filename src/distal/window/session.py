@@ -14,21 +14,27 @@ from typing import TYPE_CHECKING, Final
 
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
+from distal.scene import interaction
 from distal.scene.steering import STILL, Steering
-from distal.window.clock import LATEST_S, Clock
+from distal.window.clock import Clock
 from distal.window.dials import Dial, dials
-from distal.window.gestures import Mouse, orbited, panned, zoomed
+from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
 from distal.window.keys import Action
-from distal.window.layout import Table, span, time_bar, time_track
+from distal.window.layout import Table, time_bar, time_track
 
 if TYPE_CHECKING:
     from distal.scene.viewable import Viewable
 
-FRAMES_PER_S: Final = 60
-_STEP_S: Final = 0.25
 # How long after the last touch a picture counts as moving: a wheel's notches come in bursts.
 _SETTLING_S: Final = 0.25
 _LEFT, _RIGHT, _MIDDLE = 1, 2, 3
+# Where an arrow points, right and up.
+_ARROWS: Final = {
+    Action.LEFT: (-1, 0),
+    Action.RIGHT: (1, 0),
+    Action.UP: (0, 1),
+    Action.DOWN: (0, -1),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +58,7 @@ class Shot:
     @property
     def index(self) -> int:
         """The number of the frame: by time, so that a paused one can be made again."""
-        return round(self.time * FRAMES_PER_S)
+        return int(interaction.index_at(self.time))
 
 
 class Grab(Enum):
@@ -105,7 +111,7 @@ class Session:
         self._wants_time = not paused
         self._grab: Grab | None = None
         self._at = (0.0, 0.0)
-        self._span = span(time)
+        self._last_time = interaction.last_time(time, time, None)
         self._moving_until = float("-inf")
         self.adopt(viewable, now)
 
@@ -133,9 +139,9 @@ class Session:
         return self.clock.running
 
     @property
-    def time_span(self) -> float:
-        """How many seconds the strip along the bottom stands for."""
-        return self._span
+    def time_range(self) -> tuple[float, float]:
+        """The ends of the strip along the bottom, in seconds."""
+        return interaction.first_time(self._begin, None), self._last_time
 
     def is_moving(self, now: float) -> bool:
         """Whether a hand is at it: then frames are wanted soon rather than sharp."""
@@ -149,7 +155,7 @@ class Session:
         """What is to be seen now."""
         time = self.clock.time(now)
         if self._grab is not Grab.TIME:
-            self._span = span(time)
+            self._last_time = interaction.last_time(time, self._begin, None)
         return Shot(
             time=time,
             parameters=tuple(sorted(self.values.items())),
@@ -179,8 +185,15 @@ class Session:
         match action:
             case Action.PAUSE:
                 self._pause(now)
+            case Action.LEFT | Action.RIGHT | Action.UP | Action.DOWN:
+                self._arrow(action, now, shift)
+            case Action.NEARER | Action.FARTHER:
+                self.wheel(1.0 if action is Action.FARTHER else -1.0, now)
             case Action.BACK | Action.FORTH:
-                self._step(1 if action is Action.FORTH else -1, now, shift)
+                self._step(1 if action is Action.FORTH else -1, interaction.STEP_S, now)
+            case Action.FRAME_BACK | Action.FRAME_FORTH:
+                direction = 1 if action is Action.FRAME_FORTH else -1
+                self._step(direction, 1.0 / interaction.FRAMES_PER_S, now)
             case Action.BEGIN:
                 self._jump(self._begin, now)
             case Action.SLOWER | Action.FASTER:
@@ -189,8 +202,6 @@ class Session:
                 self._turn_views(1 if action is Action.NEXT_VIEW else -1)
             case Action.PARAMETERS:
                 self.shows_parameters = not self.shows_parameters
-            case Action.UP | Action.DOWN:
-                self._choose(1 if action is Action.DOWN else -1)
             case Action.RESET_PARAMETER:
                 self._reset_parameter(every=shift)
             case Action.RESET_CAMERA:
@@ -207,29 +218,38 @@ class Session:
             self._wants_time = not self.clock.running
             self.clock.run(self._wants_time, now)
 
-    def _step(self, direction: int, now: float, finely: bool) -> None:
+    def _arrow(self, action: Action, now: float, shift: bool) -> None:
+        """Where the parameters are seen, arrows are theirs, as those of a page's slider are."""
+        right, up = _ARROWS[action]
+        self._moving_until = now + _SETTLING_S
         if self.shows_parameters and self.shows_overlay and self.dials:
+            if up:
+                self.chosen = (self.chosen - up) % len(self.dials)
+                return
             dial = self.dials[self.chosen]
-            self._set(dial, dial.moved(self.value(dial), direction, finely=finely))
-            self._moving_until = now + _SETTLING_S
-        elif self.animated:
-            seconds = 1 / FRAMES_PER_S if finely else _STEP_S
+            self._set(dial, dial.moved(self.value(dial), right, finely=shift))
+            return
+        way, rise = right * interaction.ARROW, up * interaction.ARROW
+        if not self.viewable.steers:
+            self.mouse = self.mouse.nudged(way, rise)
+        # The arrow is where the eye goes, and the hand would drag the other way.
+        elif shift:
+            self.steering = panned(self.steering, -way, rise)
+        else:
+            self.steering = orbited(self.steering, -way, rise, self.viewable.elevation)
+
+    def _step(self, direction: int, seconds: float, now: float) -> None:
+        if self.animated:
             self._jump(self.clock.time(now) + direction * seconds, now)
 
     def _jump(self, time: float, now: float) -> None:
-        # Back to 0, or to an earlier time that was asked for on the command line.
-        self.clock.jump(min(max(time, min(self._begin, 0.0)), LATEST_S), now)
+        self.clock.jump(interaction.jumped(time, self._begin, None), now)
         self._moving_until = now + _SETTLING_S
 
     def _turn_views(self, direction: int) -> None:
         views = self.viewable.views
         at = views.index(self.view) if self.view in views else 0
         self.view = views[(at + direction) % len(views)]
-
-    def _choose(self, direction: int) -> None:
-        if self.dials:
-            self.shows_parameters = True
-            self.chosen = (self.chosen + direction) % len(self.dials)
 
     def _reset_parameter(self, *, every: bool) -> None:
         if every:
@@ -256,6 +276,8 @@ class Session:
             place = self._place(x, y)
             self.mouse = Mouse(place, place, down=True, fresh=True)
         elif self._grab in (Grab.TIME, Grab.DIAL):
+            if self._grab is Grab.TIME:
+                self.clock.run(False, now)  # the time waits while a hand holds it
             self.drag(x, y, now)
 
     def is_free(self, x: float, y: float) -> bool:
@@ -289,18 +311,19 @@ class Session:
 
     def drag(self, x: float, y: float, now: float) -> None:
         """Move what is held."""
-        dx, dy = x - self._at[0], y - self._at[1]
+        height = max(self.size[1], 1.0)
+        right, down = (x - self._at[0]) / height, (y - self._at[1]) / height
         self._at = (x, y)
         match self._grab:
             case Grab.ORBIT:
-                elevation = self.viewable.elevation
-                self.steering = orbited(self.steering, dx, dy, self.size[1], elevation)
+                self.steering = orbited(self.steering, right, down, self.viewable.elevation)
             case Grab.PAN:
-                self.steering = panned(self.steering, dx, dy, self.size[1])
+                self.steering = panned(self.steering, right, down)
             case Grab.MOUSE:
                 self.mouse = replace(self.mouse, at=self._place(x, y))
             case Grab.TIME:
-                self._jump(time_track(*self.size).share(x) * self._span, now)
+                low, high = self.time_range
+                self._jump(low + time_track(*self.size).share(x) * (high - low), now)
             case Grab.DIAL:
                 dial = self.dials[self.chosen]
                 self._set(dial, dial.placed(self.value(dial), self.table.track(0).share(x)))
@@ -312,7 +335,14 @@ class Session:
         """Let go."""
         if self._grab is Grab.MOUSE:
             self.mouse = replace(self.mouse, down=False)
+        if self._grab is Grab.TIME:
+            self.clock.run(self._wants_time and self.animated, now)
         self._grab = None
+
+    def double_click(self, x: float, y: float, now: float) -> None:
+        """The author's own camera; two clicks on an ``@image`` are two clicks."""
+        if self.viewable.steers and self.is_free(x, y):
+            self.act(Action.RESET_CAMERA, now)
 
     def wheel(self, notches: float, now: float) -> None:
         """Go nearer or farther; positive is away."""
@@ -322,7 +352,7 @@ class Session:
 
     def _place(self, x: float, y: float) -> tuple[float, float]:
         width, height = self.size
-        return x / max(width, 1.0), 1 - y / max(height, 1.0)
+        return on_picture(x / max(width, 1.0), 1 - y / max(height, 1.0))
 
 
 def valid_values(parameters: Sequence[Parameter], values: Mapping[str, Value]) -> dict[str, Value]:

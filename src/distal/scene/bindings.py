@@ -1,0 +1,99 @@
+"""Which key means what, in windows, pages and notebooks, and how the help says it.
+
+What flows in: nothing. What flows out: tables; ``tools/gen_player.py`` copies those of pages to
+TypeScript. Does nothing itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """The keys of an action.
+
+    Attributes:
+        action: Its name.
+        keys: Typed characters, or the names of keys as browsers have them; a small letter stands
+            for the capital too, unless that has an action of its own.
+        in_page: Whether pages and notebooks have it; what concerns a window they leave alone.
+        window_keys: Further keys of windows, which a browser needs itself.
+    """
+
+    action: str
+    keys: tuple[str, ...] = ()
+    in_page: bool = True
+    window_keys: tuple[str, ...] = ()
+
+
+BINDINGS: Final = (
+    Binding("left", ("ArrowLeft",)),
+    Binding("right", ("ArrowRight",)),
+    Binding("up", ("ArrowUp",)),
+    Binding("down", ("ArrowDown",)),
+    # Where plus and underscore need shift, so that either hand's habit is right.
+    Binding("nearer", ("+", "=")),
+    Binding("farther", ("-", "_")),
+    Binding("reset_camera", ("r",)),
+    Binding("pause", (" ",)),
+    Binding("back", (",",)),
+    Binding("forth", (".",)),
+    # The same two keys with shift, on American and on European keyboards.
+    Binding("frame_back", ("<", ";")),
+    Binding("frame_forth", (">", ":")),
+    Binding("begin", ("Home",)),
+    Binding("slower", ("[",)),
+    Binding("faster", ("]",)),
+    Binding("next_view", ("v",)),
+    Binding("last_view", ("V",)),
+    Binding("parameters", ("p",), window_keys=("Tab",)),
+    Binding("screenshot", ("s",)),
+    Binding("full_screen", ("f",), window_keys=("F11",)),
+    Binding("help", ("h", "?")),
+    Binding("overlay", ("o",), in_page=False),
+    Binding("reset_parameter", ("Backspace",), in_page=False),
+    Binding("quit", ("q", "Escape"), in_page=False),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Help:
+    """A line of the help.
+
+    Attributes:
+        keys: The keys or the gesture.
+        meaning: What they do.
+        needs: "camera", "mouse" (a picture that reads it), or an action of ``BINDINGS``; a page
+            leaves the line out where there is none.
+        in_page: Whether pages have it.
+    """
+
+    keys: str
+    meaning: str
+    needs: str
+    in_page: bool = True
+
+
+HELP: Final = (
+    Help("Drag, arrows", "Turn around the scene", "camera"),
+    Help("Right or shift drag", "Move the scene (shift arrows, two fingers)", "camera"),
+    Help("Wheel, pinch, + -", "Nearer, farther", "camera"),
+    Help("R, double click", "Reset the camera", "camera"),
+    Help("Drag, arrows", "The mouse that the picture reads", "mouse"),
+    Help("R", "Reset the mouse", "mouse"),
+    Help("Space", "Play or pause", "pause"),
+    Help(",  .", "Step in time (shift: one frame)", "back"),
+    Help("Home", "Back to the start time", "begin"),
+    Help("[  ]", "Slower, faster", "slower"),
+    Help("V, shift V", "Next view, the one before", "next_view"),
+    Help("P", "Parameters", "parameters"),
+    Help("P, then arrows", "Choose and change one (shift: finely)", "parameters", False),
+    Help("Backspace", "Reset a parameter (shift: all)", "reset_parameter", False),
+    Help("S", "Save a picture", "screenshot"),
+    Help("F", "Full screen", "full_screen"),
+    Help("O", "Hide all this", "overlay", False),
+    Help("H, ?", "This list", "help"),
+    Help("Q, Esc", "Close", "quit", False),
+)

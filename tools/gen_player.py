@@ -1,0 +1,243 @@
+"""Write the parts of the page's player whose one definition is Python: ``web/src/generated/``.
+
+The rules of a hand (``distal/scene/interaction.py``), sRGB's curve (``distal/lang/srgb.py``) and
+the table of keys (``distal/scene/bindings.py``) are translated to TypeScript. Run it after any
+change of these, then build the player; a test fails when it was forgotten.
+
+It knows the part of Python that those modules are written in: functions of numbers, assignments,
+if, while, for over a range, arithmetic, comparisons and the functions of ``CALLS``. Anything else
+is an error here, and no text.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from distal.scene.bindings import BINDINGS, HELP
+
+ROOT = Path(__file__).parents[1]
+SOURCES = ROOT / "src" / "distal"
+FOLDER = ROOT / "web" / "src" / "generated"
+
+NOTE = "// Made by tools/gen_player.py from src/distal/{}: change that, and run it.\n"
+OPERATORS: dict[type[ast.AST], str] = {
+    **{ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"},
+    **{ast.USub: "-", ast.Not: "!", ast.And: "&&", ast.Or: "||"},
+    **{ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "===", ast.NotEq: "!=="},
+    **{ast.Is: "===", ast.IsNot: "!=="},
+}
+# A scene's vector is a number here: the curve is the same for each channel.
+TYPES = {"float": "number", "int": "number", "bool": "boolean", "vec3": "number"}
+CALLS = {
+    **{name: f"Math.{name}" for name in ("min", "max")},
+    **{f"math.{name}": f"Math.{name}" for name in ("floor", "ceil", "log", "log10")},
+    **{name: "" for name in ("int", "float")},  # numbers that are whole, or floats, already
+}
+
+
+class Translator:
+    """One module's functions and constants.
+
+    Attributes:
+        known: The names of other modules' functions that it may call.
+    """
+
+    def __init__(self, path: str, known: tuple[str, ...] = ()) -> None:
+        self.path = path
+        self.known = known
+        self.source = (SOURCES / path).read_text(encoding="utf-8")
+        self.tree = ast.parse(self.source)
+        self.functions = {f.name for f in self.tree.body if isinstance(f, ast.FunctionDef)}
+
+    def constants(self) -> str:
+        """The module's constants."""
+        lines = []
+        for node in self.tree.body:
+            if isinstance(node, ast.AnnAssign):
+                assert isinstance(node.target, ast.Name) and node.value is not None
+                text = self.expression(node.value)
+                lines.append(f"export const {node.target.id} = {text};")
+        return "\n".join(lines) + "\n"
+
+    def function(self, node: ast.FunctionDef) -> str:
+        """One function."""
+        first, *others = node.args.args
+        defaults = [None] * (1 + len(others) - len(node.args.defaults)) + node.args.defaults
+        parameters = [
+            f"{camel(arg.arg)}: {self.type(arg.annotation)}"
+            + ("" if default is None else f" = {self.expression(default)}")
+            for arg, default in zip([first, *others], defaults, strict=True)
+        ]
+        scope = {arg.arg for arg in node.args.args}
+        body = self.block(node.body, scope, 1)
+        doc = (ast.get_docstring(node) or "").split("\n")[0].replace("``", "`")
+        head = "" if node.name.startswith("_") else f"/** {doc} */\nexport "
+        name = camel(node.name)
+        result = self.type(node.returns)
+        return f"{head}function {name}({', '.join(parameters)}): {result} {{\n{body}}}\n"
+
+    def block(self, body: list[ast.stmt], scope: set[str], depth: int) -> str:
+        """Statements."""
+        return "".join(self.statement(s, scope, depth) for s in body)
+
+    def statement(self, node: ast.stmt, scope: set[str], depth: int) -> str:
+        """One statement, with its line's end."""
+        pad = "  " * depth
+        match node:
+            case ast.Expr(ast.Constant(str())):
+                return ""
+            case ast.Return(value) if value is not None:
+                return f"{pad}return {self.expression(value)};\n"
+            case ast.Assign([ast.Name(name)], value):
+                word = "" if name in scope else "let "
+                scope.add(name)
+                return f"{pad}{word}{camel(name)} = {self.expression(value)};\n"
+            case ast.If(test, body, orelse):
+                text = f"{pad}if ({self.expression(test)}) {{\n"
+                text += self.block(body, set(scope), depth + 1) + f"{pad}}}"
+                if orelse:
+                    text += f" else {{\n{self.block(orelse, set(scope), depth + 1)}{pad}}}"
+                return text + "\n"
+            case ast.While(test, body, []):
+                inside = self.block(body, set(scope), depth + 1)
+                return f"{pad}while ({self.expression(test)}) {{\n{inside}{pad}}}\n"
+            case ast.For(ast.Name(i), ast.Call(ast.Name("range"), [count], []), body, []):
+                inside = self.block(body, scope | {i}, depth + 1)
+                head = f"for (let {i} = 0; {i} < {self.expression(count)}; {i}++)"
+                return f"{pad}{head} {{\n{inside}{pad}}}\n"
+            case _:
+                self.refuse(node)
+
+    def expression(self, node: ast.expr) -> str:
+        """An expression; what stands inside another is in parentheses."""
+        text = self.bare(node)
+        inner = isinstance(node, ast.BinOp | ast.BoolOp | ast.Compare | ast.IfExp | ast.UnaryOp)
+        return f"({text})" if inner else text
+
+    def bare(self, node: ast.expr) -> str:
+        """An expression without parentheses around it."""
+        match node:
+            case ast.Constant(None):
+                return "null"
+            case ast.Constant(bool(value)):
+                return str(value).lower()
+            case ast.Constant(int() | float() as value):
+                return repr(value).removesuffix(".0")
+            case ast.Name(name):
+                return camel(name)
+            case ast.Attribute(ast.Name("math"), "pi"):
+                return "Math.PI"
+            case ast.Tuple(elements):
+                return f"[{', '.join(map(self.expression, elements))}]"
+            case ast.Subscript(value, index):
+                return f"{self.expression(value)}[{self.expression(index)}]!"
+            case ast.UnaryOp(op, value) if type(op) in OPERATORS:
+                return f"{OPERATORS[type(op)]}{self.expression(value)}"
+            case ast.BinOp(left, op, right) if type(op) in OPERATORS:
+                return f"{self.expression(left)} {OPERATORS[type(op)]} {self.expression(right)}"
+            case ast.BoolOp(op, values):
+                return f" {OPERATORS[type(op)]} ".join(map(self.expression, values))
+            case ast.Compare(left, [op], [right]) if type(op) in OPERATORS:
+                return f"{self.expression(left)} {OPERATORS[type(op)]} {self.expression(right)}"
+            case ast.IfExp(test, yes, no):
+                return " ".join(
+                    (self.expression(test), "?", self.expression(yes), ":", self.expression(no))
+                )
+            case ast.Call(function, args, []):
+                return self.call(ast.unparse(function), args, node)
+            case _:
+                self.refuse(node)
+
+    def call(self, name: str, args: list[ast.expr], node: ast.expr) -> str:
+        """A call of a function that both languages have."""
+        texts = list(map(self.expression, args))
+        if name == "select" and len(args) == 3:
+            return f"({texts[0]} ? {texts[1]} : {texts[2]})"
+        if name == "len":
+            return f"{texts[0]}.length"
+        if name in CALLS:
+            return f"{CALLS[name]}({', '.join(texts)})"
+        if name in self.functions or name in self.known:
+            return f"{camel(name)}({', '.join(texts)})"
+        self.refuse(node)
+
+    def type(self, node: ast.expr | None) -> str:
+        """A type of TypeScript."""
+        match node:
+            case ast.Name(name) if name in TYPES:
+                return TYPES[name]
+            case ast.BinOp(left, ast.BitOr(), ast.Constant(None)):
+                return f"{self.type(left)} | null"
+            case _:
+                self.refuse(node or self.tree)
+
+    def refuse(self, node: ast.AST) -> NoReturn:
+        """Stop: what is not known is not guessed."""
+        line = getattr(node, "lineno", 0)
+        raise SystemExit(f"{self.path}:{line}: gen_player knows no {type(node).__name__} here")
+
+
+def camel(name: str) -> str:
+    """The name as TypeScript's habit has it; constants keep theirs."""
+    if name.isupper():
+        return name
+    start = "_" if name.startswith("_") else ""
+    return start + re.sub(r"_(\w)", lambda found: found[1].upper(), name.lstrip("_"))
+
+
+def interaction() -> str:
+    """The rules of a hand."""
+    path = "scene/interaction.py"
+    made = Translator(path, ("fixed", "precise"))
+    functions = [made.function(f) for f in made.tree.body if isinstance(f, ast.FunctionDef)]
+    head = NOTE.format(path) + '\nimport { fixed, precise } from "../numbers";\n'
+    return "\n".join([head, made.constants(), *functions])
+
+
+def srgb() -> str:
+    """SRGB's curve, for one channel."""
+    path = "lang/srgb.py"
+    made = Translator(path)
+    functions = [
+        made.function(f)
+        for f in made.tree.body
+        if isinstance(f, ast.FunctionDef)
+        and any(ast.unparse(d) == "func" for d in f.decorator_list)
+    ]
+    return "\n".join([NOTE.format(path), *functions])
+
+
+def bindings() -> str:
+    """The keys of pages, and the lines of their help."""
+    shared = [b for b in BINDINGS if b.in_page]
+    names = " | ".join(f'"{camel(b.action)}"' for b in shared)
+    keys = {key: camel(b.action) for b in shared for key in b.keys}
+    lines = [[h.keys, h.meaning, camel(h.needs)] for h in HELP if h.in_page]
+    rows = "".join(f"  {json.dumps(key)}: {json.dumps(keys[key])},\n" for key in keys)
+    helps = "".join(f"  {json.dumps(line, ensure_ascii=False)},\n" for line in lines)
+    return (
+        f"{NOTE.format('scene/bindings.py')}\nexport type Action = {names};\n\n"
+        f"export const KEYS: Record<string, Action> = {{\n{rows}}};\n\n"
+        'export type Needs = Action | "camera" | "mouse";\n\n'
+        f"export const HELP: readonly (readonly [string, string, Needs])[] = [\n{helps}];\n"
+    )
+
+
+FILES = {"interaction.ts": interaction, "srgb.ts": srgb, "bindings.ts": bindings}
+
+
+def main() -> None:
+    """Write the files."""
+    FOLDER.mkdir(exist_ok=True)
+    for name, text in FILES.items():
+        (FOLDER / name).write_text(text(), encoding="utf-8")
+        sys.stdout.write(f"{(FOLDER / name).relative_to(ROOT)}\n")
+
+
+if __name__ == "__main__":
+    main()

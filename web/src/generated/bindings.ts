@@ -1,0 +1,52 @@
+// Made by tools/gen_player.py from src/distal/scene/bindings.py: change that, and run it.
+
+export type Action = "left" | "right" | "up" | "down" | "nearer" | "farther" | "resetCamera" | "pause" | "back" | "forth" | "frameBack" | "frameForth" | "begin" | "slower" | "faster" | "nextView" | "lastView" | "parameters" | "screenshot" | "fullScreen" | "help";
+
+export const KEYS: Record<string, Action> = {
+  "ArrowLeft": "left",
+  "ArrowRight": "right",
+  "ArrowUp": "up",
+  "ArrowDown": "down",
+  "+": "nearer",
+  "=": "nearer",
+  "-": "farther",
+  "_": "farther",
+  "r": "resetCamera",
+  " ": "pause",
+  ",": "back",
+  ".": "forth",
+  "<": "frameBack",
+  ";": "frameBack",
+  ">": "frameForth",
+  ":": "frameForth",
+  "Home": "begin",
+  "[": "slower",
+  "]": "faster",
+  "v": "nextView",
+  "V": "lastView",
+  "p": "parameters",
+  "s": "screenshot",
+  "f": "fullScreen",
+  "h": "help",
+  "?": "help",
+};
+
+export type Needs = Action | "camera" | "mouse";
+
+export const HELP: readonly (readonly [string, string, Needs])[] = [
+  ["Drag, arrows", "Turn around the scene", "camera"],
+  ["Right or shift drag", "Move the scene (shift arrows, two fingers)", "camera"],
+  ["Wheel, pinch, + -", "Nearer, farther", "camera"],
+  ["R, double click", "Reset the camera", "camera"],
+  ["Drag, arrows", "The mouse that the picture reads", "mouse"],
+  ["R", "Reset the mouse", "mouse"],
+  ["Space", "Play or pause", "pause"],
+  [",  .", "Step in time (shift: one frame)", "back"],
+  ["Home", "Back to the start time", "begin"],
+  ["[  ]", "Slower, faster", "slower"],
+  ["V, shift V", "Next view, the one before", "nextView"],
+  ["P", "Parameters", "parameters"],
+  ["S", "Save a picture", "screenshot"],
+  ["F", "Full screen", "fullScreen"],
+  ["H, ?", "This list", "help"],
+];
