@@ -56,7 +56,19 @@ def pointer(frame: Frame) -> vec3:
 
 def random_events(source: random.Random, count: int) -> list[dict[str, Any]]:
     """What a browser's canvas is told: drags, wheels, pinches of a touch pad, keys, clicks."""
-    events: list[dict[str, Any]] = []
+    # First as far as it goes: nearer, farther, aside, up.
+    middle = {"x": 100.0, "y": 100.0}
+    press = {"type": "pointerdown", **middle, "button": 0, "shiftKey": True}
+    events: list[dict[str, Any]] = [
+        {"type": "wheel", **middle, "deltaY": way, "deltaMode": 0, "ctrlKey": False}
+        for way in (-900.0, 900.0)
+        for _ in range(8)
+    ]
+    for way in (1e6, -1e6):
+        for shift in (True, False):
+            events.append({**press, "shiftKey": shift})
+            events.append({"type": "pointermove", "x": way, "y": way})
+            events.append({"type": "pointerup", "x": way, "y": way})
     while len(events) < count:
         x, y = (source.uniform(-0.1, 1.1) * side for side in SIZE)
         kind = source.choice(("drag", "drag", "wheel", "key", "key", "dblclick"))

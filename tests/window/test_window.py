@@ -117,7 +117,7 @@ def test_time_and_parameters_by_keys_and_a_saved_picture(display: str, tmp_path:
     arguments = [name, "--device", "cpu", "--paused", "--size", "320x240"]
     with Window(display, arguments, tmp_path) as window:
         window.sharp()
-        window.hands("mousemove", *MIDDLE, "key", "Right")
+        window.hands("mousemove", *MIDDLE, "key", "period")
         assert window.settled()["time"] == 0.25
         count = len(window.events)
         time.sleep(1.0)
