@@ -76,21 +76,24 @@ def prepare(
     hit = kernel is not None
     if kernel is None:
         passes = passes or importlib.import_module("distal.compiler").run_passes
-        artifact = emit_for(passes(module, TARGET, precision), level.lanes(precision))
-        kernel = compile_object(artifact.text, level), artifact.interface
+        shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
+        if any(function.apart for function in shaped.functions):
+            lanes = lanes.one_chunk()
+        artifact = emit_for(shaped, lanes)
+        kernel = compile_object(artifact.text, level), {**artifact.interface, "lanes": lanes.count}
         cache.store(key, _stored(*kernel))
     code, interface = kernel
-    lanes = level.lanes(precision)
+    lanes = interface["lanes"]
     stats = {
         "device": "cpu",
         "level": level.name,
-        "lanes": lanes.count,
+        "lanes": lanes,
         "precision": precision,
         "cache_hit": hit,
         "compile_s": time.perf_counter() - started,
     }
     types = {r.name: r.type for r in module.resources}
-    return CpuKernel(Executable(code), interface, precision, lanes.count, stats, types)
+    return CpuKernel(Executable(code), interface, precision, lanes, stats, types)
 
 
 # Kernels as files

@@ -499,7 +499,8 @@ class Function:
 
     ``name`` is unique in the module; ``source_name`` is what the author called it. ``native`` is
     the built-in that the function stands in for on a rough target, of the same arguments: a text
-    may let its host choose the driver's own.
+    may let its host choose the driver's own. ``apart`` is a piece of a longer function, which a
+    backend must not put together again.
     """
 
     name: str
@@ -508,6 +509,7 @@ class Function:
     body: tuple[Stmt, ...]
     source_name: str
     native: str | None = field(default=None, kw_only=True)
+    apart: bool = field(default=False, kw_only=True)
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 

@@ -35,6 +35,7 @@ class Target:
             Texts for people and their sites keep the short names.
         inline: Wants small functions inlined.
         predicated: Wants loops without break, continue and return inside (see passes.predicate).
+        outlined: Wants very long functions cut into pieces (see passes.outline).
         one_way: Wants no If of two ways of equal length (see passes.one_way).
     """
 
@@ -51,4 +52,5 @@ class Target:
     rough: bool = False
     inline: bool = False
     predicated: bool = False
+    outlined: bool = False
     one_way: bool = False

@@ -15,6 +15,7 @@ from distal.passes import (
     gradient,
     inline,
     one_way,
+    outline,
     predicate,
     share,
     specialise,
@@ -40,6 +41,7 @@ PIPELINE: Final[tuple[tuple[str, Pass], ...]] = (
     ("fold-inlined", fold.run),
     ("share", share.run),
     ("predicate", predicate.run),
+    ("outline", outline.run),
     ("one-way", one_way.run),
 )
 

@@ -22,6 +22,7 @@ TARGET = Target(
     samples=False,
     inline=True,
     predicated=True,
+    outlined=True,
 )
 TARGETS: tuple[Target, ...] = (TARGET,)
 

@@ -10,7 +10,7 @@ A kernel works on ``count`` pixels at a time, one per lane, held in ``chunks`` v
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import assert_never
 
@@ -55,6 +55,10 @@ class Lanes:
     def slot(self) -> int:
         """Bytes of a scalar in uniforms, frame values, arrays and buffers."""
         return self.precision // 8
+
+    def one_chunk(self) -> Lanes:
+        """The same with one vector of each value: less code, where there is very much of it."""
+        return replace(self, chunks=1, block_width=min(self.block_width, self.width))
 
     def scalar(self, kind: Kind) -> str:
         """LLVM's type of one lane."""

@@ -133,6 +133,8 @@ class Program:
 
         Vector registers do not survive a call, so a small one costs more than its body.
         """
+        if self._functions[name].apart:
+            return False
         return self.costs.function(name) <= INLINE_COST or self._sites[name] == 1
 
     def _result_type(self, kinds: tuple[Kind, ...], *, uniform: bool) -> str:
