@@ -173,6 +173,7 @@ class _Outlining:
         values: list[Expr] = [call]
         if len(wanted) > 1:
             whole = Read(self._locals.fresh("part"), call.type)
+            self._types[whole.name] = whole.type
             result.append(Let(whole.name, call, span=span))
             values = [Field(whole, r.name, r.type) for r in wanted]
         for read, value in zip(wanted, values, strict=True):
