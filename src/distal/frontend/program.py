@@ -50,6 +50,7 @@ class Program:
         self.diagnostics: list[Diagnostic] = []
         self.in_progress: list[Instance] = []
         self.instances: dict[Any, Instance] = {}
+        self.is_too_deep = False  # calls went deeper than Python's stack, which was reported
         self._headers: dict[Overload, Header] = {}
         self._names: set[str] = set()
         self._uniforms: dict[str, tuple[Parameter, UniformDeclaration]] = {}

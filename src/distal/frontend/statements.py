@@ -25,6 +25,9 @@ from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, S
 from distal.ir.types import INT, Array, Type, is_static
 
 
+DEEP_CALLS: Final = 20  # a statement that fails below so many calls fails because of them
+
+
 def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
     """Lower into the current block, going on after each mistake."""
     for stmt in statements:
@@ -41,9 +44,23 @@ def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
             body.failed = True
             _give_up(body, stmt)
         except RecursionError:
-            hint = "split it into several lines"
-            body.report(body.problem("this is too deeply nested", stmt, hint).diagnostic)
+            _report_depth(body, stmt)
             _give_up(body, stmt)
+
+
+def _report_depth(body: Body, stmt: ast.stmt) -> None:
+    """Say that Python's stack is used up: by this statement, or by the calls that lead to it."""
+    body.failed = True
+    program = body.program
+    if len(program.in_progress) < DEEP_CALLS:
+        hint = "split it into several lines"
+        body.report(body.problem("this is too deeply nested", stmt, hint).diagnostic)
+    elif not program.is_too_deep:
+        program.is_too_deep = True  # every caller on the way back meets the same
+        first = program.in_progress[0].source_name
+        message = f"functions call one another too many levels deep, beginning with '{first}'"
+        hint = "join some of them, or call them one after the other"
+        body.report(body.problem(message, stmt, hint).diagnostic)
 
 
 def _give_up(body: Body, stmt: ast.stmt) -> None:
