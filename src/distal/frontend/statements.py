@@ -24,7 +24,6 @@ from distal.ir.build import integer, negation
 from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
 from distal.ir.types import INT, Array, Type, is_static
 
-
 DEEP_CALLS: Final = 20  # a statement that fails below so many calls fails because of them
 
 
