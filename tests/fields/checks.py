@@ -53,7 +53,7 @@ class Report:
 def examined(subject: Subject, seed: int, *, effort: float = 1.0) -> Report:
     """Everything about one subject."""
     report, rng = Report(), np.random.default_rng(seed)
-    if not _promises_are_numbers(subject, report):
+    if not promises_are_numbers(subject, report):
         return report
     surface = surface_of(subject, rng, edges=int(6000 * effort), walkers=int(2000 * effort))
     _surface_is_sound(subject, surface, report)
@@ -62,17 +62,19 @@ def examined(subject: Subject, seed: int, *, effort: float = 1.0) -> Report:
     d, g = subject.evaluate(points)
     if not np.all(np.isfinite(d)) or not np.all(np.isfinite(g)):
         bad = points[~(np.isfinite(d) & np.isfinite(g).all(axis=1))]
-        report.add(subject, f"no number at {_at(bad[0])} ({len(bad)} of {len(points)} points)")
+        report.add(subject, f"no number at {at(bad[0])} ({len(bad)} of {len(points)} points)")
         return report
     report.points = len(points)
+    levels_hold(subject, points, d, report)
     if len(surface.points):
-        _steps_are_safe(subject, surface.points, points, d, report)
-        _distances_hold(subject, surface.points, points, d, g, report)
+        steps_are_safe(subject, surface.points, points, d, report)
+        distances_hold(subject, surface.points, points, d, g, report)
     _slope_holds(subject, surface.points, rng, report, effort)
     return report
 
 
-def _promises_are_numbers(subject: Subject, report: Report) -> bool:
+def promises_are_numbers(subject: Subject, report: Report) -> bool:
+    """Whether a subject can be looked at."""
     if not 0.0 <= subject.slope < UNBOUNDED / 1000.0:
         report.add(subject, f"the slope's bound is {subject.slope}")
         return False
@@ -88,7 +90,7 @@ def _surface_is_sound(subject: Subject, surface: Surface, report: Report) -> Non
     if len(surface.jumps):
         report.add(
             subject,
-            f"the sign jumps at {_at(surface.jumps[0])}, where the value is"
+            f"the sign jumps at {at(surface.jumps[0])}, where the value is"
             f" {subject.value(surface.jumps[:1])[0]:.4g} ({len(surface.jumps)} places)",
         )
     bare = len(surface.points) > 0 and not _has_inside(subject, surface)
@@ -128,8 +130,31 @@ def _box_holds(
             worst = int(np.argmax(far.max(axis=1)))
             report.add(
                 subject,
-                f"the box {_at(subject.low)} to {_at(subject.high)} leaves out the {what} at"
-                f" {_at(bad[worst])}, by {far[worst].max():.4g}",
+                f"the box {at(subject.low)} to {at(subject.high)} leaves out the {what} at"
+                f" {at(bad[worst])}, by {far[worst].max():.4g}",
+            )
+
+
+def levels_hold(subject: Subject, points: Doubles, d: Doubles, report: Report) -> None:
+    """A point outside the box is at most growth times its value away from it."""
+    if not 0.0 < subject.side_growth <= subject.growth * (1.0 + 1e-6):
+        report.add(subject, f"the growth is {subject.growth}, of sides {subject.side_growth}")
+        return
+    beyond = np.maximum(np.maximum(subject.low - points, points - subject.high), 0.0)
+    size = subject.scale + np.linalg.norm(points, axis=1)
+    for what, away, growth in (
+        ("box", np.linalg.norm(beyond, axis=1), subject.growth),
+        ("side", beyond.max(axis=1), subject.side_growth),
+    ):
+        if growth >= UNBOUNDED / 1000.0:
+            continue
+        over = np.where(away > 0.0, away - growth * np.maximum(d, 0.0), 0.0) / size
+        worst = int(np.argmax(over))
+        if over[worst] > OVER:
+            report.add(
+                subject,
+                f"{at(points[worst])} is {away[worst]:.6g} from the {what}, its value"
+                f" {d[worst]:.6g}, but the growth {growth:.6g} ({(over > OVER).sum()} points)",
             )
 
 
@@ -149,7 +174,7 @@ def _points(subject: Subject, surface: Surface, rng: np.random.Generator, count:
     return np.concatenate(parts)
 
 
-def _steps_are_safe(
+def steps_are_safe(
     subject: Subject, surface: Doubles, points: Doubles, d: Doubles, report: Report
 ) -> None:
     """No step from outside goes farther than the nearest surface."""
@@ -160,14 +185,15 @@ def _steps_are_safe(
     if over[worst] > 0.0 and not subject.estimate:
         report.add(
             subject,
-            f"a step from {_at(points[worst])} goes {step[worst]:.6g} far, past the surface at"
-            f" {_at(surface[index[worst]])}, {nearest[worst]:.6g} away",
+            f"a step from {at(points[worst])} goes {step[worst]:.6g} far, past the surface at"
+            f" {at(surface[index[worst]])}, {nearest[worst]:.6g} away",
         )
 
 
-def _distances_hold(
+def distances_hold(
     subject: Subject, surface: Doubles, points: Doubles, d: Doubles, g: Doubles, report: Report
 ) -> None:
+    """Values that claim to be the distance, or below it, are."""
     claims = subject.claims
     outside = (d > 0.0) & bool(claims & {Claim.LOWER_BOUND, Claim.EXACT_OUTSIDE})
     inside = (d < 0.0) & (Claim.EXACT_INSIDE in claims)
@@ -183,8 +209,8 @@ def _distances_hold(
         side = "outside" if d[worst] > 0.0 else "inside"
         report.add(
             subject,
-            f"{side} at {_at(points[worst])} the value is {d[worst]:.6g}, the surface at"
-            f" {_at(surface[index[worst]])} is {nearest[worst]:.6g} away",
+            f"{side} at {at(points[worst])} the value is {d[worst]:.6g}, the surface at"
+            f" {at(surface[index[worst]])} is {nearest[worst]:.6g} away",
         )
     exact = ((d > 0.0) & (Claim.EXACT_OUTSIDE in claims)) | inside
     # Beyond the region the surface of an endless shape was not searched; the witness still serves.
@@ -200,7 +226,7 @@ def _distances_hold(
             count = int(np.sum(lacking > NEAR * size))
             report.add(
                 subject,
-                f"{side} at {_at(points[worst])} the value is {d[worst]:.6g}, but the surface is"
+                f"{side} at {at(points[worst])} the value is {d[worst]:.6g}, but the surface is"
                 f" {witness[worst]:.6g} away ({count} of {int(exact.sum())} points)",
             )
         _gradient_is_unit(subject, points[exact], g[exact], report)
@@ -240,10 +266,10 @@ def _gradient_is_unit(subject: Subject, points: Doubles, g: Doubles, report: Rep
     length = np.linalg.norm(g, axis=1)
     off = np.abs(length - 1.0) > 1e-5
     if off.mean() > NOT_UNIT:
-        at = points[off][0]
+        where = points[off][0]
         report.add(
             subject,
-            f"claims exactness, but |gradient| is {length[off][0]:.6g} at {_at(at)}"
+            f"claims exactness, but |gradient| is {length[off][0]:.6g} at {at(where)}"
             f" ({off.sum()} of {len(off)} points)",
         )
 
@@ -257,7 +283,7 @@ def _slope_holds(
         report.add(
             subject,
             f"promises slope {subject.slope:.6g}, but rises by {found.slope:.6g} per unit from"
-            f" {_at(found.start)} to {_at(found.end)}",
+            f" {at(found.start)} to {at(found.end)}",
         )
 
 
@@ -284,18 +310,18 @@ def numbers_hold(sample: Sample, subject: Subject) -> list[str]:
     for bits, d, g in ((64, d64, g64), (32, d32, g32)):
         bad = ~(np.isfinite(d) & np.isfinite(g).all(axis=1))
         if bad.any():
-            at = int(np.argmax(bad))
+            where = int(np.argmax(bad))
             found.append(
-                f"{subject.name}: in {bits} bits at {_at(points[at])} the value is {d[at]}, the"
-                f" gradient {g[at]} ({bad.sum()} of {len(bad)} places)"
+                f"{subject.name}: in {bits} bits at {at(points[where])} the value is {d[where]},"
+                f" the gradient {g[where]} ({bad.sum()} of {len(bad)} places)"
             )
     size = subject.scale + np.linalg.norm(points, axis=1)
     off = np.abs(d32 - d64) > 2e-4 * size * max(1.0, subject.slope)
     if off.any():
-        at = int(np.argmax(off))
+        where = int(np.argmax(off))
         found.append(
-            f"{subject.name}: at {_at(points[at])} 32 bits give {d32[at]:.6g}, 64 give"
-            f" {d64[at]:.6g} ({off.sum()} of {len(off)} places)"
+            f"{subject.name}: at {at(points[where])} 32 bits give {d32[where]:.6g}, 64 give"
+            f" {d64[where]:.6g} ({off.sum()} of {len(off)} places)"
         )
     return found + _reference_agrees(sample, subject, points)
 
@@ -311,12 +337,13 @@ def _reference_agrees(sample: Sample, subject: Subject, points: Doubles) -> list
     off = ~(np.abs(d - expected) <= 1e-8 * size * max(1.0, subject.slope))
     if not off.any():
         return []
-    at = int(np.argmax(off))
+    where = int(np.argmax(off))
     return [
-        f"{subject.name}: at {_at(both[at])} the CPU gives {d[at]!r}, the reference"
-        f" {expected[at]!r} ({off.sum()} of {len(off)} points)"
+        f"{subject.name}: at {at(both[where])} the CPU gives {d[where]!r}, the reference"
+        f" {expected[where]!r} ({off.sum()} of {len(off)} points)"
     ]
 
 
-def _at(point: Doubles) -> str:
+def at(point: Doubles) -> str:
+    """A point in a finding."""
     return f"({', '.join(f'{v:.9g}' for v in point)})"

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices import cpu, reference
-from distal.fields.claims import UNBOUNDED, Primitive
+from distal.fields.claims import UNBOUNDED, Claim, Primitive
 from distal.frontend import Assembly, lower
 from distal.frontend.annotations import to_type
 from distal.frontend.headers import MISSING, Header, read_header
@@ -112,7 +112,7 @@ class FieldFunction(Composed):
 
 
 class PromiseFunction(Composed):
-    """``(unused, *numbers) -> (slope, low, high)`` with the choices fixed."""
+    """``(unused, *numbers) -> (slope, low, high, growth, side_growth)``, the choices fixed."""
 
     def __init__(self, row: Primitive, choices: Mapping[str, Any]) -> None:
         self._row, self._choices = row, choices
@@ -120,17 +120,20 @@ class PromiseFunction(Composed):
         self._point = VEC2 if dimension_of(row.distance) == 2 else VEC3
         self._numbers = [Param(s.name, s.type) for s in slots_of(row.distance) if not s.is_choice]
         self.signature = (("unused", FLOAT), *((n.name, n.type) for n in self._numbers))
-        self.result = tuple_type((FLOAT, self._point, self._point))
+        self.result = tuple_type((FLOAT, self._point, self._point, FLOAT, FLOAT))
 
     def compose(self, assembly: Assembly) -> str:
         """The function in a program."""
         given: dict[str, Expr] = {n.name: Read(n.name, n.type) for n in self._numbers}
         given |= {n: _constant(assembly, n, v) for n, v in self._choices.items()}
-        slope: Expr
-        if isinstance(self._row.slope, Func):
-            slope = assembly.call(self._row.slope, given)
-        else:
-            slope = constant_number(float(self._row.slope))
+        row = self._row
+        exact = Claim.EXACT_OUTSIDE in row.claims or row.bounds is None
+        growth = (1.0 if exact else UNBOUNDED) if row.growth is None else row.growth
+        side_growth = growth if row.side_growth is None else row.side_growth
+        slope, *growths = (
+            assembly.call(rule, given) if isinstance(rule, Func) else constant_number(float(rule))
+            for rule in (row.slope, growth, side_growth)
+        )
         low = constant_number(-UNBOUNDED, self._point)
         high = constant_number(UNBOUNDED, self._point)
         if self._row.bounds is not None:
@@ -138,7 +141,7 @@ class PromiseFunction(Composed):
             assert isinstance(box, Call)
             low, high = (_corner(box, name, self._point) for name in ("low", "high"))
         params = (Param("unused", FLOAT), *self._numbers)
-        result = Construct((slope, low, high), self.result)
+        result = Construct((slope, low, high, *growths), self.result)
         return assembly.define("promise", params, self.result, (Return(result),))
 
 
@@ -199,8 +202,8 @@ class Sample:
         d, g = kernel.evaluate(rows, {}, bound, threads=1)
         return np.broadcast_to(d, len(points)), np.broadcast_to(g, points.shape)
 
-    def promise(self) -> tuple[float, Doubles, Doubles]:
-        """The slope's bound and the corners of the box, from the reference in 64 bits."""
+    def promise(self) -> tuple[float, Doubles, Doubles, float, float]:
+        """The slope's bound, the box's corners, the growths, from the reference in 64 bits."""
         module = lower(PromiseFunction(self.row, self.choices))
         resources = {r.name: r.source for r in module.resources}
         kernel = reference.prepare(module, precision=64)
@@ -209,8 +212,10 @@ class Sample:
             for s in slots_of(self.row.distance)
             if not s.is_choice
         ]
-        slope, low, high = kernel.evaluate([np.zeros(1), *numbers], {}, resources)
-        return float(slope[0]), endless(low[0]), endless(high[0])
+        found = kernel.evaluate([np.zeros(1), *numbers], {}, resources)
+        slope, low, high, *growths = (part[0] for part in found)
+        growth, side_growth = map(float, growths)
+        return float(slope), endless(low), endless(high), growth, side_growth
 
 
 def _short(value: Any) -> str:

@@ -33,6 +33,8 @@ class Subject:
         hollow: Whether its inside may be empty all the same, with a wall of thickness 0 for one.
         empty: Whether even its surface may be: an intersection's may, and a fractal's.
         estimate: Whether its slope is an estimate.
+        growth: How far from the box a point may be for each unit of its value.
+        side_growth: The same for each side of the box.
     """
 
     name: str
@@ -47,6 +49,8 @@ class Subject:
     hollow: bool = False
     empty: bool = False
     estimate: bool = False
+    growth: float = np.inf
+    side_growth: float = np.inf
 
     def value(self, points: Doubles) -> Doubles:
         """Distances at points."""
@@ -68,7 +72,7 @@ class Subject:
 
 def subject_of(sample: Sample) -> Subject:
     """A row with numbers, as a subject."""
-    slope, low, high = sample.promise()
+    slope, low, high, growth, side_growth = sample.promise()
     row = sample.row
     zeros = any(n in row.limits and 0.0 in np.ravel(v) for n, v in sample.numbers.items())
     return Subject(
@@ -84,4 +88,6 @@ def subject_of(sample: Sample) -> Subject:
         hollow=zeros,
         empty=row.estimate,
         estimate=row.estimate,
+        growth=growth,
+        side_growth=side_growth,
     )

@@ -223,7 +223,7 @@ def test_the_sponge_loses_seven_of_27_parts_each_time():
 )
 def test_a_marcher_hardly_ever_steps_through_a_fractal(name, numbers):
     sample = sample_with(primitives()[name], numbers)
-    slope, low, high = sample.promise()
+    slope, low, high, _, _ = sample.promise()
     rng = np.random.default_rng(13)
     reach = float(np.max(high - low))
     towards = rng.uniform(low, high, (4000, 3))

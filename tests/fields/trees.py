@@ -45,6 +45,17 @@ SOLIDS: Final = (
     "BoxCheap",
 )
 FLATS: Final = ("Circle", "Rectangle", "Hexagon", "Pie", "UnevenCapsule", "Pentagram")
+# Far below the distance somewhere.
+BOUNDS: Final = (
+    "OctahedronCheap",
+    "ConeCheap",
+    "Ellipsoid",
+    "Superellipsoid",
+    "SmoothOctahedron",
+    "Dodecahedron",
+    "Spring",
+    "Blob",
+)
 # What may stand between the operator that is looked at and the primitives.
 BETWEEN: Final = {
     False: ("translate", "rotate", "scale", "union", "difference", "intersection", "round"),
@@ -73,7 +84,7 @@ def _tree_of(
 ) -> Node | None:
     count = 2 if operator.combine is not None else 1
     children = [_random_shape(flat_children, rng, depth, small) for _ in range(count)]
-    return _node(operator, flat, tuple(children), rng)
+    return random_node(operator, flat, tuple(children), rng)
 
 
 def _random_shape(flat: bool, rng: np.random.Generator, depth: int, small: bool) -> Node:
@@ -95,18 +106,50 @@ def _random_shape(flat: bool, rng: np.random.Generator, depth: int, small: bool)
     return _placed("translate", node, offset=offset)
 
 
+def nested_tree(rng: np.random.Generator, *, flat: bool, depth: int) -> Node:
+    """Operators upon operators, on shapes that cost little."""
+    if depth == 0:
+        return _any_shape(flat, rng)
+    names = list(OPERATORS)
+    while True:
+        rule = OPERATORS[str(rng.choice(names))]
+        own, below = flatness(rule, rng)
+        if own is not flat:
+            continue
+        count = 2 if rule.combine is not None else 1
+        inner = [nested_tree(rng, flat=below, depth=int(rng.integers(depth))) for _ in range(count)]
+        made = random_node(rule, flat, tuple(inner), rng)
+        if made is not None:
+            return made
+
+
+def _any_shape(flat: bool, rng: np.random.Generator) -> Node:
+    row = PRIMITIVES[str(rng.choice(FLATS if flat else (*SOLIDS, *BOUNDS)))]
+    sample = random_sample(row, rng)
+    assert sample is not None
+    numbers, constants = bound(row, (), {**sample.numbers, **sample.choices}, None)
+    node = Node(row, flat, (), numbers, constants)
+    offset = tuple(rng.uniform(-0.8, 0.8, 2 if flat else 3).tolist())
+    return _placed("translate", node, offset=offset) if rng.random() < 0.5 else node
+
+
 def _placed(name: str, node: Node, **values: Any) -> Node:
     rule = OPERATORS[f"flat {name}" if node.flat else name]
     numbers, constants = bound(rule, (), values, None)
     return Node(rule, node.flat, (node,), numbers, constants)
 
 
-def _node(
-    operator: Operator, flat: bool, children: tuple[Node, ...], rng: np.random.Generator
+def random_node(
+    operator: Operator,
+    flat: bool,
+    children: tuple[Node, ...],
+    rng: np.random.Generator,
+    **given: Any,
 ) -> Node | None:
+    """The operator on these shapes; its numbers are random, but for those given."""
     slots = operator_slots(operator)
     for _ in range(500):
-        values = drawn(slots, operator.limits, rng)
+        values = {**drawn(slots, operator.limits, rng), **given}
         if fits(operator, values):
             numbers, constants = bound(operator, (), values, None)
             return Node(operator, flat, children, numbers, constants)
@@ -258,13 +301,13 @@ class Tree:
         found = Prepared(SiteOf(self.node), "reference")(points)
         return np.broadcast_to(found, len(points))
 
-    def subject(self) -> Subject:
-        """The shape with its promises."""
-        promise = Prepared(PromiseOf(self.shape.node), "reference")()
-        slope, divisor, low, high = promise
+    def subject(self, device: str = "cpu") -> Subject:
+        """The shape with its promises; for few points the reference is ready sooner."""
+        promise = Prepared(PromiseOf(self.node), "reference")()
+        slope, divisor, low, high, growth, side_growth = promise
         return Subject(
             described(self.node),
-            self.evaluate,
+            lambda points: self.evaluate(points, device),
             2 if self.node.flat else 3,
             self.node.claims,
             float(slope[0]),
@@ -275,6 +318,8 @@ class Tree:
             hollow=True,
             empty=True,
             estimate=self.node.estimate,
+            growth=float(growth[0]),
+            side_growth=float(side_growth[0]),
         )
 
 

@@ -146,6 +146,10 @@ def test_what_makes_boxes_endless_is_named():
     own = check(Shape.from_function(ball))
     assert codes(own, Severity.WARNING) == [("no-box", "ball")]
     assert own.holds
+    moved = check(Shape.from_function(ball, bounds=BOX).round(0.1))
+    assert codes(moved, Severity.WARNING) == [("no-growth", "round")]
+    assert "growth=1 for 'ball'" in str(moved.findings[0])
+    assert not codes(check(Shape.from_function(ball, bounds=BOX, growth=1.0)), Severity.WARNING)
 
 
 def test_blends_that_change_everything_are_warned_of():

@@ -46,3 +46,9 @@ def given_bounds2(low: vec2, high: vec2) -> Bounds2:
 def given_slope(slope: float) -> float:
     """The slope that an author gives for a function of their own."""
     return slope
+
+
+@func
+def given_growth(growth: float) -> float:
+    """The growth that an author gives for a function of their own."""
+    return growth

@@ -7,8 +7,19 @@ reads them nor how anything is rendered.
 Functions are joined by the names of their parameters. Some names have a fixed meaning:
 ``p`` the point, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a function of a point,
 ``cell`` the index of the repetition the point lies in, ``slope``/``slope_a``/``slope_b`` bounds on
-|gradient|, ``bounds``/``bounds_a``/``bounds_b`` boxes. Every other parameter is a number of the
-shape, or a choice (int, bool) fixed when it is compiled.
+|gradient|, ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and ``side_growth`` (with ``_a``,
+``_b``; of two children without either: the larger) how fast the box grows with the level. Every
+other parameter is a number of the shape, or a choice (int, bool) fixed when it is compiled.
+
+Growth. A box holds the surface and the inside: all points where the field is 0 or less. An operator
+that moves the surface out by r (rounding, offsets, blends) needs a box around all points where the
+field is r or less. A field may be far below the distance there, so each field also promises its
+*growth* c: for every r >= 0 these points lie within c * r of the box. In other words: a point
+outside the box is at most c times its value away from it. ``growth`` measures the Euclidean
+distance from the box, which rotations keep. ``side_growth`` measures how far each side must be
+moved out, which intersections keep; boxes are grown by it, and it is never above ``growth``. Both
+are 1 for exact fields. Both are ``UNBOUNDED`` where they are not known: then a shape whose surface
+is moved out has no box.
 """
 
 from __future__ import annotations
@@ -26,6 +37,13 @@ from distal.lang.functions import Func
 # thousandth of it is infinite.
 UNBOUNDED: Final = 1e18
 ENDLESS: Final = UNBOUNDED / 1000.0
+
+# What an operator's functions may ask of its one child, or of its two children.
+PROMISED: Final = frozenset(
+    f"{promise}{of}"
+    for promise in ("slope", "bounds", "growth", "side_growth")
+    for of in ("", "_a", "_b")
+)
 
 
 @struct
@@ -88,6 +106,27 @@ EXACT_OUTSIDE: Final = frozenset({Claim.EXACT_OUTSIDE, Claim.LOWER_BOUND})
 LOWER_BOUND: Final = frozenset({Claim.LOWER_BOUND})
 NOTHING: Final[frozenset[Claim]] = frozenset()  # the slope's bound alone
 
+
+class Growth(Enum):
+    """What an operator makes of the growth of its children; see the module's text.
+
+    KEPT: It stays; of two children: the larger.
+    FIRST: That of the first child stays.
+    TURNED: The box is turned: the sides grow as fast as the distance from the box.
+    CORNERED: The growth of sides stays (of two: the larger). A point may be as far past all sides
+        of a corner, which is the root of the number of dimensions times as far from the box.
+    HELD: Both are 1: the value is at least the distance to the operator's box, or it has no box.
+    UNKNOWN: No bound is known.
+    """
+
+    KEPT = "kept"
+    FIRST = "of the first"
+    TURNED = "turned"
+    CORNERED = "cornered"
+    HELD = "held"
+    UNKNOWN = "unknown"
+
+
 # Returns a reason why numbers do not go together, or None. Called with plain floats by name.
 Requirement: TypeAlias = "Callable[..., str | None]"
 # A number, or a @func of some of the shape's numbers (and slope, bounds) that gives a float.
@@ -105,6 +144,9 @@ class Primitive:
         claims: What it promises.
         slope: Bound on |gradient| everywhere; a number, or a function of the shape's numbers.
         bounds: ``(*numbers) -> Bounds`` (``Bounds2``), or None for a shape without end.
+        growth: Bound on the growth; a number, or a function of the shape's numbers. None: 1 where
+            the field is exact outside or has no box, else not known.
+        side_growth: The same for the sides alone, where it is less; None: ``growth``.
         limits: What each number must be; a number not named is any finite one.
         requires: Returns why numbers do not go together, or None.
         signed: False for surfaces and curves without an inside.
@@ -117,6 +159,8 @@ class Primitive:
     claims: frozenset[Claim]
     slope: Rule = 1.0
     bounds: Func | None = None
+    growth: Rule | None = None
+    side_growth: Rule | None = None
     limits: Mapping[str, Limit] = field(default_factory=dict)
     requires: Requirement | None = None
     signed: bool = True
@@ -151,10 +195,12 @@ class Operator:
             of ``slope`` (``slope_a``, ``slope_b``), ``bounds`` and numbers gives it.
         bounds: None where the box stays (of two: the box around both); else a function of
             ``bounds`` (``bounds_a``, ``bounds_b``) and numbers; ``no_bounds`` for no box.
+        growth: What becomes of the growth, or a function of ``growth``, ``slope``, ``bounds`` and
+            numbers that gives it. Not known where an operator says nothing.
         limits: As for a primitive.
         requires: As for a primitive.
         needs: What the children must be for a slope to exist; finishes the sentence "twist needs
-            …", said when the slope's rule answers ``UNBOUNDED``.
+            …", said when the slope's rule answers ``UNBOUNDED``. None where it never does.
     """
 
     name: str
@@ -167,10 +213,11 @@ class Operator:
     keeps: frozenset[Claim] = NOTHING
     slope: Rule | None = None
     bounds: Func | None = None
+    growth: Growth | Func = Growth.UNKNOWN
     limits: Mapping[str, Limit] = field(default_factory=dict)
     requires: Requirement | None = None
     keeps_exact: frozenset[Claim] = NOTHING
-    needs: str = "shapes with a bounded slope"
+    needs: str | None = None
 
     def lies_flat(self, child: bool) -> bool:
         """Whether the result lies in the plane: where the operator's own point does.
@@ -217,6 +264,8 @@ def primitive(
     *,
     slope: Rule = 1.0,
     bounds: Func | None = None,
+    growth: Rule | None = None,
+    side_growth: Rule | None = None,
     limits: Mapping[str, Limit] | None = None,
     requires: Requirement | None = None,
     signed: bool = True,
@@ -233,6 +282,8 @@ def primitive(
             claims,
             slope,
             bounds,
+            growth,
+            side_growth,
             dict(limits or {}),
             requires,
             signed,

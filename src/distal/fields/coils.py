@@ -73,12 +73,26 @@ def spring_bounds(major: float, minor: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
+@func
+def spring_side_growth(major: float, pitch: float) -> float:
+    """The coil's value is the way to it over its steepest."""
+    return coil_steepest(major, pitch)
+
+
+@func
+def spring_growth(major: float, pitch: float) -> float:
+    """Outward as for a side, and past an end at once."""
+    return length(vec2(coil_steepest(major, pitch), 1.0))
+
+
 @primitive(
     "Spring",
     LOWER_BOUND,
     bounds=spring_bounds,
     limits={**COIL, "height": Limit.POSITIVE},
     tier=2,
+    growth=spring_growth,
+    side_growth=spring_side_growth,
 )
 @func
 def spring(

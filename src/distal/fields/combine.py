@@ -11,10 +11,11 @@ from distal.fields.claims import (
     EXACT_OUTSIDE,
     UNBOUNDED,
     Claim,
+    Growth,
     Limit,
     operator,
 )
-from distal.fields.extents import Boxes, grown, overlap
+from distal.fields.extents import Boxes, moved_out, overlap
 from distal.lang import abs, clamp, func, max, min, mix, select
 
 INSIDE_AND_BOUND = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
@@ -123,9 +124,11 @@ def displaced_slope(slope_a: float, slope_b: float, height: float) -> float:
 
 
 @func
-def displaced_bounds(bounds_a: Boxes, bounds_b: Boxes, height: float) -> Boxes:
-    """The first shape's box, grown by the height."""
-    return grown(bounds_a, abs(height))
+def displaced_bounds(
+    bounds_a: Boxes, bounds_b: Boxes, height: float, side_growth_a: float
+) -> Boxes:
+    """The first shape's box, moved out by the height."""
+    return moved_out(bounds_a, abs(height), side_growth_a)
 
 
 @func
@@ -147,20 +150,26 @@ def embossed_mix(a: float, b: float, height: float) -> float:
 
 
 @func
-def embossed_bounds(bounds_a: Boxes, bounds_b: Boxes, height: float) -> Boxes:
-    """The first shape's box, grown by the height."""
-    return grown(bounds_a, height)
+def embossed_bounds(bounds_a: Boxes, bounds_b: Boxes, height: float, side_growth_a: float) -> Boxes:
+    """The first shape's box, moved out by the height."""
+    return moved_out(bounds_a, height, side_growth_a)
 
 
 # Of a shape exact inside, cut by one exact outside, the inside is exact; only then. In a union the
 # outside stays exact, in an intersection the inside; an exclusive or swaps the two.
-UNION = operator("union", combine=union, keeps=EXACT_OUTSIDE)
+UNION = operator(
+    "union",
+    combine=union,
+    keeps=EXACT_OUTSIDE,
+    growth=Growth.KEPT,
+)
 INTERSECTION = operator(
     "intersection",
     combine=intersection,
     mix=farther_shows,
     keeps=INSIDE_AND_BOUND,
     bounds=overlap,
+    growth=Growth.CORNERED,
 )
 DIFFERENCE = operator(
     "difference",
@@ -168,23 +177,43 @@ DIFFERENCE = operator(
     mix=cutter_shows,
     keeps_exact=INSIDE_AND_BOUND,
     bounds=first_box,
+    growth=Growth.FIRST,
 )
-XOR = operator("xor", combine=xor, keeps_exact=EXACT)
-COMPLEMENT = operator("complement", finish=complement, keeps_exact=EXACT, bounds=endless)
+XOR = operator(
+    "xor",
+    combine=xor,
+    keeps_exact=EXACT,
+    growth=Growth.KEPT,
+)
+COMPLEMENT = operator(
+    "complement",
+    finish=complement,
+    keeps_exact=EXACT,
+    bounds=endless,
+    growth=Growth.HELD,
+)
 CLEARANCE = operator(
     "clearance",
     combine=clearance,
     mix=first_shows,
     bounds=first_box,
     limits={"gap": Limit.NOT_NEGATIVE},
+    growth=Growth.FIRST,
 )
-MORPH = operator("morph", combine=morph, mix=morph_mix, limits={"t": Limit.FRACTION})
+MORPH = operator(
+    "morph",
+    combine=morph,
+    mix=morph_mix,
+    limits={"t": Limit.FRACTION},
+    growth=Growth.KEPT,
+)
 DISPLACE = operator(
     "displace",
     combine=displaced,
     mix=first_shows,
     slope=displaced_slope,
     bounds=displaced_bounds,
+    growth=Growth.FIRST,
 )
 CARVE = operator(
     "carve",
@@ -192,6 +221,7 @@ CARVE = operator(
     mix=first_shows,
     bounds=first_box,
     limits={"depth": Limit.NOT_NEGATIVE},
+    growth=Growth.FIRST,
 )
 EMBOSS = operator(
     "emboss",
@@ -199,4 +229,5 @@ EMBOSS = operator(
     mix=embossed_mix,
     bounds=embossed_bounds,
     limits={"height": Limit.NOT_NEGATIVE},
+    growth=Growth.FIRST,
 )

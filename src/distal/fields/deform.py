@@ -13,7 +13,13 @@ child without end in such a direction has no slope (``UNBOUNDED``) and is refuse
 
 from __future__ import annotations
 
-from distal.fields.claims import LOWER_BOUND, Bounds, Limit, operator
+from distal.fields.claims import (
+    LOWER_BOUND,
+    Bounds,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.ease import ease_requirement, ease_slope, eased
 from distal.fields.extents import box_distance, drum_distance, reach, unless_endless
 from distal.fields.place import rotated_y
@@ -334,6 +340,7 @@ ELONGATE = operator(
     keeps=LOWER_BOUND,
     bounds=elongated_bounds,
     limits={"lengths": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
 )
 TWIST = operator(
     "twist",
@@ -342,6 +349,7 @@ TWIST = operator(
     slope=twisted_slope,
     bounds=twisted_bounds,
     needs="a shape that ends around the y axis: the farther out, the steeper it would get",
+    growth=Growth.HELD,
 )
 BEND = operator(
     "bend",
@@ -350,6 +358,7 @@ BEND = operator(
     slope=bent_slope,
     bounds=bent_bounds,
     needs="a shape that ends around the z axis: the farther out, the steeper it would get",
+    growth=Growth.HELD,
 )
 BEND_LINEAR = operator(
     "bend linear",
@@ -358,6 +367,7 @@ BEND_LINEAR = operator(
     slope=bent_linear_slope,
     bounds=bent_linear_bounds,
     requires=way_requirement,
+    growth=Growth.HELD,
 )
 BEND_RADIAL = operator(
     "bend radial",
@@ -367,6 +377,7 @@ BEND_RADIAL = operator(
     bounds=bent_radial_bounds,
     limits={"inner": Limit.NOT_NEGATIVE},
     requires=ring_requirement,
+    growth=Growth.HELD,
 )
 TAPER = operator(
     "taper",
@@ -377,6 +388,7 @@ TAPER = operator(
     limits={"factor": Limit.POSITIVE},
     requires=taper_requirement,
     needs="a shape that ends around the y axis: the farther out, the steeper it would get",
+    growth=Growth.HELD,
 )
 ATTRACT = operator(
     "attract",
@@ -385,6 +397,7 @@ ATTRACT = operator(
     slope=attracted_slope,
     bounds=attracted_bounds,
     limits={"radius": Limit.POSITIVE, "strength": Limit.NOT_NEGATIVE},
+    growth=Growth.HELD,
 )
 REPEL = operator(
     "repel",
@@ -393,4 +406,5 @@ REPEL = operator(
     slope=repelled_slope,
     bounds=attracted_bounds,
     limits={"radius": Limit.POSITIVE, "strength": Limit.FRACTION},
+    growth=Growth.HELD,
 )

@@ -6,7 +6,13 @@ rectangle. Of these the scene code of ``deform`` is the same, with the third coo
 
 from __future__ import annotations
 
-from distal.fields.claims import LOWER_BOUND, Bounds2, Limit, operator
+from distal.fields.claims import (
+    LOWER_BOUND,
+    Bounds2,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.deform import bent, bent_bounds, bent_slope, bent_value, elongated
 from distal.fields.repeat_flat import flat_bounds, in_space, slab
 from distal.lang import func, vec2
@@ -54,6 +60,7 @@ ELONGATE_FLAT = operator(
     keeps=LOWER_BOUND,
     bounds=elongated_flat_bounds,
     limits={"lengths": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
 )
 BEND_FLAT = operator(
     "flat bend",
@@ -62,4 +69,5 @@ BEND_FLAT = operator(
     slope=bent_flat_slope,
     bounds=bent_flat_bounds,
     needs="a shape that ends around the origin: the farther out, the steeper it would get",
+    growth=Growth.HELD,
 )

@@ -12,10 +12,18 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
 from distal.fields import combine, edge_profiles, smooth
-from distal.fields.claims import Limit, Operator, operator
-from distal.fields.extents import Boxes, grown, hull_of, overlap
-from distal.lang import Func, func, length, max, min, vec2
+from distal.fields.claims import (
+    UNBOUNDED,
+    Growth,
+    Limit,
+    Operator,
+    operator,
+)
+from distal.fields.extents import Boxes, hull_of, moved_out, overlap
+from distal.lang import Func, exp2, func, length, max, min, vec2
 
+# 2 to this power is beyond any size.
+MOST_DOUBLINGS: Final = 60.0
 # Scene code that takes two distances and the numbers of a blend.
 Shared: TypeAlias = Callable[..., float]
 
@@ -76,21 +84,29 @@ def crossed_slope(slope_a: float, slope_b: float) -> float:
 
 
 @func
-def swollen_hull(bounds_a: Boxes, bounds_b: Boxes, k: float) -> Boxes:
-    """The box around both, grown by what a blend adds at most."""
-    return grown(hull_of(bounds_a, bounds_b), k)
+def swollen_hull(bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth: float) -> Boxes:
+    """The box around both, moved out by what a blend adds at most."""
+    return moved_out(hull_of(bounds_a, bounds_b), k, side_growth)
 
 
 @func
-def pipe_box(bounds_a: Boxes, bounds_b: Boxes, k: float) -> Boxes:
-    """Within ``k`` of both shapes."""
-    return overlap(grown(bounds_a, k), grown(bounds_b, k))
+def pipe_box(
+    bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth_a: float, side_growth_b: float
+) -> Boxes:
+    """Where neither field is above ``k``."""
+    return overlap(moved_out(bounds_a, k, side_growth_a), moved_out(bounds_b, k, side_growth_b))
 
 
 @func
-def ridge_box(bounds_a: Boxes, bounds_b: Boxes, depth: float) -> Boxes:
-    """The first shape's box, grown by the ridge."""
-    return grown(bounds_a, depth)
+def ridge_box(bounds_a: Boxes, bounds_b: Boxes, depth: float, side_growth_a: float) -> Boxes:
+    """The first shape's box, moved out by the ridge."""
+    return moved_out(bounds_a, depth, side_growth_a)
+
+
+@func
+def power_growth(growth: float, exponent: float) -> float:
+    """Where both distances are equal the value is less by the exponent's root of 2."""
+    return min(growth * exp2(min(1.0 / exponent, MOST_DOUBLINGS)), UNBOUNDED)
 
 
 # The other ways to combine, made of the union
@@ -180,19 +196,28 @@ def _declare(name: str, blend: Blend) -> None:
     difference = turned("difference", name, intersection)
     difference_mix = turned("difference_mix", name, intersection_mix)
     exclusive = (_xor_counted if counted else _xor)(name, difference)
+    # A union is nowhere below the nearer shape's value by more than k, nor an intersection below
+    # the farther one's.
     rows: dict[str, dict[str, Any]] = {
-        "union": {"combine": blend.union, "mix": blend.mix, "bounds": swollen_hull},
+        "union": {
+            "combine": blend.union,
+            "mix": blend.mix,
+            "bounds": swollen_hull,
+            "growth": Growth.KEPT,
+        },
         "intersection": {
             "combine": intersection,
             "mix": intersection_mix,
             "bounds": overlap,
+            "growth": Growth.CORNERED,
         },
         "difference": {
             "combine": difference,
             "mix": difference_mix,
             "bounds": combine.first_box,
+            "growth": Growth.FIRST,
         },
-        "xor": {"combine": exclusive},
+        "xor": {"combine": exclusive, "growth": Growth.KEPT},
     }
     for kind, row in rows.items():
         COMBINATIONS[kind, name] = operator(
@@ -220,6 +245,7 @@ PIPE = operator(
     slope=crossed_slope,
     bounds=pipe_box,
     limits={"k": Limit.POSITIVE},
+    growth=Growth.CORNERED,
 )
 ENGRAVE = operator(
     "engrave",
@@ -228,6 +254,7 @@ ENGRAVE = operator(
     slope=crossed_slope,
     bounds=combine.first_box,
     limits={"k": Limit.NOT_NEGATIVE},
+    growth=Growth.FIRST,
 )
 _SIZES = {"depth": Limit.NOT_NEGATIVE, "width": Limit.NOT_NEGATIVE}
 GROOVE = operator(
@@ -236,6 +263,7 @@ GROOVE = operator(
     mix=combine.first_shows,
     bounds=combine.first_box,
     limits=_SIZES,
+    growth=Growth.FIRST,
 )
 TONGUE = operator(
     "tongue",
@@ -243,6 +271,7 @@ TONGUE = operator(
     mix=combine.first_shows,
     bounds=ridge_box,
     limits=_SIZES,
+    growth=Growth.FIRST,
 )
 # Not Boolean: a form along the line where two surfaces cross. Listed where one would look for it.
 COMBINATIONS["union", "pipe"] = COMBINATIONS["intersection", "pipe"] = PIPE
@@ -255,6 +284,7 @@ POWER = operator(
     combine=smooth.power_union,
     keeps=frozenset(),
     limits={"exponent": Limit.POSITIVE},
+    growth=power_growth,
 )
 
 

@@ -48,6 +48,12 @@ def grown(bounds: Boxes, by: float) -> Boxes:
 
 
 @func
+def moved_out(bounds: Boxes, by: float, side_growth: float) -> Boxes:
+    """The box of a shape whose surface is moved out; without end where its growth is not known."""
+    return grown(bounds, select(side_growth > ENDLESS and by > 0.0, UNBOUNDED, by * side_growth))
+
+
+@func
 def largest(v: vec3) -> float:
     """The largest component."""
     return max(max(v.x, v.y), v.z)

@@ -233,6 +233,7 @@ def interpolated(image: Texture2D, place: vec2) -> float:
     slope=IMAGE_SLOPE,
     bounds=rectangle_bounds,
     limits={"size": Limit.POSITIVE},
+    growth=1.0,
 )
 @func
 def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: float = 1.0) -> float:

@@ -7,7 +7,14 @@ times the largest stretch of the map, and a folded shape answers at least the di
 
 from __future__ import annotations
 
-from distal.fields.claims import UNBOUNDED, Bounds, Limit, Site, operator
+from distal.fields.claims import (
+    UNBOUNDED,
+    Bounds,
+    Growth,
+    Limit,
+    Site,
+    operator,
+)
 from distal.fields.combine import INSIDE_AND_BOUND
 from distal.fields.extents import ENDLESS, box_distance, reach
 from distal.fields.noise import GRADIENT_SLOPE, gradient_noise
@@ -228,6 +235,7 @@ WRAP = operator(
     bounds=wrapped_bounds,
     limits={"radius": Limit.POSITIVE},
     needs="a shape that ends along x before it meets itself behind, and along z before the axis",
+    growth=Growth.HELD,
 )
 SPHERE_FOLD = operator(
     "sphere fold",
@@ -237,6 +245,7 @@ SPHERE_FOLD = operator(
     bounds=sphere_folded_bounds,
     limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE},
     requires=fold_requirement,
+    growth=Growth.HELD,
 )
 REPEAT_SCALED = operator(
     "repeat scaled",
@@ -249,6 +258,7 @@ REPEAT_SCALED = operator(
     requires=ratio_requirement,
     needs="a shape beside the origin whose farthest point is less than ratio times as far as its "
     "nearest",
+    growth=Growth.HELD,
 )
 WARP = operator(
     "warp",
@@ -256,4 +266,5 @@ WARP = operator(
     finish=warped_value,
     slope=warped_slope,
     bounds=warped_bounds,
+    growth=Growth.HELD,
 )

@@ -66,6 +66,7 @@ def _repeats_are_few(iterations: int) -> str | None:
     limits={"size": Limit.POSITIVE},
     requires=_repeats_are_few,
     tier=3,
+    growth=1.0,
 )
 @func
 def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:
@@ -187,6 +188,7 @@ def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
     requires=_power_is_more,
     estimate=True,
     tier=3,
+    growth=1.0,
 )
 @func
 def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
@@ -257,6 +259,7 @@ def julia_estimate(start: vec4, c: vec4, iterations: int) -> float:
     requires=_set_is_connected,
     estimate=True,
     tier=3,
+    growth=1.0,
 )
 @func
 def quaternion_julia(p: vec3, c: vec4 = JULIA, iterations: int = 10) -> float:
@@ -322,6 +325,7 @@ def _scale_folds(scale: float, iterations: int) -> str | None:
     requires=_scale_folds,
     estimate=True,
     tier=3,
+    growth=1.0,
 )
 @func
 def mandelbox(p: vec3, size: float = 1.5, scale: float = 2.0, iterations: int = 8) -> float:

@@ -15,6 +15,7 @@ from distal.fields.claims import (
     UNBOUNDED,
     Bounds,
     Bounds2,
+    Growth,
     Limit,
     operator,
     primitive,
@@ -131,6 +132,8 @@ RELIEF = operator(
     finish=relief_value,
     keeps=NOTHING,
     slope=relief_slope,
+    needs="a flat field with a bound on its slope",
     bounds=relief_bounds,
+    growth=Growth.HELD,
 )
 """Terrain: the values of a flat field, ``Shape2D.from_function(height, slope=…)``, as heights."""

@@ -7,9 +7,22 @@ stand along z, their middle at z = 0.
 
 from __future__ import annotations
 
-from distal.fields.claims import EXACT, Bounds, Bounds2, Limit, operator
+from distal.fields.claims import (
+    EXACT,
+    Bounds,
+    Bounds2,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.ease import ease_requirement, ease_slope, eased
-from distal.fields.extents import at_least_one, hull_of, reach_flat, unless_endless
+from distal.fields.extents import (
+    at_least_one,
+    hull_of,
+    reach_flat,
+    rectangle_distance,
+    unless_endless,
+)
 from distal.fields.flats_edges import HALF_ROOT, TINY, inside_both
 from distal.lang import abs, clamp, cos, func, length, max, min, mix, sin, sqrt, vec2, vec3
 
@@ -113,6 +126,12 @@ def size_at(p: vec3, height: float, top: float) -> float:
 
 
 @func
+def both_ends(bounds: Bounds2, top: float) -> Bounds2:
+    """The rectangle around the lower end and the upper one."""
+    return hull_of(bounds, Bounds2(top * bounds.low, top * bounds.high))
+
+
+@func
 def tapered(p: vec3, height: float, top: float, bounds: Bounds2) -> vec2:
     """The place in the outline, scaled back."""
     return within_circle(p.xy / size_at(p, height, top), circle_around(bounds))
@@ -124,6 +143,8 @@ def tapered_value(
 ) -> float:
     """As ``extruded``; values are cut off where they would make the slope grow.
 
+    At least the distance to the box.
+
     With s the size at a height and R the circle around the outline, the change of s d(q / s) by
     s is d - q . grad d, at most R slope plus the value itself.
     """
@@ -131,7 +152,8 @@ def tapered_value(
     scale = size_at(p, height, top)
     limit = 0.5 * radius * slope
     near = scale * clamp(d, -limit, limit)
-    return extruded(max(near, length(p.xy) - scale * radius), p, height)
+    wall = max(length(p.xy) - scale * radius, rectangle_distance(p.xy, both_ends(bounds, top)))
+    return extruded(max(near, wall), p, height)
 
 
 @func
@@ -146,8 +168,7 @@ def tapered_slope(slope: float, bounds: Bounds2, height: float, top: float) -> f
 @func
 def tapered_bounds(bounds: Bounds2, height: float, top: float) -> Bounds:
     """Around both ends."""
-    upper = Bounds2(top * bounds.low, top * bounds.high)
-    return extruded_bounds(hull_of(bounds, upper), height)
+    return extruded_bounds(both_ends(bounds, top), height)
 
 
 @func
@@ -229,6 +250,7 @@ EXTRUDE = operator(
     slope=at_least_one,
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE},
+    growth=Growth.KEPT,
 )
 EXTRUDE_ROUNDED = operator(
     "extrude rounded",
@@ -238,6 +260,7 @@ EXTRUDE_ROUNDED = operator(
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE, "radius": Limit.NOT_NEGATIVE},
     requires=edges_requirement,
+    growth=Growth.KEPT,
 )
 EXTRUDE_CHAMFERED = operator(
     "extrude chamfered",
@@ -247,6 +270,7 @@ EXTRUDE_CHAMFERED = operator(
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE, "chamfer": Limit.NOT_NEGATIVE},
     requires=bevels_requirement,
+    growth=Growth.KEPT,
 )
 EXTRUDE_TWISTED = operator(
     "extrude twisted",
@@ -256,6 +280,7 @@ EXTRUDE_TWISTED = operator(
     bounds=twisted_bounds,
     limits={"height": Limit.POSITIVE},
     needs=ENDED,
+    growth=Growth.HELD,
 )
 EXTRUDE_TAPERED = operator(
     "extrude tapered",
@@ -265,6 +290,7 @@ EXTRUDE_TAPERED = operator(
     bounds=tapered_bounds,
     limits={"height": Limit.POSITIVE, "top": Limit.POSITIVE},
     needs=ENDED,
+    growth=Growth.HELD,
 )
 LOFT = operator(
     "loft",
@@ -277,4 +303,5 @@ LOFT = operator(
     limits={"height": Limit.POSITIVE},
     requires=loft_requirement,
     needs=ENDED,
+    growth=Growth.KEPT,
 )

@@ -181,6 +181,16 @@ def sweep_box(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]) -> 
 
 
 @func
+def sweep_growth(growth: float, pieces: int, point_at: Callable[[int], vec3]) -> float:
+    """How far out a value of 1 may be.
+
+    A place lies within the growth of the outline's circle, and 1 past a joint's plane; at the
+    sharpest bend both count by the inverse cosine.
+    """
+    return min((1.0 + growth) / max(sharpest_bend(pieces, point_at), SHARPEST), UNBOUNDED)
+
+
+@func
 def swept(field: Field2, p: vec3, points: Buffer[vec3], bounds: Bounds2, up: vec3 = UP) -> float:
     """The outline along the straight ways between points, cut off at both ends."""
     return swept_along(field, p, size(points) - 1, lambda i: points[i], up, bounds).x
@@ -204,6 +214,12 @@ def swept_slope(slope: float, bounds: Bounds2, points: Buffer[vec3]) -> float:
 def swept_bounds(bounds: Bounds2, points: Buffer[vec3]) -> Bounds:
     """As ``sweep_box``."""
     return sweep_box(bounds, size(points) - 1, lambda i: points[i])
+
+
+@func
+def swept_growth(growth: float, points: Buffer[vec3]) -> float:
+    """As ``sweep_growth``."""
+    return sweep_growth(growth, size(points) - 1, lambda i: points[i])
 
 
 @func
@@ -273,6 +289,18 @@ def swept_bezier_bounds(
     return sweep_box(bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end))
 
 
+@func
+def swept_bezier_growth(
+    growth: float,
+    start: vec3 = START,
+    control: vec3 = CONTROL,
+    end: vec3 = END,
+    pieces: int = 12,
+) -> float:
+    """As ``sweep_growth``."""
+    return sweep_growth(growth, pieces, lambda i: on_bezier(i, pieces, start, control, end))
+
+
 def bezier_requirement(start: tuple[float, ...], end: tuple[float, ...], pieces: int) -> str | None:
     """Why a curve cannot be, or None."""
     if not 1 <= pieces <= 1000:
@@ -288,6 +316,7 @@ SWEEP = operator(
     slope=swept_slope,
     bounds=swept_bounds,
     needs=FOLLOWS,
+    growth=swept_growth,
 )
 SWEEP_BEZIER = operator(
     "sweep bezier",
@@ -298,4 +327,5 @@ SWEEP_BEZIER = operator(
     bounds=swept_bezier_bounds,
     requires=bezier_requirement,
     needs=FOLLOWS,
+    growth=swept_bezier_growth,
 )

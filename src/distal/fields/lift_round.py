@@ -9,7 +9,15 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from distal.fields.claims import LOWER_BOUND, UNBOUNDED, Bounds, Bounds2, Limit, operator
+from distal.fields.claims import (
+    LOWER_BOUND,
+    UNBOUNDED,
+    Bounds,
+    Bounds2,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.extents import (
     at_least_one,
     box_distance,
@@ -17,7 +25,7 @@ from distal.fields.extents import (
     turned,
     unless_endless,
 )
-from distal.fields.flats_edges import PI, inside_both
+from distal.fields.flats_edges import PI, TINY, inside_both
 from distal.lang import (
     Field3,
     abs,
@@ -87,6 +95,12 @@ def partly_revolved_value(d: float, p: vec3, angle: float = PI) -> float:
     end = from_end_face(p, angle)
     behind = select(end.x > 0.0, end.y, -length(p.xz))
     return inside_both(d, select(end.y > 0.0, end.y, behind))
+
+
+@func
+def partly_revolved_growth(growth: float, angle: float = PI) -> float:
+    """Behind the axis an end counts as a whole plane: its distance is too little by the sine."""
+    return max(growth, 1.0 / max(sin(min(0.5 * angle, 0.5 * PI)), TINY))
 
 
 def turn_requirement(offset: float, angle: float) -> str | None:
@@ -231,7 +245,13 @@ def slices_requirement(count: int) -> str | None:
     return None if 1 <= count <= 4096 else "count must be from 1 to 4096"
 
 
-REVOLVE = operator("revolve", point=revolved, keeps=LOWER_BOUND, bounds=revolved_bounds)
+REVOLVE = operator(
+    "revolve",
+    point=revolved,
+    keeps=LOWER_BOUND,
+    bounds=revolved_bounds,
+    growth=Growth.KEPT,
+)
 REVOLVE_PARTLY = operator(
     "revolve partly",
     point=partly_revolved,
@@ -241,6 +261,7 @@ REVOLVE_PARTLY = operator(
     bounds=revolved_bounds,
     limits={"angle": Limit.POSITIVE},
     requires=turn_requirement,
+    growth=partly_revolved_growth,
 )
 WRAP_CYLINDER = operator(
     "wrap cylinder",
@@ -251,6 +272,7 @@ WRAP_CYLINDER = operator(
     limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
     requires=relief_requirement,
     needs="a flat shape that is less wide than the cylinder is around",
+    growth=Growth.HELD,
 )
 SLICE = operator(
     "slice",
@@ -258,6 +280,7 @@ SLICE = operator(
     keeps=LOWER_BOUND,
     bounds=sliced_bounds,
     limits={"normal": Limit.UNIT},
+    growth=Growth.TURNED,
 )
 PROJECT = operator(
     "project",
@@ -267,4 +290,5 @@ PROJECT = operator(
     bounds=projected_bounds,
     requires=slices_requirement,
     needs="a solid that ends along z",
+    growth=Growth.KEPT,
 )

@@ -32,6 +32,7 @@ def metaballs_bounds(balls: Buffer[vec4], softness: float) -> Bounds:
     bounds=metaballs_bounds,
     limits={"softness": Limit.NOT_NEGATIVE},
     tier=2,
+    growth=1.0,
 )
 @func
 def metaballs(p: vec3, balls: Buffer[vec4], softness: float = 0.1) -> float:

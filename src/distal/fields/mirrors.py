@@ -10,7 +10,13 @@ lost where the shape reaches through a mirror: what lies behind it is not seen, 
 
 from __future__ import annotations
 
-from distal.fields.claims import LOWER_BOUND, Bounds, Limit, operator
+from distal.fields.claims import (
+    LOWER_BOUND,
+    Bounds,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.extents import hull_of, turned
 from distal.lang import abs, atan2, cos, dot, func, length, mat3, max, min, round, sin, vec2, vec3
 
@@ -106,9 +112,15 @@ def kaleidoscope(p: vec3, count: int) -> vec3:
 
 
 @func
+def outer_radius(bounds: Bounds) -> float:
+    """How far out a box goes from the y axis."""
+    return length(max(abs(bounds.low.xz), abs(bounds.high.xz)))
+
+
+@func
 def kaleidoscope_bounds(bounds: Bounds) -> Bounds:
     """As far out as the box goes, all around."""
-    side = length(max(abs(bounds.low.xz), abs(bounds.high.xz)))
+    side = outer_radius(bounds)
     return Bounds(vec3(-side, bounds.low.y, -side), vec3(side, bounds.high.y, side))
 
 
@@ -128,6 +140,7 @@ MIRROR = operator(
     keeps=LOWER_BOUND,
     bounds=mirrored_bounds,
     limits={"normal": Limit.UNIT},
+    growth=Growth.TURNED,
 )
 SYMMETRY = operator(
     "symmetry",
@@ -135,15 +148,27 @@ SYMMETRY = operator(
     keeps=LOWER_BOUND,
     bounds=symmetric_bounds,
     requires=symmetry_requirement,
+    growth=Growth.KEPT,
 )
 MIRROR_DIAGONAL = operator(
-    "mirror diagonal", point=diagonal, keeps=LOWER_BOUND, bounds=diagonal_bounds
+    "mirror diagonal",
+    point=diagonal,
+    keeps=LOWER_BOUND,
+    bounds=diagonal_bounds,
+    growth=Growth.KEPT,
 )
-MIRROR_OCTANT = operator("mirror octant", point=octant, keeps=LOWER_BOUND, bounds=octant_bounds)
+MIRROR_OCTANT = operator(
+    "mirror octant",
+    point=octant,
+    keeps=LOWER_BOUND,
+    bounds=octant_bounds,
+    growth=Growth.CORNERED,
+)
 KALEIDOSCOPE = operator(
     "kaleidoscope",
     point=kaleidoscope,
     keeps=LOWER_BOUND,
     bounds=kaleidoscope_bounds,
     requires=count_requirement,
+    growth=Growth.TURNED,
 )

@@ -3,16 +3,21 @@
 What flows in: a distance. What flows out: the distance of the new surface, its box, its claims.
 Knows no second shape.
 
-A box that grows by a distance holds the grown surface of every shape whose value outside its own
-box is at least the distance to the box. That is so for exact shapes, and for what unions, cuts,
-blends, offsets and rigid motions make of them; other operators see to it themselves (``deform``).
+A surface that is moved out by r is where the old field is r. The box grows by r times the growth
+(``claims``), as a field may be far below the distance there.
 A lower bound is not kept by moving the surface: it says nothing of the levels inside and near it.
 """
 
 from __future__ import annotations
 
-from distal.fields.claims import EXACT_OUTSIDE, Claim, Limit, operator
-from distal.fields.extents import Boxes, at_least_one, grown
+from distal.fields.claims import (
+    EXACT_OUTSIDE,
+    Claim,
+    Growth,
+    Limit,
+    operator,
+)
+from distal.fields.extents import Boxes, at_least_one, moved_out
 from distal.lang import abs, dot, func, max, vec2, vec3
 
 INSIDE_AND_BOUND = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
@@ -27,9 +32,9 @@ def rounded(d: float, radius: float) -> float:
 
 
 @func
-def rounded_bounds(bounds: Boxes, radius: float) -> Boxes:
-    """The box grown by the radius."""
-    return grown(bounds, radius)
+def rounded_bounds(bounds: Boxes, radius: float, side_growth: float) -> Boxes:
+    """The box moved out by the radius."""
+    return moved_out(bounds, radius, side_growth)
 
 
 @func
@@ -39,9 +44,9 @@ def offset_value(d: float, distance: float) -> float:
 
 
 @func
-def offset_bounds(bounds: Boxes, distance: float) -> Boxes:
-    """The box grown by what the surface moves out; it is not made smaller."""
-    return grown(bounds, max(distance, 0.0))
+def offset_bounds(bounds: Boxes, distance: float, side_growth: float) -> Boxes:
+    """The box moved out as the surface is; it is not made smaller."""
+    return moved_out(bounds, max(distance, 0.0), side_growth)
 
 
 @func
@@ -69,15 +74,15 @@ def shell_outer(d: float, thickness: float) -> float:
 
 
 @func
-def shell_centre_bounds(bounds: Boxes, thickness: float) -> Boxes:
-    """The box grown by half the wall."""
-    return grown(bounds, 0.5 * thickness)
+def shell_centre_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
+    """The box moved out by half the wall."""
+    return moved_out(bounds, 0.5 * thickness, side_growth)
 
 
 @func
-def shell_outer_bounds(bounds: Boxes, thickness: float) -> Boxes:
-    """The box grown by the wall."""
-    return grown(bounds, thickness)
+def shell_outer_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
+    """The box moved out by the wall."""
+    return moved_out(bounds, thickness, side_growth)
 
 
 @func
@@ -111,8 +116,14 @@ ROUND = operator(
     keeps_exact=EXACT_OUTSIDE,
     bounds=rounded_bounds,
     limits={"radius": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
 )
-OFFSET = operator("offset", finish=offset_value, bounds=offset_bounds)
+OFFSET = operator(
+    "offset",
+    finish=offset_value,
+    bounds=offset_bounds,
+    growth=Growth.KEPT,
+)
 DILATE = operator(
     "dilate",
     finish=offset_value,
@@ -120,18 +131,30 @@ DILATE = operator(
     keeps_exact=EXACT_OUTSIDE,
     bounds=offset_bounds,
     limits={"distance": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
 )
 ERODE = operator(
-    "erode", finish=eroded, keeps=INSIDE_ALONE, limits={"distance": Limit.NOT_NEGATIVE}
+    "erode",
+    finish=eroded,
+    keeps=INSIDE_ALONE,
+    limits={"distance": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
 )
 THICK = {"thickness": Limit.POSITIVE}
-SHELL_INNER = operator("shell inner", finish=shell_inner, keeps_exact=EXACT_OUTSIDE, limits=THICK)
+SHELL_INNER = operator(
+    "shell inner",
+    finish=shell_inner,
+    keeps_exact=EXACT_OUTSIDE,
+    limits=THICK,
+    growth=Growth.KEPT,
+)
 SHELL_CENTRE = operator(
     "shell centre",
     finish=shell_centre,
     keeps_exact=EXACT_OUTSIDE,
     bounds=shell_centre_bounds,
     limits=THICK,
+    growth=Growth.KEPT,
 )
 SHELL_OUTER = operator(
     "shell outer",
@@ -139,8 +162,14 @@ SHELL_OUTER = operator(
     keeps_exact=EXACT_OUTSIDE,
     bounds=shell_outer_bounds,
     limits=THICK,
+    growth=Growth.KEPT,
 )
-CUT = {"keeps": INSIDE_AND_BOUND, "slope": at_least_one, "limits": {"normal": Limit.UNIT}}
+CUT = {
+    "keeps": INSIDE_AND_BOUND,
+    "growth": Growth.KEPT,
+    "slope": at_least_one,
+    "limits": {"normal": Limit.UNIT},
+}
 SPLIT_BELOW = operator("split below", finish=kept_below, **CUT)
 SPLIT_ABOVE = operator("split above", finish=kept_above, **CUT)
 SPLIT_BELOW_FLAT = operator("flat split below", finish=kept_below_flat, **CUT)

@@ -7,7 +7,15 @@ numbers alone: they are computed once a frame. Knows nothing of copies (``mirror
 
 from __future__ import annotations
 
-from distal.fields.claims import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, operator
+from distal.fields.claims import (
+    EXACT,
+    LOWER_BOUND,
+    NOTHING,
+    Bounds,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.extents import at_least_one, box_distance, smallest, turned
 from distal.lang import (
     abs,
@@ -327,15 +335,48 @@ def direction_requirement(source: tuple[float, ...], target: tuple[float, ...]) 
     return None
 
 
-TRANSLATE = operator("translate", point=translated, keeps=EXACT, bounds=translated_bounds)
-ROTATE = operator(
-    "rotate", point=rotated, keeps=EXACT, bounds=rotated_bounds, limits={"axis": Limit.UNIT}
+TRANSLATE = operator(
+    "translate",
+    point=translated,
+    keeps=EXACT,
+    bounds=translated_bounds,
+    growth=Growth.KEPT,
 )
-ROTATE_X = operator("rotate x", point=rotated_x, keeps=EXACT, bounds=rotated_x_bounds)
-ROTATE_Y = operator("rotate y", point=rotated_y, keeps=EXACT, bounds=rotated_y_bounds)
-ROTATE_Z = operator("rotate z", point=rotated_z, keeps=EXACT, bounds=rotated_z_bounds)
+ROTATE = operator(
+    "rotate",
+    point=rotated,
+    keeps=EXACT,
+    bounds=rotated_bounds,
+    limits={"axis": Limit.UNIT},
+    growth=Growth.TURNED,
+)
+ROTATE_X = operator(
+    "rotate x",
+    point=rotated_x,
+    keeps=EXACT,
+    bounds=rotated_x_bounds,
+    growth=Growth.TURNED,
+)
+ROTATE_Y = operator(
+    "rotate y",
+    point=rotated_y,
+    keeps=EXACT,
+    bounds=rotated_y_bounds,
+    growth=Growth.TURNED,
+)
+ROTATE_Z = operator(
+    "rotate z",
+    point=rotated_z,
+    keeps=EXACT,
+    bounds=rotated_z_bounds,
+    growth=Growth.TURNED,
+)
 ROTATE_EULER = operator(
-    "rotate euler", point=rotated_euler, keeps=EXACT, bounds=rotated_euler_bounds
+    "rotate euler",
+    point=rotated_euler,
+    keeps=EXACT,
+    bounds=rotated_euler_bounds,
+    growth=Growth.TURNED,
 )
 ROTATE_QUATERNION = operator(
     "rotate quaternion",
@@ -343,6 +384,7 @@ ROTATE_QUATERNION = operator(
     keeps=EXACT,
     bounds=rotated_quaternion_bounds,
     limits={"quaternion": Limit.UNIT},
+    growth=Growth.TURNED,
 )
 ROTATE_MATRIX = operator(
     "rotate matrix",
@@ -350,6 +392,7 @@ ROTATE_MATRIX = operator(
     keeps=EXACT,
     bounds=rotated_matrix_bounds,
     requires=orthonormal_requirement,
+    growth=Growth.TURNED,
 )
 ORIENT = operator(
     "orient",
@@ -357,6 +400,7 @@ ORIENT = operator(
     keeps=EXACT,
     bounds=oriented_bounds,
     requires=direction_requirement,
+    growth=Growth.TURNED,
 )
 SCALE = operator(
     "scale",
@@ -365,6 +409,7 @@ SCALE = operator(
     keeps=EXACT,
     bounds=scaled_bounds,
     limits={"factor": Limit.POSITIVE},
+    growth=Growth.KEPT,
 )
 STRETCH = operator(
     "scale axes",
@@ -374,6 +419,7 @@ STRETCH = operator(
     slope=at_least_one,
     bounds=stretched_bounds,
     limits={"factors": Limit.POSITIVE},
+    growth=Growth.HELD,
 )
 SHEAR = operator(
     "shear",
@@ -382,4 +428,5 @@ SHEAR = operator(
     keeps=NOTHING,
     slope=sheared_slope,
     bounds=sheared_bounds,
+    growth=Growth.HELD,
 )

@@ -6,7 +6,15 @@ ask the shape at, and the rectangle of the placed shape. As ``place`` and ``mirr
 
 from __future__ import annotations
 
-from distal.fields.claims import EXACT, LOWER_BOUND, NOTHING, Bounds2, Limit, operator
+from distal.fields.claims import (
+    EXACT,
+    LOWER_BOUND,
+    NOTHING,
+    Bounds2,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.extents import at_least_one, hull_of, rectangle_distance, turned_flat
 from distal.fields.mirrors import count_requirement, folded
 from distal.fields.place import scaled_value
@@ -186,9 +194,19 @@ def symmetry_flat_requirement(x: bool, y: bool) -> str | None:
 
 
 TRANSLATE_FLAT = operator(
-    "flat translate", point=translated_flat, keeps=EXACT, bounds=translated_flat_bounds
+    "flat translate",
+    point=translated_flat,
+    keeps=EXACT,
+    bounds=translated_flat_bounds,
+    growth=Growth.KEPT,
 )
-ROTATE_FLAT = operator("flat rotate", point=rotated_flat, keeps=EXACT, bounds=rotated_flat_bounds)
+ROTATE_FLAT = operator(
+    "flat rotate",
+    point=rotated_flat,
+    keeps=EXACT,
+    bounds=rotated_flat_bounds,
+    growth=Growth.TURNED,
+)
 SCALE_FLAT = operator(
     "flat scale",
     point=scaled_flat,
@@ -196,6 +214,7 @@ SCALE_FLAT = operator(
     keeps=EXACT,
     bounds=scaled_flat_bounds,
     limits={"factor": Limit.POSITIVE},
+    growth=Growth.KEPT,
 )
 STRETCH_FLAT = operator(
     "flat scale axes",
@@ -205,6 +224,7 @@ STRETCH_FLAT = operator(
     slope=at_least_one,
     bounds=stretched_flat_bounds,
     limits={"factors": Limit.POSITIVE},
+    growth=Growth.HELD,
 )
 SHEAR_FLAT = operator(
     "flat shear",
@@ -213,6 +233,7 @@ SHEAR_FLAT = operator(
     keeps=NOTHING,
     slope=sheared_flat_slope,
     bounds=sheared_flat_bounds,
+    growth=Growth.HELD,
 )
 MIRROR_FLAT = operator(
     "flat mirror",
@@ -220,6 +241,7 @@ MIRROR_FLAT = operator(
     keeps=LOWER_BOUND,
     bounds=mirrored_flat_bounds,
     limits={"normal": Limit.UNIT},
+    growth=Growth.TURNED,
 )
 SYMMETRY_FLAT = operator(
     "flat symmetry",
@@ -227,12 +249,21 @@ SYMMETRY_FLAT = operator(
     keeps=LOWER_BOUND,
     bounds=symmetric_flat_bounds,
     requires=symmetry_flat_requirement,
+    growth=Growth.KEPT,
 )
 MIRROR_DIAGONAL_FLAT = operator(
-    "flat mirror diagonal", point=diagonal_flat, keeps=LOWER_BOUND, bounds=diagonal_flat_bounds
+    "flat mirror diagonal",
+    point=diagonal_flat,
+    keeps=LOWER_BOUND,
+    bounds=diagonal_flat_bounds,
+    growth=Growth.KEPT,
 )
 MIRROR_OCTANT_FLAT = operator(
-    "flat mirror octant", point=octant_flat, keeps=LOWER_BOUND, bounds=octant_flat_bounds
+    "flat mirror octant",
+    point=octant_flat,
+    keeps=LOWER_BOUND,
+    bounds=octant_flat_bounds,
+    growth=Growth.CORNERED,
 )
 KALEIDOSCOPE_FLAT = operator(
     "flat kaleidoscope",
@@ -240,4 +271,5 @@ KALEIDOSCOPE_FLAT = operator(
     keeps=LOWER_BOUND,
     bounds=kaleidoscope_flat_bounds,
     requires=count_requirement,
+    growth=Growth.TURNED,
 )

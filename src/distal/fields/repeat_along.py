@@ -13,12 +13,13 @@ from distal.fields.claims import (
     LOWER_BOUND,
     UNBOUNDED,
     Bounds,
+    Growth,
     Limit,
     Site,
     operator,
 )
 from distal.fields.combine import INSIDE_AND_BOUND
-from distal.fields.extents import diameter
+from distal.fields.extents import box_distance, diameter
 from distal.fields.repeat import (
     ROOM,
     Copies,
@@ -77,7 +78,8 @@ def along_line_value(
 ) -> float:
     """The value, safe for the other copies: each lies in a cylinder around the line.
 
-    The cylinders are as long as the box along the line, and hold the ball around it.
+    The cylinders are as long as the box along the line, and hold the ball around it. Beyond the box
+    around all copies the value is at least the distance to it.
     """
     step = line_step(start, end, count)
     spacing = length(step)
@@ -92,7 +94,8 @@ def along_line_value(
     outside = length(away - along * unit) - 0.5 * diameter(bounds)
     beyond = vec2(distance - half, outside)
     own = length(max(beyond, vec2(0.0))) + min(max(beyond.x, beyond.y), 0.0)
-    return min(max(d, own), length(max(vec2(gap, outside), vec2(0.0))))
+    safe = min(max(d, own), length(max(vec2(gap, outside), vec2(0.0))))
+    return max(safe, box_distance(p, along_line_bounds(bounds, start, end)))
 
 
 @func
@@ -169,7 +172,9 @@ def nearest_on_ring(
     beyond = abs(away.xz) - copies.origin.xz - half.xz
     opposite = length(vec2(max(min(beyond.x, beyond.y), 0.0), above))
     best = column if column.distance < row.distance else row
-    return Nearest(min(best.distance, opposite), best.site)
+    # A side that is not asked stands in as endless, which it is not beyond the box of all.
+    block = bounds_in(bounds, copies)
+    return Nearest(max(min(best.distance, opposite), box_distance(p, block)), best.site)
 
 
 @func
@@ -273,6 +278,7 @@ REPEAT_LINE = operator(
     bounds=along_line_bounds,
     requires=line_requirement,
     needs="a shape shorter along the line than the way from copy to copy, with a little room",
+    growth=Growth.HELD,
 )
 REPEAT_RING = operator(
     "repeat ring",
@@ -284,6 +290,7 @@ REPEAT_RING = operator(
     limits={"spacing": Limit.POSITIVE},
     requires=ring_requirement,
     needs="a shape whose box is smaller than the spacing, with a little room",
+    growth=Growth.HELD,
 )
 REPEAT_AT = operator(
     "repeat at",
@@ -291,4 +298,5 @@ REPEAT_AT = operator(
     site=at_positions_site,
     keeps=EXACT_OUTSIDE,
     bounds=at_positions_bounds,
+    growth=Growth.KEPT,
 )

@@ -14,6 +14,7 @@ from distal.fields.claims import (
     UNBOUNDED,
     Bounds,
     Bounds2,
+    Growth,
     Site,
     Site2,
     operator,
@@ -37,8 +38,8 @@ from distal.fields.repeat_grid import (
     repeated_mirrored,
 )
 from distal.fields.repeat_polar import (
-    REPEAT_POLAR,
-    REPEAT_POLAR_NEIGHBOURS,
+    POLAR_FITTING,
+    POLAR_SMALLER,
     nearest_polar,
     polar_around_requirement,
     polar_requirement,
@@ -348,6 +349,7 @@ REPEAT_FLAT = operator(
     bounds=repeated_flat_bounds,
     limits=SPACING,
     needs=FITTING,
+    growth=Growth.HELD,
 )
 REPEAT_NEIGHBOURS_FLAT = operator(
     "flat repeat neighbours",
@@ -359,6 +361,7 @@ REPEAT_NEIGHBOURS_FLAT = operator(
     limits=SPACING,
     requires=neighbours_requirement,
     needs=SMALLER,
+    growth=Growth.HELD,
 )
 REPEAT_LIMITED_FLAT = operator(
     "flat repeat limited",
@@ -370,6 +373,7 @@ REPEAT_LIMITED_FLAT = operator(
     limits=SPACING,
     requires=count_requirement,
     needs=FITTING,
+    growth=Growth.HELD,
 )
 REPEAT_LIMITED_NEIGHBOURS_FLAT = operator(
     "flat repeat limited neighbours",
@@ -381,6 +385,7 @@ REPEAT_LIMITED_NEIGHBOURS_FLAT = operator(
     limits=SPACING,
     requires=limited_requirement,
     needs=SMALLER,
+    growth=Growth.HELD,
 )
 REPEAT_MIRRORED_FLAT = operator(
     "flat repeat mirrored",
@@ -388,6 +393,7 @@ REPEAT_MIRRORED_FLAT = operator(
     keeps=LOWER_BOUND,
     bounds=repeated_flat_bounds,
     limits=SPACING,
+    growth=Growth.KEPT,
 )
 REPEAT_POLAR_FLAT = operator(
     "flat repeat polar",
@@ -397,7 +403,8 @@ REPEAT_POLAR_FLAT = operator(
     slope=repeated_polar_flat_slope,
     bounds=kaleidoscope_flat_bounds,
     requires=polar_requirement,
-    needs=REPEAT_POLAR.needs.replace("the y axis", "the origin"),
+    needs=POLAR_FITTING.replace("the y axis", "the origin"),
+    growth=Growth.HELD,
 )
 REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
     "flat repeat polar neighbours",
@@ -407,7 +414,8 @@ REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
     slope=repeated_polar_flat_around_slope,
     bounds=kaleidoscope_flat_bounds,
     requires=polar_around_requirement,
-    needs=REPEAT_POLAR_NEIGHBOURS.needs.replace("the y axis", "the origin"),
+    needs=POLAR_SMALLER.replace("the y axis", "the origin"),
+    growth=Growth.HELD,
 )
 REPEAT_AT_FLAT = operator(
     "flat repeat at",
@@ -415,4 +423,5 @@ REPEAT_AT_FLAT = operator(
     site=at_positions_flat_site,
     keeps=EXACT_OUTSIDE,
     bounds=at_positions_flat_bounds,
+    growth=Growth.KEPT,
 )

@@ -5,7 +5,15 @@ What flows in: the scene code of ``repeat``. What flows out: operators, whose na
 
 from __future__ import annotations
 
-from distal.fields.claims import LOWER_BOUND, UNBOUNDED, Bounds, Limit, Site, operator
+from distal.fields.claims import (
+    LOWER_BOUND,
+    UNBOUNDED,
+    Bounds,
+    Growth,
+    Limit,
+    Site,
+    operator,
+)
 from distal.fields.combine import INSIDE_AND_BOUND
 from distal.fields.repeat import (
     Copies,
@@ -218,6 +226,7 @@ REPEAT = operator(
     bounds=repeated_bounds,
     limits=SPACING,
     needs=FITTING,
+    growth=Growth.HELD,
 )
 REPEAT_NEIGHBOURS = operator(
     "repeat neighbours",
@@ -229,6 +238,7 @@ REPEAT_NEIGHBOURS = operator(
     limits=SPACING,
     requires=neighbours_requirement,
     needs=SMALLER,
+    growth=Growth.HELD,
 )
 REPEAT_MIRRORED = operator(
     "repeat mirrored",
@@ -236,6 +246,7 @@ REPEAT_MIRRORED = operator(
     keeps=LOWER_BOUND,
     bounds=repeated_mirrored_bounds,
     limits=SPACING,
+    growth=Growth.KEPT,
 )
 REPEAT_LIMITED = operator(
     "repeat limited",
@@ -247,6 +258,7 @@ REPEAT_LIMITED = operator(
     limits=SPACING,
     requires=count_requirement,
     needs=FITTING,
+    growth=Growth.HELD,
 )
 REPEAT_LIMITED_NEIGHBOURS = operator(
     "repeat limited neighbours",
@@ -258,6 +270,7 @@ REPEAT_LIMITED_NEIGHBOURS = operator(
     limits=SPACING,
     requires=limited_requirement,
     needs=SMALLER,
+    growth=Growth.HELD,
 )
 REPEAT_INTERVAL = operator(
     "repeat interval",
@@ -269,6 +282,7 @@ REPEAT_INTERVAL = operator(
     limits=SPACING,
     requires=interval_requirement,
     needs=FITTING,
+    growth=Growth.HELD,
 )
 REPEAT_HALF = operator(
     "repeat half",
@@ -279,4 +293,5 @@ REPEAT_HALF = operator(
     bounds=repeated_half_bounds,
     limits=SPACING,
     needs=FITTING,
+    growth=Growth.HELD,
 )

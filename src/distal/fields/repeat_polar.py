@@ -14,10 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import LOWER_BOUND, UNBOUNDED, Bounds, Site, operator
+from distal.fields.claims import (
+    LOWER_BOUND,
+    UNBOUNDED,
+    Bounds,
+    Growth,
+    Site,
+    operator,
+)
 from distal.fields.combine import INSIDE_AND_BOUND
-from distal.fields.extents import ENDLESS
-from distal.fields.mirrors import kaleidoscope_bounds
+from distal.fields.extents import ENDLESS, drum_distance
+from distal.fields.mirrors import kaleidoscope_bounds, outer_radius
 from distal.fields.place import rotated_y
 from distal.fields.repeat import LEAD, ROOM, Nearest
 from distal.lang import (
@@ -102,6 +109,12 @@ def to_next(at: vec2, angle: float, sector: Sector) -> float:
 
 
 @func
+def to_drum(p: vec3, bounds: Bounds) -> float:
+    """The distance to the drum that holds all copies: sectors end neither outward nor upward."""
+    return drum_distance(length(p.xz), p.y, outer_radius(bounds), bounds.low.y, bounds.high.y)
+
+
+@func
 def polar_index(p: vec3, count: int, sector: Sector) -> float:
     """The copy whose middle is nearest by angle: from minus to plus half the count."""
     u = sector.direction
@@ -133,20 +146,20 @@ def repeated_polar(p: vec3, count: int, bounds: Bounds) -> Site:
 
 @func
 def repeated_polar_value(d: float, p: vec3, count: int, bounds: Bounds) -> float:
-    """The value, safe for the other sectors."""
+    """The value, safe for the other sectors; at least the distance to the drum."""
     if count < 2:
-        return d
+        return max(d, to_drum(p, bounds))
     sector = sector_of(bounds)
     at = in_sector(turned_by(p, polar_index(p, count, sector), count), sector)
     others = to_next(at, 2.0 * PI / float(count) - sector.half, sector)
-    return min(max(d, to_own(at, sector)), others)
+    return max(min(max(d, to_own(at, sector)), others), to_drum(p, bounds))
 
 
 @func
 def sector_slope(slope: float, bounds: Bounds, free: float) -> float:
     """The child's slope, or 1; none where its sector is larger than ``free``."""
     sector = sector_of(bounds)
-    outer = length(max(abs(bounds.low.xz), abs(bounds.high.xz)))
+    outer = outer_radius(bounds)
     crowded = sector.half > free or sector.inner <= 1e-3 * outer or outer > ENDLESS
     return select(crowded, UNBOUNDED, max(slope, 1.0))
 
@@ -155,7 +168,7 @@ def sector_slope(slope: float, bounds: Bounds, free: float) -> float:
 def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
     """The child's, where it fits between the half-planes around it."""
     if count < 2:
-        return slope
+        return max(slope, 1.0)
     return sector_slope(slope, bounds, PI / float(count) * (1.0 - 2.0 * ROOM))
 
 
@@ -189,7 +202,7 @@ def nearest_polar(
         nearest = min(nearest, behind)
     if neighbours == 2 and count > 3:
         nearest = min(nearest, to_next(at, 2.0 * step - sector.half, sector))
-    return Nearest(nearest, polar_site(p, chosen, count))
+    return Nearest(max(nearest, to_drum(p, bounds)), polar_site(p, chosen, count))
 
 
 @func
@@ -228,6 +241,14 @@ def polar_around_requirement(count: int, neighbours: int) -> str | None:
     return None if count > neighbours else f"count must be {neighbours + 1} or more"
 
 
+POLAR_FITTING = (
+    "a shape beside the y axis whose box fits in its sector, with a little room: set neighbours=1 "
+    "for a wider one, or kaleidoscope for one that is symmetric in its sector"
+)
+POLAR_SMALLER = (
+    "a shape beside the y axis, narrower than the sectors that are asked and less than half a turn "
+    "wide"
+)
 REPEAT_POLAR = operator(
     "repeat polar",
     point=repeated_polar,
@@ -236,8 +257,8 @@ REPEAT_POLAR = operator(
     slope=repeated_polar_slope,
     bounds=kaleidoscope_bounds,
     requires=polar_requirement,
-    needs="a shape beside the y axis whose box fits in its sector, with a little room: set "
-    "neighbours=1 for a wider one, or kaleidoscope for one that is symmetric in its sector",
+    needs=POLAR_FITTING,
+    growth=Growth.HELD,
 )
 REPEAT_POLAR_NEIGHBOURS = operator(
     "repeat polar neighbours",
@@ -247,6 +268,6 @@ REPEAT_POLAR_NEIGHBOURS = operator(
     slope=repeated_polar_around_slope,
     bounds=kaleidoscope_bounds,
     requires=polar_around_requirement,
-    needs="a shape beside the y axis, narrower than the sectors that are asked and less than "
-    "half a turn wide",
+    needs=POLAR_SMALLER,
+    growth=Growth.HELD,
 )

@@ -13,6 +13,8 @@ from distal.lang import abs, func, length, max, min, sqrt, vec3
 
 UNIT_CUBE: Final = vec3(1.0)
 HALF_ROOT: Final = 0.7071067811865476
+# A point that is past three sides by r each is this times r from the box.
+ROOT_THREE: Final = 1.7320508075688772
 
 # What the largest of several plane distances promises: a convex shape's inside is exact.
 CONVEX_BOUND: Final = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
@@ -61,7 +63,14 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     return corner(abs(p) - 0.5 * size)
 
 
-@primitive("BoxCheap", CONVEX_BOUND, bounds=box_bounds, limits={"size": Limit.POSITIVE})
+@primitive(
+    "BoxCheap",
+    CONVEX_BOUND,
+    bounds=box_bounds,
+    limits={"size": Limit.POSITIVE},
+    growth=ROOT_THREE,
+    side_growth=1.0,
+)
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     """Box without a square root; outside, off the faces, the value is less than the distance.
@@ -131,6 +140,7 @@ def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
     bounds=box_bounds,
     limits={"size": Limit.POSITIVE, "chamfer": Limit.NOT_NEGATIVE},
     requires=chamfer_box_requires,
+    growth=1.0,
 )
 @func
 def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:

@@ -189,11 +189,19 @@ def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     return capped_cone_profile(around_y(p), radius, 0.0, height)
 
 
+@func
+def cone_cheap_growth(radius: float, height: float) -> float:
+    """Side and base moved out by 1: how far that moves the tip, or the rim out and down."""
+    side = length(vec2(height, radius))
+    return max(side / radius, length(vec2((side + radius) / height, 1.0)))
+
+
 @primitive(
     "ConeCheap",
     CONVEX_BOUND,
     bounds=cone_bounds,
     limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
+    growth=cone_cheap_growth,
 )
 @func
 def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:

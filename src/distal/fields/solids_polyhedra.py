@@ -10,7 +10,7 @@ import math
 from typing import Any, Final
 
 from distal.fields.claims import EXACT, Bounds, Limit, primitive
-from distal.fields.solids_boxes import CONVEX_BOUND, UNIT_CUBE
+from distal.fields.solids_boxes import CONVEX_BOUND, ROOT_THREE, UNIT_CUBE
 from distal.fields.solids_regular import DIAGONAL, RADIUS, octahedron_bounds
 from distal.lang import (
     Buffer,
@@ -189,6 +189,8 @@ def convex_polyhedron_requires(planes: Any) -> str | None:
     bounds=convex_polyhedron_bounds,
     limits={"size": Limit.POSITIVE},
     requires=convex_polyhedron_requires,
+    growth=ROOT_THREE,
+    side_growth=1.0,
 )
 @func
 def convex_polyhedron(p: vec3, planes: Buffer[vec4] = CUT_CORNERS, size: vec3 = UNIT_CUBE) -> float:

@@ -14,7 +14,7 @@ import math
 from typing import Final
 
 from distal.fields.claims import Bounds, Limit, primitive
-from distal.fields.solids_boxes import CONVEX_BOUND
+from distal.fields.solids_boxes import CONVEX_BOUND, ROOT_THREE
 from distal.lang import abs, func, max, vec3
 
 GOLDEN: Final = (1.0 + math.sqrt(5.0)) / 2.0
@@ -43,6 +43,10 @@ FOOTBALL_REACH: Final = 3.0 * GOLDEN / FOOTBALL_RADIUS
 
 RADIUS: Final = {"radius": Limit.POSITIVE}
 
+
+# Growth: to move all faces out by r scales a body whose faces are equally far away by 1 + r over
+# that distance. The vertices then leave the box by at most r times their own distance over it (a
+# side by their reach over it). Faces that are farther away move out by less than the scale.
 
 # The largest part of p along any axis of a family. ``q`` is abs(p): every family has the symmetry
 # of the box, so that one octant is enough.
@@ -81,7 +85,13 @@ def octahedron_bounds(radius: float) -> Bounds:
     return Bounds(vec3(-radius), vec3(radius))
 
 
-@primitive("OctahedronCheap", CONVEX_BOUND, bounds=octahedron_bounds, limits=RADIUS)
+@primitive(
+    "OctahedronCheap",
+    CONVEX_BOUND,
+    bounds=octahedron_bounds,
+    limits=RADIUS,
+    growth=1.0 / OCTAHEDRON_FACE,
+)
 @func
 def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
     """Octahedron by its faces alone; beyond edges less than the distance.
@@ -106,7 +116,14 @@ def dodecahedron_bounds(radius: float) -> Bounds:
     return Bounds(vec3(-radius * DODECAHEDRON_REACH), vec3(radius * DODECAHEDRON_REACH))
 
 
-@primitive("Dodecahedron", CONVEX_BOUND, bounds=dodecahedron_bounds, limits=RADIUS)
+@primitive(
+    "Dodecahedron",
+    CONVEX_BOUND,
+    bounds=dodecahedron_bounds,
+    limits=RADIUS,
+    growth=1.0 / DODECAHEDRON_FACE,
+    side_growth=DODECAHEDRON_REACH / DODECAHEDRON_FACE,
+)
 @func
 def dodecahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular body of twelve pentagons; beyond edges less than the distance.
@@ -131,7 +148,14 @@ def icosahedron_bounds(radius: float) -> Bounds:
     return Bounds(vec3(-radius * ICOSAHEDRON_REACH), vec3(radius * ICOSAHEDRON_REACH))
 
 
-@primitive("Icosahedron", CONVEX_BOUND, bounds=icosahedron_bounds, limits=RADIUS)
+@primitive(
+    "Icosahedron",
+    CONVEX_BOUND,
+    bounds=icosahedron_bounds,
+    limits=RADIUS,
+    growth=1.0 / ICOSAHEDRON_FACE,
+    side_growth=ICOSAHEDRON_REACH / ICOSAHEDRON_FACE,
+)
 @func
 def icosahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular body of twenty triangles; beyond edges less than the distance.
@@ -157,7 +181,14 @@ def truncated_octahedron_bounds(radius: float) -> Bounds:
     return Bounds(vec3(-reach), vec3(reach))
 
 
-@primitive("TruncatedOctahedron", CONVEX_BOUND, bounds=truncated_octahedron_bounds, limits=RADIUS)
+@primitive(
+    "TruncatedOctahedron",
+    CONVEX_BOUND,
+    bounds=truncated_octahedron_bounds,
+    limits=RADIUS,
+    growth=ROOT_THREE,
+    side_growth=1.0,
+)
 @func
 def truncated_octahedron(p: vec3, radius: float = 1.0) -> float:
     """Body of eight hexagons and six squares with equal edges; it fills space.
@@ -187,7 +218,14 @@ def truncated_icosahedron_bounds(radius: float) -> Bounds:
     return Bounds(vec3(-radius * FOOTBALL_REACH), vec3(radius * FOOTBALL_REACH))
 
 
-@primitive("TruncatedIcosahedron", CONVEX_BOUND, bounds=truncated_icosahedron_bounds, limits=RADIUS)
+@primitive(
+    "TruncatedIcosahedron",
+    CONVEX_BOUND,
+    bounds=truncated_icosahedron_bounds,
+    limits=RADIUS,
+    growth=1.0 / FOOTBALL_HEXAGON,
+    side_growth=FOOTBALL_REACH / FOOTBALL_HEXAGON,
+)
 @func
 def truncated_icosahedron(p: vec3, radius: float = 1.0) -> float:
     """Football: twenty hexagons and twelve pentagons with equal edges.

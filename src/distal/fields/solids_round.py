@@ -63,12 +63,25 @@ def ellipsoid_slope(radii: vec3) -> float:
     return sqrt(k * k * k * (4.0 / 27.0)) / (s * (s + 1.0))
 
 
+@func
+def ellipsoid_growth(radii: vec3) -> float:
+    """Half of the ratio s of the largest to the smallest radius and its inverse.
+
+    With k = |q| outside, a point is at most |p| (k - 1) / k from the box, and the field is
+    (k - 1) k / |q / radii|. Weigh the axes by the squares of q's parts: the quotient is at most
+    sqrt(E(r^2) E(r^-2)), and that at most (s + 1 / s) / 2 (Kantorovich's inequality).
+    """
+    ratio = max(radii.x, radii.y, radii.z) / min(radii.x, radii.y, radii.z)
+    return 0.5 * (ratio + 1.0 / ratio)
+
+
 @primitive(
     "Ellipsoid",
     LOWER_BOUND,
     slope=ellipsoid_slope,
     bounds=ellipsoid_bounds,
     limits={"radii": Limit.POSITIVE},
+    growth=ellipsoid_growth,
 )
 @func
 def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:
@@ -102,12 +115,34 @@ def superellipsoid_requires(across: float, upward: float) -> str | None:
     return None
 
 
+@func
+def superellipsoid_steepest(across: float, upward: float) -> float:
+    """How much faster than the distance the norm grows, over the smallest radius, at most."""
+    return pow(2.0, max(1.0 / across - 0.5, 0.0) + max(1.0 / upward - 0.5, 0.0))
+
+
+@func
+def superellipsoid_side_growth(radii: vec3, across: float, upward: float) -> float:
+    """The norm is at least each part of p / radii: a side is passed by its radius at most."""
+    smallest = min(radii.x, radii.y, radii.z)
+    return max(radii.x, radii.y, radii.z) / smallest * superellipsoid_steepest(across, upward)
+
+
+@func
+def superellipsoid_growth(radii: vec3, across: float, upward: float) -> float:
+    """As for a side, all of them passed at once."""
+    smallest = min(radii.x, radii.y, radii.z)
+    return length(radii) / smallest * superellipsoid_steepest(across, upward)
+
+
 @primitive(
     "Superellipsoid",
     LOWER_BOUND,
     bounds=ellipsoid_bounds,
     limits={"radii": Limit.POSITIVE},
     requires=superellipsoid_requires,
+    growth=superellipsoid_growth,
+    side_growth=superellipsoid_side_growth,
 )
 @func
 def superellipsoid(
@@ -139,8 +174,8 @@ def superellipsoid(
     r = q / largest
     ring = pow(pow(r.x, across) + pow(r.z, across), upward / across)
     norm = largest * pow(ring + pow(r.y, upward), 1.0 / upward)
-    growth = pow(2.0, max(1.0 / across - 0.5, 0.0) + max(1.0 / upward - 0.5, 0.0))
-    return (norm - 1.0) * (min(radii.x, radii.y, radii.z) / growth)
+    steepest = superellipsoid_steepest(across, upward)
+    return (norm - 1.0) * (min(radii.x, radii.y, radii.z) / steepest)
 
 
 # A bump reaches half way to the next: the cosine of half the angle between the vertices of an
@@ -175,6 +210,7 @@ def blob_requires(radius: float, height: float) -> str | None:
     bounds=blob_bounds,
     limits={"radius": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
     requires=blob_requires,
+    growth=1.0,
 )
 @func
 def blob(p: vec3, radius: float = 0.75, height: float = 0.2) -> float:

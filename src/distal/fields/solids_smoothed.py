@@ -82,13 +82,19 @@ def powers_of_faces(p: vec3, exponent: float) -> float:
 
 
 @func
-def smooth_bounds(radius: float, exponent: float, weight: float, reach: float) -> Bounds:
-    """The box of the sharp body that holds the smooth one.
+def smooth_growth(exponent: float, weight: float, reach: float) -> float:
+    """How far the sharp body that holds the smooth one reaches, for a radius of 1.
 
-    Its faces are at distance ``radius`` times the growth; ``reach`` is how far its vertices reach
-    along an axis where its nearest faces are at distance 1.
+    Its faces are at the distance by which the sum of powers grows; ``reach`` is how far its
+    vertices are where its nearest faces are at distance 1. Moving the surface out only scales both
+    bodies: this is also the growth, of the sides where ``reach`` is that along an axis.
     """
-    side = radius * pow(weight / 3.0, 1.0 / exponent) * reach
+    return pow(weight / 3.0, 1.0 / exponent) * reach
+
+
+@func
+def cube_around(side: float) -> Bounds:
+    """The box from minus to plus ``side``."""
     return Bounds(vec3(-side), vec3(side))
 
 
@@ -111,9 +117,15 @@ def smooth_requires(exponent: float) -> str | None:
 
 
 @func
+def smooth_octahedron_growth(exponent: float) -> float:
+    """By how far the vertices are."""
+    return smooth_growth(exponent, OCTAHEDRON_WEIGHT, 1.0 / OCTAHEDRON_FACE)
+
+
+@func
 def smooth_octahedron_bounds(radius: float, exponent: float) -> Bounds:
     """The box of the sharp one around it."""
-    return smooth_bounds(radius, exponent, OCTAHEDRON_WEIGHT, 1.0 / OCTAHEDRON_FACE)
+    return cube_around(radius * smooth_octahedron_growth(exponent))
 
 
 @primitive(
@@ -122,6 +134,7 @@ def smooth_octahedron_bounds(radius: float, exponent: float) -> Bounds:
     bounds=smooth_octahedron_bounds,
     limits=RADIUS,
     requires=smooth_requires,
+    growth=smooth_octahedron_growth,
 )
 @func
 def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> float:
@@ -145,10 +158,21 @@ def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> f
 
 
 @func
+def smooth_dodecahedron_side_growth(exponent: float) -> float:
+    """By how far the vertices reach along an axis."""
+    return smooth_growth(exponent, DODECAHEDRON_WEIGHT, DODECAHEDRON_REACH / DODECAHEDRON_FACE)
+
+
+@func
+def smooth_dodecahedron_growth(exponent: float) -> float:
+    """By how far the vertices are."""
+    return smooth_growth(exponent, DODECAHEDRON_WEIGHT, 1.0 / DODECAHEDRON_FACE)
+
+
+@func
 def smooth_dodecahedron_bounds(radius: float, exponent: float) -> Bounds:
     """The box of the sharp one around it."""
-    reach = DODECAHEDRON_REACH / DODECAHEDRON_FACE
-    return smooth_bounds(radius, exponent, DODECAHEDRON_WEIGHT, reach)
+    return cube_around(radius * smooth_dodecahedron_side_growth(exponent))
 
 
 @primitive(
@@ -157,6 +181,8 @@ def smooth_dodecahedron_bounds(radius: float, exponent: float) -> Bounds:
     bounds=smooth_dodecahedron_bounds,
     limits=RADIUS,
     requires=smooth_requires,
+    growth=smooth_dodecahedron_growth,
+    side_growth=smooth_dodecahedron_side_growth,
 )
 @func
 def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
@@ -180,10 +206,21 @@ def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) ->
 
 
 @func
+def smooth_icosahedron_side_growth(exponent: float) -> float:
+    """By how far the vertices reach along an axis."""
+    return smooth_growth(exponent, ICOSAHEDRON_WEIGHT, ICOSAHEDRON_REACH / ICOSAHEDRON_FACE)
+
+
+@func
+def smooth_icosahedron_growth(exponent: float) -> float:
+    """By how far the vertices are."""
+    return smooth_growth(exponent, ICOSAHEDRON_WEIGHT, 1.0 / ICOSAHEDRON_FACE)
+
+
+@func
 def smooth_icosahedron_bounds(radius: float, exponent: float) -> Bounds:
     """The box of the sharp one around it."""
-    reach = ICOSAHEDRON_REACH / ICOSAHEDRON_FACE
-    return smooth_bounds(radius, exponent, ICOSAHEDRON_WEIGHT, reach)
+    return cube_around(radius * smooth_icosahedron_side_growth(exponent))
 
 
 @primitive(
@@ -192,6 +229,8 @@ def smooth_icosahedron_bounds(radius: float, exponent: float) -> Bounds:
     bounds=smooth_icosahedron_bounds,
     limits=RADIUS,
     requires=smooth_requires,
+    growth=smooth_icosahedron_growth,
+    side_growth=smooth_icosahedron_side_growth,
 )
 @func
 def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
@@ -215,9 +254,21 @@ def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> 
 
 
 @func
+def smooth_truncated_octahedron_side_growth(exponent: float) -> float:
+    """By how far the vertices reach along an axis."""
+    return smooth_growth(exponent, TRUNCATED_OCTAHEDRON_WEIGHT, SQUARE_RATIO)
+
+
+@func
+def smooth_truncated_octahedron_growth(exponent: float) -> float:
+    """By how far the vertices are."""
+    return smooth_growth(exponent, TRUNCATED_OCTAHEDRON_WEIGHT, 1.0 / TRUNCATED_OCTAHEDRON_HEXAGON)
+
+
+@func
 def smooth_truncated_octahedron_bounds(radius: float, exponent: float) -> Bounds:
     """The box of the sharp one around it."""
-    return smooth_bounds(radius, exponent, TRUNCATED_OCTAHEDRON_WEIGHT, SQUARE_RATIO)
+    return cube_around(radius * smooth_truncated_octahedron_side_growth(exponent))
 
 
 @primitive(
@@ -226,6 +277,8 @@ def smooth_truncated_octahedron_bounds(radius: float, exponent: float) -> Bounds
     bounds=smooth_truncated_octahedron_bounds,
     limits=RADIUS,
     requires=smooth_requires,
+    growth=smooth_truncated_octahedron_growth,
+    side_growth=smooth_truncated_octahedron_side_growth,
 )
 @func
 def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
@@ -252,9 +305,21 @@ def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 
 
 
 @func
+def smooth_truncated_icosahedron_side_growth(exponent: float) -> float:
+    """By how far the vertices reach along an axis."""
+    return smooth_growth(exponent, FOOTBALL_WEIGHT, FOOTBALL_REACH / FOOTBALL_HEXAGON)
+
+
+@func
+def smooth_truncated_icosahedron_growth(exponent: float) -> float:
+    """By how far the vertices are."""
+    return smooth_growth(exponent, FOOTBALL_WEIGHT, 1.0 / FOOTBALL_HEXAGON)
+
+
+@func
 def smooth_truncated_icosahedron_bounds(radius: float, exponent: float) -> Bounds:
     """The box of the sharp one around it."""
-    return smooth_bounds(radius, exponent, FOOTBALL_WEIGHT, FOOTBALL_REACH / FOOTBALL_HEXAGON)
+    return cube_around(radius * smooth_truncated_icosahedron_side_growth(exponent))
 
 
 @primitive(
@@ -263,6 +328,8 @@ def smooth_truncated_icosahedron_bounds(radius: float, exponent: float) -> Bound
     bounds=smooth_truncated_icosahedron_bounds,
     limits=RADIUS,
     requires=smooth_requires,
+    growth=smooth_truncated_icosahedron_growth,
+    side_growth=smooth_truncated_icosahedron_side_growth,
 )
 @func
 def smooth_truncated_icosahedron(p: vec3, radius: float = 0.9, exponent: float = 48.0) -> float:

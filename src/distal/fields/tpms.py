@@ -19,8 +19,15 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from distal.fields.claims import NOTHING, Bounds, Limit, operator, primitive
-from distal.fields.extents import grown
+from distal.fields.claims import (
+    NOTHING,
+    Bounds,
+    Growth,
+    Limit,
+    operator,
+    primitive,
+)
+from distal.fields.extents import moved_out
 from distal.lang import abs, clamp, cos, dot, func, max, sin, vec3
 
 TAU: Final = 6.283185307179586
@@ -357,10 +364,14 @@ def graded_slope(
 
 @func
 def graded_bounds(
-    bounds_a: Bounds, bounds_b: Bounds, near_thickness: float, far_thickness: float
+    bounds_a: Bounds,
+    bounds_b: Bounds,
+    near_thickness: float,
+    far_thickness: float,
+    side_growth_a: float,
 ) -> Bounds:
-    """The first shape's box, grown by half of the thickest place."""
-    return grown(bounds_a, 0.5 * max(near_thickness, far_thickness))
+    """The first shape's box, moved out by half of the thickest place."""
+    return moved_out(bounds_a, 0.5 * max(near_thickness, far_thickness), side_growth_a)
 
 
 THICKEN_BY = operator(
@@ -374,6 +385,7 @@ THICKEN_BY = operator(
         "far_thickness": Limit.NOT_NEGATIVE,
         "span": Limit.POSITIVE,
     },
+    growth=Growth.FIRST,
 )
 """A sheet around the first shape's surface: ``near_thickness`` thick on and in the second shape,
 ``far_thickness`` where that is ``span`` away or more."""

@@ -6,7 +6,12 @@ distance between the two, and the rules of slope and material.
 
 from __future__ import annotations
 
-from distal.fields.claims import Bounds, Limit, operator
+from distal.fields.claims import (
+    Bounds,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.fields.ease import ease_requirement, ease_slope, eased
 from distal.fields.extents import diameter, hull_of, unless_endless
 from distal.lang import abs, clamp, dot, func, length, max, vec3
@@ -167,6 +172,7 @@ TRANSITION_LINEAR = operator(
     slope=transition_linear_slope,
     requires=way_requirement,
     needs="shapes with an end: without a box their values can be any distance apart",
+    growth=Growth.KEPT,
 )
 TRANSITION_RADIAL = operator(
     "transition radial",
@@ -176,4 +182,5 @@ TRANSITION_RADIAL = operator(
     limits={"inner": Limit.NOT_NEGATIVE},
     requires=ring_requirement,
     needs="shapes with an end: without a box their values can be any distance apart",
+    growth=Growth.KEPT,
 )

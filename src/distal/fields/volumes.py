@@ -82,6 +82,7 @@ def volume_bounds(size: vec3) -> Bounds:
     bounds=volume_bounds,
     limits={"size": Limit.POSITIVE},
     tier=2,
+    growth=1.0,
 )
 @func
 def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float = 1.0) -> float:

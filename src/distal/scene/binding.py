@@ -57,6 +57,7 @@ def own_node(
     slope: Any,
     bounds: Any,
     exact: bool,
+    growth: Any,
 ) -> Node:
     """The node of an author's function."""
     if not isinstance(function, Func):
@@ -83,6 +84,11 @@ def own_node(
         corners = _corners(bounds, place)
         found |= arguments(box, corners, {}, what=name, requires=_ordered, place=place)
     rule = replace(rule, slope=boxes.given_slope, bounds=box)
+    if growth is not None:
+        found |= arguments(
+            boxes.given_growth, (growth,), {}, what=name, requires=_grows, place=place, reserved=()
+        )
+        rule = replace(rule, growth=boxes.given_growth)
     return Node(rule, flat, (), found, constants, place)
 
 
@@ -99,6 +105,10 @@ def _ordered(low: tuple[float, ...], high: tuple[float, ...]) -> str | None:
     if all(a < b for a, b in zip(low, high, strict=True)):
         return None
     return f"nothing lies between bounds {shown(low)} and {shown(high)}: the low corner comes first"
+
+
+def _grows(growth: float) -> str | None:
+    return None if growth >= 1.0 else "growth must be 1 or more"
 
 
 def _is_flat(function: Func, place: Span | None) -> bool:

@@ -242,6 +242,15 @@ def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[Fin
 
 
 def _endless(row: ShapeRow, finding: Any) -> Finding:
+    unknown = _without_growth(row.node)
+    if unknown is not None:
+        message = (
+            f"{described(row.node)} has no box: how fast '{unknown.name}' rises outside its "
+            "bounds is not known"
+        )
+        hint = f"growth=1 for '{unknown.name}' if it is at least the distance to its bounds"
+        grown: Finding = finding(Severity.WARNING, "no-growth", message, hint)
+        return grown
     message = f"{described(row.node)} has no end: no box keeps rays from looking for it"
     if is_own(row.node):
         hint = "bounds=((x, y, z), (x, y, z)) say where it ends"
@@ -249,6 +258,21 @@ def _endless(row: ShapeRow, finding: Any) -> Finding:
     else:
         found = finding(Severity.NOTE, "no-box", message)
     return found
+
+
+def _without_growth(node: Node) -> Node | None:
+    """The author's function because of which an operator that moves the surface out has no box."""
+    rule = node.rule
+    if not isinstance(rule, Operator) or rule.bounds is None:
+        return None
+    asked = rule.bounds.python_function.__annotations__
+    if not any(name.startswith("side_growth") for name in asked):
+        return None
+    for part in node.walk():
+        silent = isinstance(part.rule, Primitive) and part.rule.growth is None
+        if silent and is_own(part) and Claim.EXACT_OUTSIDE not in part.claims:
+            return part
+    return None
 
 
 def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator[Finding]:

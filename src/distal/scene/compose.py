@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from distal.fields.claims import Operator, Primitive
+from distal.fields.claims import PROMISED, Operator, Primitive
 from distal.frontend import Assembly
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
@@ -19,7 +19,7 @@ from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.node import Node
-from distal.scene.promises import PROMISED, Promises
+from distal.scene.promises import Promises
 from distal.scene.refusals import refuse
 from distal.scene.values import Body, Values, plain_name
 

@@ -38,22 +38,23 @@ class GradientOf(Composed):
 
 
 class PromiseOf(Composed):
-    """Slope, divisor and box of a shape, as a function of nothing."""
+    """Slope, divisor, box and growth of a shape, as a function of nothing."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self.name = f"promise of {node.name}"
         self.signature = ()
         corner = VEC2 if node.flat else VEC3
-        self.result = tuple_type((FLOAT, FLOAT, corner, corner))
+        self.result = tuple_type((FLOAT, FLOAT, corner, corner, FLOAT, FLOAT))
 
     def compose(self, assembly: Assembly) -> str:
-        """The function that gives (slope, divisor, low, high)."""
+        """The function that gives (slope, divisor, low, high, growth, side_growth)."""
         body, node = Body(), self._node
         values = Values(assembly)
         found = Promises(values).of(body, node, values.all(node))
         bounds = body.let("bounds", found.bounds)
         low, high = field_of(bounds, "low"), field_of(bounds, "high")
-        whole = Construct((found.slope, found.divisor, low, high), self.result)
+        parts = (found.slope, found.divisor, low, high, found.growth, found.side_growth)
+        whole = Construct(parts, self.result)
         body.statements.append(Return(whole))
         return assembly.define("promise", (), self.result, body.statements, node.place)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from distal.diagnostics import Span
 from distal.executor_hook import executor
 from distal.fields.boxes import given_slope
-from distal.fields.claims import Primitive
+from distal.fields.claims import ENDLESS, Primitive
 from distal.frontend import Assembly
 from distal.ir.build import field as field_of
 from distal.ir.build import number
@@ -30,6 +30,8 @@ from distal.scene.field import Field
 from distal.scene.node import Node
 from distal.scene.picture import Picturing
 from distal.scene.refusals import refuse
+from distal.scene.steepness import may_be_endless, refuse_steepness
+from distal.scene.survey import survey
 
 Points = NDArray[np.float64]
 
@@ -57,6 +59,30 @@ def doubt_functions(shape: Field, params: Mapping[str, Any], time: float) -> Non
             _looked_at.add(node)
 
 
+def check_slopes(shape: Field, params: Mapping[str, Any], time: float) -> None:
+    """Refuse a shape in which parameters or the time take an operator's bound on its slope.
+
+    Where nothing moves, the operator was looked at when it was made.
+
+    Raises:
+        SceneValueError: At the innermost such operator.
+    """
+    risky = [n for n in shape.node.walk() if may_be_endless(n) and _moves(n)]
+    if not risky:
+        return
+    promised = survey(shape.node, _read(shape, params), time)
+    # Parents come first: the last one is the innermost.
+    for node in reversed(risky):
+        if not promised[id(node)].slope < ENDLESS:
+            boxes = [promised[id(child)] for child in node.children]
+            refuse_steepness(node, [(box.low, box.high) for box in boxes])
+
+
+def _moves(node: Node) -> bool:
+    """Whether a number in a tree follows parameters or the time."""
+    return any(n.plain is None for part in node.walk() for n in part.numbers.values())
+
+
 def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
     shape: Field = Field._of(node)
     known = _read(shape, params)
@@ -78,8 +104,8 @@ def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
 
 
 def _read(obj: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of the parameters' values that an object reads."""
-    asked = {p.name for p in executor().parameters(obj)}
+    """Those of the parameters' values, by name or label, that an object reads."""
+    asked = {key for p in executor().parameters(obj) for key in (p.name, p.label)}
     return {name: value for name, value in params.items() if name in asked}
 
 

@@ -31,6 +31,7 @@ from distal.scene.numbers import RESERVED, slots_of
 from distal.scene.other_names import instead
 from distal.scene.places import author_place
 from distal.scene.refusals import refuse, refuse_kind
+from distal.scene.steepness import check_slope
 from distal.scene.values import plain_name
 
 # A union of so many shapes compiles for minutes.
@@ -132,7 +133,7 @@ class Field(Composed, Presentable):
 
     def bounds(self, *, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
         """A box around the surface and the inside: (low, high), each a tuple; infinite allowed."""
-        _, _, low, high = self._promise(params, time)
+        low, high = self._promise(params, time)[2:4]
         return tuple(tuple(map(ended, corner)) for corner in (low, high))
 
     @property
@@ -180,7 +181,9 @@ class Field(Composed, Presentable):
             refuse(f"{rule.name} works on {kind} shapes", f"{mend} first", place)
         numbers, constants = bound(rule, args, kwargs, place)
         children = (self.node, *(other.node for other in others))
-        return self._of(Node(rule, flat, children, numbers, constants, place))
+        node = Node(rule, flat, children, numbers, constants, place)
+        check_slope(node)
+        return self._of(node)
 
     @classmethod
     def _of(cls, node: Node) -> Any:
@@ -294,6 +297,7 @@ class Field(Composed, Presentable):
         slope: float = 1.0,
         bounds: Any = None,
         exact: bool = False,
+        growth: float | None = None,
         **numbers: Any,
     ) -> Any:
         """A shape from a ``@func`` of a point (and of numbers, given by name).
@@ -304,10 +308,15 @@ class Field(Composed, Presentable):
             slope: A bound on |gradient| everywhere. The marcher relies on it.
             bounds: (low, high) corners of a box around the surface; None for no end.
             exact: Whether it is the true distance.
+            growth: With ``bounds``, how far from the box a point may be for each unit of its value:
+                1 where the value is never less than the distance to the box. None: not known (1 if
+                ``exact``). What moves the surface out (round, offset, blends) needs it for a box.
             numbers: Values of its other parameters.
         """
         place = author_place()
-        node = own_node(function, numbers, place, slope=slope, bounds=bounds, exact=exact)
+        node = own_node(
+            function, numbers, place, slope=slope, bounds=bounds, exact=exact, growth=growth
+        )
         return cls._of(node)
 
 

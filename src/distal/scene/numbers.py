@@ -14,7 +14,7 @@ from typing import Any, Final, NoReturn, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Span
-from distal.fields.claims import Limit, Requirement
+from distal.fields.claims import PROMISED, Limit, Requirement
 from distal.frontend.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.headers import MISSING, read_header
 from distal.frontend.problems import did_you_mean
@@ -41,11 +41,8 @@ Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
 # Takes a value and the type wanted: what stands for it, or None to go on as with any number.
 Accept: TypeAlias = Callable[[Any, Asked], Any]
 
-_BOXES: Final = ("bounds", "bounds_a", "bounds_b")
 # The names of ``fields.claims`` that are no numbers of a shape.
-RESERVED: Final = frozenset(
-    ("p", "d", "a", "b", "field", "cell", "slope", "slope_a", "slope_b", *_BOXES)
-)
+RESERVED: Final = PROMISED | {"p", "d", "a", "b", "field", "cell"}
 # Those that a shape of its own keeps from its numbers: it has no distances to join.
 RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d"}
 # One number stands for all components of these.

@@ -52,6 +52,7 @@ def rendered(
     sliced = slice_settings(wish.plane) if view == "slice" else {}
     sampled = {"Samples": samples} if samples > 1 else {}
     params, time = options["params"] or {}, options["time"]
+    doubts.check_slopes(scene.shape, params, time)
     doubts.doubt_functions(scene.shape, params, time)
     shares = _parts_of(progress, 1 + len(layers))
     image = scene.view(view, transparent=wish.transparent, sampled=samples > 1, steered=steered)

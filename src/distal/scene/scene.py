@@ -36,7 +36,6 @@ from distal.scene.scene_arguments import (
     one_shape,
     whole,
 )
-from distal.scene.steepness import check_slopes
 from distal.scene.steering import Steering
 
 
@@ -101,7 +100,6 @@ class Scene(Composed, Presentable):
         place = self.place = author_place()
         self.name = name
         self.shape = one_shape(shape, place)
-        check_slopes(self.shape.node)
         check_cells(self.shape.node)
         given_lights = checked_lights(lights, place)
         self.background = as_background(background, given_lights, place)

@@ -1,76 +1,60 @@
 """Refusing shapes that no ray can be marched to: fields without a bound on their slope.
 
 What flows in: a shape's tree. What flows out: an error at the place where the bound was lost: a
-twist of something that has no end, say.
+twist of something that has no end, say. An operator is refused when it is made, for the parameters'
+defaults; other values and times are looked at when it is drawn (``doubts``).
 """
 
 from __future__ import annotations
 
-from distal.executor_hook import executor
+from collections.abc import Sequence
+from typing import NoReturn, TypeAlias
+
 from distal.fields.claims import ENDLESS, Operator
-from distal.frontend import Assembly
-from distal.ir.build import number
-from distal.ir.nodes import Construct, Return
-from distal.ir.types import FLOAT, tuple_type
-from distal.lang.composed import Composed
-from distal.lang.functions import Func
-from distal.scene.derived import PromiseOf
+from distal.scene.known_promises import known_promise
 from distal.scene.node import Node
-from distal.scene.promises import RememberedPromises
 from distal.scene.refusals import refuse
-from distal.scene.values import Body, Values
+
+# The low corner and the high one.
+Box: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
 
 
-class _Slopes(Composed):
-    """The slopes of some nodes, for the parameters' defaults."""
-
-    def __init__(self, nodes: list[Node]) -> None:
-        self._nodes = nodes
-        self.name, self.signature = "slopes", ()
-        self.result = tuple_type((FLOAT,) * (len(nodes) + 1))
-
-    def compose(self, assembly: Assembly) -> str:
-        """A function of nothing that gives them."""
-        body, values = Body(), Values(assembly)
-        promises = RememberedPromises(values)
-        found = tuple(promises.of(body, n, values.all(n)).slope for n in self._nodes)
-        whole = Construct((*found, number(0.0)), self.result)
-        body.statements.append(Return(whole))
-        return assembly.define("slopes", (), self.result, body.statements)
-
-
-def check_slopes(root: Node) -> None:
-    """Refuse a tree in which an operator's slope has no bound.
+def check_slope(node: Node) -> None:
+    """Refuse an operator that has no bound on its slope on the shapes that it is given.
 
     Raises:
-        CompileError: At the innermost such operator.
+        SceneValueError: At the operator's place.
     """
-    risky = [
-        n for n in root.walk() if isinstance(n.rule, Operator) and isinstance(n.rule.slope, Func)
-    ]
-    if not risky:
+    if not may_be_endless(node):
         return
     try:
-        slopes = executor().call(_Slopes(risky), (), {})
+        slope = known_promise(node).slope
     except ModuleNotFoundError:  # without NumPy nothing is marched here, only compiled to text
         return
-    # Parents come first: the last one is the innermost.
-    for node, slope in reversed(list(zip(risky, slopes, strict=False))):
-        if not slope < ENDLESS:
-            assert isinstance(node.rule, Operator)
-            message = f"{node.rule.name} gives this shape no bound on its slope"
-            hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(node.children)}"
-            refuse(message, hint, node.place)
+    if not slope < ENDLESS:
+        boxes = [known_promise(child) for child in node.children]
+        refuse_steepness(node, [(box.low, box.high) for box in boxes])
 
 
-def _boxed(children: tuple[Node, ...]) -> str:
+def may_be_endless(node: Node) -> bool:
+    """Whether a node is an operator that has a slope on some shapes only."""
+    return isinstance(node.rule, Operator) and node.rule.needs is not None
+
+
+def refuse_steepness(node: Node, boxes: Sequence[Box]) -> NoReturn:
+    """Refuse an operator on children with these boxes, at its place."""
+    assert isinstance(node.rule, Operator)
+    message = f"{node.rule.name} gives this shape no bound on its slope"
+    hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(boxes)}"
+    refuse(message, hint, node.place)
+
+
+def _boxed(boxes: Sequence[Box]) -> str:
     """The box that the rule judged, in words; none where it has no end, as the rule says that."""
-    if len(children) != 1:
+    if len(boxes) != 1 or any(abs(c) >= ENDLESS for corner in boxes[0] for c in corner):
         return ""
-    low, high = (tuple(corner) for corner in executor().call(PromiseOf(children[0]), (), {})[2:])
-    if any(abs(c) >= ENDLESS for c in low + high):
-        return ""
-    return f"; its box goes from {_corner(low)} to {_corner(high)}"
+    low, high = map(_corner, boxes[0])
+    return f"; its box goes from {low} to {high}"
 
 
 def _corner(place: tuple[float, ...]) -> str:

@@ -6,8 +6,9 @@ expression where one was given, constants for choices.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from distal.frontend import Assembly
 from distal.ir.nodes import Expr, Let, Read, Stmt
@@ -83,10 +84,14 @@ class Values:
 
     def constants(self, node: Node) -> dict[str, Expr]:
         """A node's choices, textures and buffers as expressions."""
+        return self.of_constants(node.constants, node.name)
+
+    def of_constants(self, constants: Mapping[str, Any], stem: str) -> dict[str, Expr]:
+        """Choices, textures and buffers as expressions; resources are named after ``stem``."""
         made: dict[str, Expr] = {}
-        for name, value in node.constants.items():
+        for name, value in constants.items():
             if isinstance(value, TextureValue | Buffer):
-                made[name] = self.assembly.resource(value, f"{node.name}_{name}".lower())
+                made[name] = self.assembly.resource(value, f"{stem}_{name}".lower())
             elif isinstance(value, bool):
                 made[name] = self.assembly.constant(value, BOOL)
             elif isinstance(value, int):

@@ -22,7 +22,7 @@ from distal.film.video import WishError
 from distal.ir.nodes import Origin
 from distal.lang.chosen_values import checked_values
 from distal.lowered import Lowered
-from distal.scene.doubts import doubt_black, doubt_functions
+from distal.scene.doubts import check_slopes, doubt_black, doubt_functions
 from distal.scene.scene_arguments import checked_samples
 from distal.scene.viewable import COLOR, Viewable, viewable
 from distal.version import __version__
@@ -101,6 +101,7 @@ def program(
     lowered = Lowered.of(image, None)
     values = _values(shown, lowered, params)
     if shown.scene is not None:
+        check_slopes(shown.scene.shape, values, time)
         doubt_functions(shown.scene.shape, values, time)
     return Program(
         name=shown.name,
