@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from typing import Any, Final
 
 import numpy as np
@@ -17,6 +16,7 @@ from distal.lang.composed import Composed
 from tests.fields.drawing import drawn, fits
 from tests.fields.library import operators
 from tests.fields.rows import header_of
+from tests.fields.seeds import seed_of, seeded
 from tests.fields.trees import operator_slots
 
 ROWS: Final = [
@@ -68,16 +68,16 @@ def _mixes(row: Operator, a: Any, b: Any, rng: np.random.Generator) -> Any:
 def test_a_mix_is_a_share(row: Operator):
     if {s.annotation for s in header_of(row.mix).slots} & {Bounds, Bounds2}:
         pytest.skip("asks for boxes; seen in pictures")
-    rng = np.random.default_rng(zlib.crc32(row.name.encode()))
+    rng = np.random.default_rng(seed_of(f"mix {row.name}"))
     scale = 10.0 ** rng.uniform(-4.0, 1.0, COUNT)
     a, b = rng.normal(size=(2, COUNT)) * scale
     a[:50], b[25:75] = 0.0, 0.0
     b[100:150] = a[100:150]
     for _ in range(3):
         mix = _mixes(row, a, b, rng)
-        assert np.isfinite(mix).all()
-        assert mix.min() >= 0.0
-        assert mix.max() <= 1.0
+        assert np.isfinite(mix).all(), seeded([])
+        assert mix.min() >= 0.0, seeded([])
+        assert mix.max() <= 1.0, seeded([])
 
 
 @pytest.mark.parametrize("blend", ["quadratic", "cubic", "quartic", "circular", "chamfer", "round"])

@@ -1,12 +1,11 @@
 """Every operator keeps what it promises, on random trees of shapes that keep what they promise.
 
-``DISTAL_FIELD_SAMPLES`` as for the shapes (``make sweep-fields``).
+``DISTAL_FIELD_SAMPLES`` and ``DISTAL_FIELD_SEED`` as for the shapes (``make sweep-fields``).
 """
 
 from __future__ import annotations
 
 import os
-import zlib
 from typing import Final
 
 import numpy as np
@@ -15,6 +14,7 @@ import pytest
 from distal.fields.claims import Operator
 from tests.fields.checks import examined
 from tests.fields.library import operators
+from tests.fields.seeds import seed_of, seeded
 from tests.fields.subject import Subject
 from tests.fields.surface import surface_of
 from tests.fields.trees import Tree, accepted_tree
@@ -25,7 +25,7 @@ ROWS: Final = [pytest.param(row, id=name) for name, row in operators().items()]
 
 
 def _trees(row: Operator) -> list[Tree]:
-    rng = np.random.default_rng(zlib.crc32(row.name.encode()))
+    rng = np.random.default_rng(seed_of(row.name))
     trees = [accepted_tree(row, rng) for _ in range(SAMPLES)]
     assert None not in trees, f"'{row.name}' refused every random shape"
     return [tree for tree in trees if tree is not None]
@@ -36,14 +36,15 @@ def test_claims_slope_and_box(row):
     findings = []
     for i, tree in enumerate(_trees(row)):
         subject = tree.subject()
-        findings += examined(subject, i, effort=EFFORT).findings
+        seed = seed_of(f"points of {row.name} {i}")
+        findings += examined(subject, seed, effort=EFFORT).findings
         low, high = subject.region
-        points = np.random.default_rng(i).uniform(low, high, (200, subject.dimension))
+        points = np.random.default_rng(seed).uniform(low, high, (200, subject.dimension))
         difference = np.abs(tree.evaluate(points)[0] - tree.evaluate(points, "reference")[0])
         if not difference.max() <= 1e-9 * subject.scale * max(subject.slope, 1.0):
             findings.append(f"{subject.name}: CPU and reference differ by {difference.max()}")
-        findings += _site_findings(tree, subject, i)
-    assert not findings, "\n".join(findings)
+        findings += _site_findings(tree, subject, seed)
+    assert not findings, seeded(findings)
 
 
 def _site_findings(tree: Tree, subject: Subject, seed: int) -> list[str]:
