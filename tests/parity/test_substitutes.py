@@ -78,7 +78,9 @@ def test_decomposed_cases_mean_the_same(target: str) -> None:
             continue
         compared += 1
         expected = _results(case, bounds.run(decompose.run(module, plain), plain))
-        found = disagreement(case, expected, _results(case, lowered), on_cpu=True)
+        # What the target has itself and the reference has not, such as a clamp, is its meaning.
+        runs = decompose.run(lowered, plain)
+        found = disagreement(case, expected, _results(case, runs), on_cpu=True)
         messages.append(found.message)
     assert compared > 50
     assert not any(messages), "\n".join(filter(None, messages))

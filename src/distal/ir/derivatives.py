@@ -5,8 +5,8 @@ argument does not change). What flows out: the tangent of the result, an express
 arguments. The builtin itself is its value, for rules that need it.
 
 Where a function has no derivative one is settled: 0 for length, abs and sqrt at 0 and wherever the
-true slope is infinite; a tie of min or max follows the first argument. No rule gives NaN at a
-point where the function itself is a number.
+true slope is infinite; a tie of min or max follows the first argument. At ordinary numbers no rule
+gives NaN or an infinity (``distal.ir.limits``).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import math
 from collections.abc import Callable
 from typing import TypeAlias
 
+from distal.ir.limits import ORDINARY, SMALLEST, SMALLEST_DIVISOR
 from distal.ir.nodes import (
     BinaryOp,
     Builtin,
@@ -23,6 +24,7 @@ from distal.ir.nodes import (
     Const,
     Expr,
     Index,
+    Select,
     Unary,
     UnaryOp,
 )
@@ -42,8 +44,8 @@ from distal.ir.tangents import (
     product,
     scaled,
     splatted,
+    where_above,
     where_positive,
-    zero,
 )
 from distal.ir.types import FLOAT, INT, Kind, Matrix, Type, Vector
 
@@ -76,6 +78,12 @@ def _less(lhs: Expr, rhs: Expr) -> Expr:
 
 def _dot(lhs: Expr, rhs: Expr) -> Expr:
     return _call("dot", lhs, rhs, type=FLOAT)
+
+
+def _ordinary(slope: Expr) -> Expr:
+    """A slope that may be beyond all numbers, held among the ordinary ones."""
+    end = number(ORDINARY, slope.type)
+    return _call("min", _call("max", slope, _negated(end)), end)
 
 
 def constant(e: Builtin, d: Lanes) -> Tangent:
@@ -112,9 +120,10 @@ def square_root(e: Builtin, d: Lanes) -> Tangent:
 
 
 def inverse_square_root(e: Builtin, d: Lanes) -> Tangent:
-    """-1 / (2 x sqrt(x))."""
+    """-1 / (2 x sqrt(x)); 0 where that is beyond all numbers."""
     x = e.args[0]
-    return scaled(d[0], where_positive(x, _quotient(product(number(-0.5, e.type), e), x)))
+    slope = _quotient(product(number(-0.5, e.type), e), x)
+    return scaled(d[0], where_above(x, SMALLEST_DIVISOR, slope))
 
 
 def exponential(e: Builtin, d: Lanes) -> Tangent:
@@ -128,13 +137,16 @@ def exponential_base_2(e: Builtin, d: Lanes) -> Tangent:
 
 
 def logarithm(e: Builtin, d: Lanes) -> Tangent:
-    """1 / x."""
-    return over(d[0], e.args[0])
+    """1 / x; 0 where the argument is held."""
+    x = e.args[0]
+    return scaled(d[0], where_above(x, SMALLEST, _quotient(number(1.0, e.type), x)))
 
 
 def logarithm_base_2(e: Builtin, d: Lanes) -> Tangent:
-    """1 / (x log 2)."""
-    return over(d[0], product(e.args[0], number(math.log(2.0), e.type)))
+    """1 / (x log 2); 0 where the argument is held."""
+    x = e.args[0]
+    slope = _quotient(number(1.0 / math.log(2.0), e.type), x)
+    return scaled(d[0], where_above(x, 2.0 * SMALLEST, slope))
 
 
 def sine(e: Builtin, d: Lanes) -> Tangent:
@@ -211,9 +223,10 @@ def clamped(e: Builtin, d: Lanes) -> Tangent:
 
 
 def remainder(e: Builtin, d: Lanes) -> Tangent:
-    """Of a - b * floor(a / b), floor being a step."""
+    """Of a - b * floor(a / b), floor being a step; 0 where b counts as 0."""
     a, b = e.args
-    return minus(d[0], scaled(d[1], _call("floor", _quotient(a, b))))
+    whole = _call("floor", _quotient(a, b))
+    return minus(d[0], scaled(d[1], where_above(_call("abs", b), SMALLEST_DIVISOR, whole)))
 
 
 def mixed(e: Builtin, d: Lanes) -> Tangent:
@@ -226,21 +239,21 @@ def mixed(e: Builtin, d: Lanes) -> Tangent:
 def smoothstepped(e: Builtin, d: Lanes) -> Tangent:
     """6 t (1 - t) times the change of t = (x - low) / (high - low)."""
     low, high, x = e.args
-    extent = _difference(high, low)
+    between = _difference(high, low)
+    is_step = _less(_call("abs", between), number(SMALLEST, e.type))
+    extent = Select(is_step, number(1.0, e.type), between, e.type)
     place = _quotient(_difference(x, low), extent)
     moved = over(minus(minus(d[2], d[0]), scaled(minus(d[1], d[0]), place)), extent)
     t = _call("clamp", place, number(0.0, e.type), number(1.0, e.type))
     slope = product(product(number(6.0, e.type), t), _difference(number(1.0, e.type), t))
-    # Off the ramp the change of t may be infinite (low = high) and counts for nothing.
-    rising = compared(CompareOp.GT, slope, zero(e.type))
-    return picked(rising, scaled(moved, slope), None, e.type)
+    return picked(is_step, None, scaled(moved, slope), e.type)
 
 
 def power(e: Builtin, d: Lanes) -> Tangent:
     """Along x: y x^(y-1); along y: x^y log x; 0 for x <= 0."""
     x, y = e.args
-    along_x = scaled(d[0], where_positive(x, _quotient(product(e, y), x)))
-    along_y = scaled(d[1], where_positive(x, product(e, _call("log", x))))
+    along_x = scaled(d[0], where_above(x, SMALLEST, _ordinary(_quotient(product(e, y), x))))
+    along_y = scaled(d[1], where_above(x, SMALLEST, _ordinary(product(e, _call("log", x)))))
     return plus(along_x, along_y)
 
 
@@ -249,7 +262,7 @@ def arc_tangent_2(e: Builtin, d: Lanes) -> Tangent:
     y, x = e.args
     square = _sum(product(x, x), product(y, y))
     around = minus(scaled(d[0], x), scaled(d[1], y))
-    return scaled(around, where_positive(square, _quotient(number(1.0, e.type), square)))
+    return scaled(around, where_above(square, SMALLEST, _quotient(number(1.0, e.type), square)))
 
 
 # Vectors.

@@ -25,7 +25,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.ir import derivatives, meanings
+from distal.ir import derivatives, limits, meanings
+from distal.ir.limits import Held
 from distal.ir.signatures import (
     BINARY,
     BOOL_VECTORS,
@@ -70,6 +71,13 @@ class Intrinsic:
             (``Target.rough``); else, and where a host trusts its driver, they spell the row as
             their family does.
         derivative: The rule in ``distal.ir.derivatives``; every row that gives floats has one.
+        held: Between which numbers the only argument is held before anything else; ``meaning``
+            and the prelude's functions need to mean something only there.
+        guarded: Targets that spell it themselves do so only where that is seen to mean the same
+            (``passes.decompose_edges``); elsewhere they call the ``scene`` function too.
+        edges: What it gives where mathematics has no answer or many, in a sentence. Elsewhere, and
+            wherever this is empty, ordinary numbers (``limits.ORDINARY``) give a finite number.
+        reach: Up to which magnitude of its arguments that holds.
         hidden: Not a name of the language: only prelude code and passes use it.
     """
 
@@ -89,6 +97,10 @@ class Intrinsic:
     careful: str | None = None
     hidden: bool = False
     derivative: derivatives.Rule | None = None
+    held: Held | None = None
+    guarded: bool = False
+    edges: str = ""
+    reach: float = limits.ORDINARY
 
     def spelling(self, family: str) -> str | None:
         """The spelling for a target family, with ``SCENE`` filled in as ``@name``."""
@@ -142,7 +154,8 @@ _COMPONENTS = (
          lambda xp, x: xp.trunc(x), scene="rounding.truncate", glsl100=SCENE,
          derivative=derivatives.constant),
     _row("fract", "x - floor(x).", _ONE, (UNARY,), (_R,), scene="rounding.fraction", llvm=SCENE,
-         derivative=derivatives.same),
+         derivative=derivatives.same,
+         edges="From 0 to 1; 1 itself only by rounding, for negative x above -2^-24."),
     _row("min", "The smaller: b if b < a else a.", _TWO, (componentwise(2, NUMBERS),), (_R, _R),
          meanings.minimum, scene="choosing.smaller_int", glsl100="min({0}, {1})",
          derivative=derivatives.minimum),
@@ -151,64 +164,86 @@ _COMPONENTS = (
          derivative=derivatives.maximum),
     _row("clamp", "x held between low and high: min(max(x, low), high).", ("x", "low", "high"),
          (componentwise(3, NUMBERS),), (_R, (-5.0, 0.0), (0.0, 5.0)), scene="choosing.clamped",
-         llvm=SCENE, derivative=derivatives.clamped),
+         llvm=SCENE, derivative=derivatives.clamped, edges="Where low > high it is high."),
     _row("mod", "a - b * floor(a / b), the sign of b; the same as a % b.", _TWO, (BINARY,),
          (_R, (0.5, 4.0)), scene="rounding.remainder", glsl=SCENE, wgsl=SCENE, llvm=SCENE,
-         rtol=2e-6, atol=2e-6, derivative=derivatives.remainder),
+         rtol=2e-6, atol=2e-6, derivative=derivatives.remainder,
+         edges="0 for a b below 2^-60 in magnitude: mod(a, 0) = 0."),
     _row("mix", "a + (b - a) * t.", ("a", "b", "t"), (TERNARY,), (_R, _R, (0.0, 1.0)),
          scene="choosing.mixed", llvm=SCENE, rtol=1e-6, atol=2e-6, derivative=derivatives.mixed),
     _row("step", "0 where x < edge, else 1.", ("edge", "x"), (BINARY,), (_R, _R),
          scene="choosing.stepped", llvm=SCENE, derivative=derivatives.constant),
     _row("smoothstep", "0 below low, 1 above high, 3t^2 - 2t^3 between.", ("low", "high", "x"),
          (TERNARY,), ((-5.0, -1.0), (1.0, 5.0), _R), scene="choosing.smoothstepped",
-         llvm=SCENE, rtol=1e-6, atol=1e-6, derivative=derivatives.smoothstepped),
+         llvm=SCENE, rtol=1e-6, atol=1e-6, guarded=True, derivative=derivatives.smoothstepped,
+         edges="smoothstep(e, e, x) = step(e, x); where low > high it falls, from 1 at high to 0 "
+         "at low."),
     _row("radians", "Degrees to radians.", _ONE, (UNARY,), ((-360.0, 360.0),),
          scene="choosing.to_radians", llvm=SCENE, rtol=1e-6, derivative=derivatives.to_radians),
     _row("degrees", "Radians to degrees.", _ONE, (UNARY,), (_R,), scene="choosing.to_degrees",
          llvm=SCENE, rtol=1e-6, derivative=derivatives.to_degrees),
 )  # fmt: skip
 
+_ANGLES: Final = (
+    "Off by 1e-6 at most for angles to 1e4, by what the angle itself is known to beyond; beyond "
+    "2^22 it is as at 2^22 (2^51 in 64 bits). Where the target's own function stands in the text, "
+    "large angles are as good as its driver."
+)
+
 _ELEMENTARY = (
     _row("sqrt", "Square root.", _ONE, (UNARY,), ((0.0, 100.0),), lambda xp, x: xp.sqrt(x),
-         rtol=2e-7, derivative=derivatives.square_root),
+         rtol=2e-7, derivative=derivatives.square_root, held=limits.NOT_NEGATIVE,
+         edges="0 below 0."),
     _row("inversesqrt", "1 / sqrt(x).", _ONE, (UNARY,), ((0.01, 100.0),),
          lambda xp, x: (1.0 / xp.sqrt(x)).astype(x.dtype), wgsl="inverseSqrt({0})", rtol=5e-7,
-         derivative=derivatives.inverse_square_root),
+         derivative=derivatives.inverse_square_root, held=limits.POSITIVE,
+         edges="At and below 0 that of the smallest normal number, 2^63 (2^511 in 64 bits)."),
     _row("exp", "e to the power x.", _ONE, (UNARY,), ((-20.0, 20.0),), lambda xp, x: xp.exp(x),
-         llvm="@elementary.exponential", **_CLOSE, derivative=derivatives.exponential),
+         llvm="@elementary.exponential", **_CLOSE, derivative=derivatives.exponential,
+         held=limits.EXPONENT, edges="Above x = 87 (708 in 64 bits) it stays as large as there."),
     _row("exp2", "2 to the power x.", _ONE, (UNARY,), ((-20.0, 20.0),), lambda xp, x: xp.exp2(x),
          llvm="@elementary.exponential_base_2", **_CLOSE,
-         derivative=derivatives.exponential_base_2),
+         derivative=derivatives.exponential_base_2, held=limits.EXPONENT_OF_2,
+         edges="Above x = 126 (1022 in 64 bits) it stays as large as there."),
     _row("log", "Natural logarithm.", _ONE, (UNARY,), ((0.001, 100.0),), lambda xp, x: xp.log(x),
-         llvm="@elementary.logarithm", **_CLOSE, derivative=derivatives.logarithm),
+         llvm="@elementary.logarithm", **_CLOSE, derivative=derivatives.logarithm,
+         held=limits.POSITIVE,
+         edges="At and below 0 that of the smallest normal number, -87.3 (-708.4 in 64 bits)."),
     _row("log2", "Logarithm to base 2.", _ONE, (UNARY,), ((0.001, 100.0),),
          lambda xp, x: xp.log2(x), llvm="@elementary.logarithm_base_2", **_CLOSE,
-         derivative=derivatives.logarithm_base_2),
+         derivative=derivatives.logarithm_base_2, held=limits.POSITIVE,
+         edges="At and below 0 that of the smallest normal number, -126 (-1022 in 64 bits)."),
     _row("pow", "max(x, 0) to the power y; 0 ** 0 = 1.", ("x", "y"), (BINARY,),
          ((-1.0, 8.0), (0.0, 8.0)), meanings.power, scene="elementary.power",
          glsl="@elementary.guarded_power", wgsl="@elementary.guarded_power", llvm=SCENE,
-         rtol=4e-6, atol=1e-6, derivative=derivatives.power),
+         rtol=4e-6, atol=1e-6, derivative=derivatives.power,
+         edges="At most 2^126 (2^1022 in 64 bits), which 0 to a negative power is; what is below "
+         "the smallest normal number counts as 0. A constant whole y is a product, of negative x "
+         "too, and may overflow as one."),
     _row("raw_power", "x to the power y for x > 0, as the target computes it.", ("x", "y"),
          (BINARY,), ((0.01, 8.0), (0.0, 8.0)), lambda xp, x, y: xp.power(x, y),
          glsl="pow({0}, {1})", wgsl="pow({0}, {1})", scene="elementary.power", llvm=SCENE,
          rtol=4e-6, atol=1e-6, hidden=True, derivative=derivatives.power),
     _row("sin", "Sine.", _ONE, (UNARY,), (_R,), lambda xp, x: xp.sin(x),
          llvm="@elementary.sine", careful="careful.sine",
-         **_CLOSE, derivative=derivatives.sine),
+         **_CLOSE, derivative=derivatives.sine, held=limits.ANGLE, edges=_ANGLES),
     _row("cos", "Cosine.", _ONE, (UNARY,), (_R,), lambda xp, x: xp.cos(x),
          llvm="@elementary.cosine", careful="careful.cosine",
-         **_CLOSE, derivative=derivatives.cosine),
+         **_CLOSE, derivative=derivatives.cosine, held=limits.ANGLE, edges=_ANGLES),
     _row("tan", "Tangent.", _ONE, (UNARY,), ((-1.4, 1.4),), lambda xp, x: xp.tan(x),
          llvm="@elementary.tangent", careful="careful.tangent",
-         rtol=1e-6, atol=1e-6, derivative=derivatives.tangent),
+         rtol=1e-6, atol=1e-6, derivative=derivatives.tangent, held=limits.ANGLE,
+         edges=f"At a pole some large number. {_ANGLES}"),
     _row("asin", "Arc sine, from -pi/2 to pi/2.", _ONE, (UNARY,), (_UNIT,),
          lambda xp, x: xp.arcsin(x), llvm="@elementary.arc_sine", careful="elementary.arc_sine",
          rtol=5e-4, atol=5e-4,
-         derivative=derivatives.arc_sine),
+         derivative=derivatives.arc_sine, held=limits.UNIT,
+         edges="Below -1 as at -1, above 1 as at 1."),
     _row("acos", "Arc cosine, from 0 to pi.", _ONE, (UNARY,), (_UNIT,),
          lambda xp, x: xp.arccos(x), llvm="@elementary.arc_cosine", careful="elementary.arc_cosine",
          rtol=5e-4, atol=5e-4,
-         derivative=derivatives.arc_cosine),
+         derivative=derivatives.arc_cosine, held=limits.UNIT,
+         edges="Below -1 as at -1, above 1 as at 1."),
     _row("atan", "Arc tangent, from -pi/2 to pi/2.", _ONE, (UNARY,), (_R,),
          lambda xp, x: xp.arctan(x), llvm="@elementary.arc_tangent", rtol=3e-5, atol=5e-6,
          derivative=derivatives.arc_tangent),
@@ -223,13 +258,15 @@ _ELEMENTARY = (
          llvm=SCENE, rtol=3e-5, atol=5e-6, hidden=True, derivative=derivatives.arc_tangent_2),
     _row("sinh", "Hyperbolic sine.", _ONE, (UNARY,), ((-5.0, 5.0),), lambda xp, x: xp.sinh(x),
          scene="elementary.hyperbolic_sine", glsl100=SCENE, llvm=SCENE, rtol=5e-6, atol=1e-6,
-         derivative=derivatives.hyperbolic_sine),
+         derivative=derivatives.hyperbolic_sine, held=limits.HYPERBOLIC,
+         edges="Beyond -87 and 87 (708 in 64 bits) as there."),
     _row("cosh", "Hyperbolic cosine.", _ONE, (UNARY,), ((-5.0, 5.0),), lambda xp, x: xp.cosh(x),
          scene="elementary.hyperbolic_cosine", glsl100=SCENE, llvm=SCENE, rtol=1e-6,
-         derivative=derivatives.hyperbolic_cosine),
+         derivative=derivatives.hyperbolic_cosine, held=limits.HYPERBOLIC,
+         edges="Beyond -87 and 87 (708 in 64 bits) as there."),
     _row("tanh", "Hyperbolic tangent.", _ONE, (UNARY,), (_R,), lambda xp, x: xp.tanh(x),
          scene="elementary.hyperbolic_tangent", glsl100=SCENE, llvm=SCENE, rtol=1e-6, atol=1e-6,
-         derivative=derivatives.hyperbolic_tangent),
+         derivative=derivatives.hyperbolic_tangent, held=limits.LEVEL),
 )  # fmt: skip
 
 _PAIR_TO_FLOAT = Signature((T, T), FLOAT, VECTORS)
@@ -244,16 +281,18 @@ _GEOMETRY = (
          atol=2e-5, derivative=derivatives.dot),
     _row("cross", "Vector product, right-handed.", _TWO, (Signature((VEC3, VEC3), VEC3, (VEC3,)),),
          (_R, _R), meanings.cross, rtol=1e-6, atol=2e-5, derivative=derivatives.cross),
-    _row("normalize", "v / length(v); not defined for a zero vector.", ("v",),
+    _row("normalize", "The vector of length 1 in the direction of v.", ("v",),
          (componentwise(1, VECTORS),), ((0.1, 10.0),), scene="vectors.normalized",
-         llvm=SCENE, rtol=1e-6, atol=1e-6, derivative=derivatives.normalized),
+         llvm=SCENE, rtol=1e-6, atol=1e-6, guarded=True, derivative=derivatives.normalized,
+         edges="normalize(0) = 0; a vector shorter than 2^-63 (2^-511 in 64 bits) stays shorter "
+         "than 1."),
     _row("reflect", "Direction ``incident`` mirrored at the unit ``normal``.",
          ("incident", "normal"), (_VECTOR_PAIR,), (_UNIT, _UNIT), scene="vectors.reflected",
-         llvm=SCENE, rtol=1e-6, atol=2e-6, derivative=derivatives.reflected),
+         llvm=SCENE, rtol=1e-6, atol=2e-6, derivative=derivatives.reflected, reach=2.0**40),
     _row("refract", "Unit ``incident`` refracted at unit ``normal``, eta = n1 / n2; zero when all "
          "is reflected.", ("incident", "normal", "eta"), (Signature((T, T, FLOAT), T, VECTORS),),
          (_UNIT, _UNIT, (0.5, 1.5)), scene="vectors.refracted", llvm=SCENE, rtol=1e-5, atol=2e-6,
-         derivative=derivatives.refracted),
+         derivative=derivatives.refracted, reach=2.0**20),
     _row("faceforward", "n if dot(incident, reference) < 0 else -n.",
          ("n", "incident", "reference"), (componentwise(3, VECTORS),), (_R, _R, _R),
          scene="vectors.facing_forward", wgsl="faceForward({0}, {1}, {2})", llvm=SCENE,
@@ -276,10 +315,11 @@ _MATRIX = (
          derivative=derivatives.transposed),
     _row("determinant", "Determinant.", ("m",), (Signature((T,), FLOAT, MATRICES),), (_UNIT,),
          scene="matrices.determinant_of", glsl100=SCENE, llvm=SCENE, rtol=1e-5, atol=2e-6,
-         derivative=derivatives.determinant),
-    _row("inverse", "Inverse; not defined for a singular matrix.", ("m",),
-         (componentwise(1, MATRICES),), (_UNIT,), scene="matrices.inverse_of", glsl100=SCENE,
-         wgsl=SCENE, llvm=SCENE, rtol=1e-4, atol=1e-5, derivative=derivatives.inverse),
+         derivative=derivatives.determinant, reach=2.0**30),
+    _row("inverse", "Inverse.", ("m",),
+         (componentwise(1, MATRICES),), (_UNIT,), scene="matrices.inverse_of", glsl=SCENE,
+         wgsl=SCENE, llvm=SCENE, rtol=1e-4, atol=1e-5, derivative=derivatives.inverse, reach=256.0,
+         edges="0 where the determinant's magnitude is below 2^-100: of a singular matrix."),
     _row("outer", "The matrix whose column i is a * b[i].", _TWO,
          (Signature((T, T), Follows.SQUARE, VECTORS),), (_R, _R), meanings.outer,
          scene="matrices.outer_product", glsl="outerProduct({0}, {1})", glsl100=SCENE, wgsl=SCENE,

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from distal.ir import limits
+
 
 def minimum(xp: Any, a: Any, b: Any) -> Any:
     """B where b < a, else a: what GLSL and x86 do, and what a NaN in ``a`` gets."""
@@ -25,8 +27,10 @@ def sign(xp: Any, a: Any) -> Any:
 
 
 def power(xp: Any, a: Any, b: Any) -> Any:
-    """pow(max(a, 0), b), and 0 ** 0 = 1."""
-    return xp.power(xp.where(a > 0, a, xp.zeros_like(a)), b)
+    """pow(max(a, 0), b) up to its limit, and 0 ** 0 = 1."""
+    bits = 8 * a.dtype.itemsize
+    base = xp.where(a >= a.dtype.type(limits.smallest(bits)), a, xp.zeros_like(a))
+    return xp.minimum(xp.power(base, b), a.dtype.type(limits.largest_power(bits)))
 
 
 def angle(xp: Any, y: Any, x: Any) -> Any:

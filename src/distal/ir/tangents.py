@@ -153,8 +153,13 @@ def compared(op: CompareOp, lhs: Expr, rhs: Expr) -> Expr:
 
 def where_positive(test: Expr, value: Expr) -> Expr:
     """``value`` where ``test > 0``, else 0: a derivative's guard at the ends of a domain."""
+    return where_above(test, 0.0, value)
+
+
+def where_above(test: Expr, end: float, value: Expr) -> Expr:
+    """``value`` where ``test > end``, else 0."""
     none = zero(value.type)
-    return Select(compared(CompareOp.GT, test, zero(test.type)), value, none, value.type)
+    return Select(compared(CompareOp.GT, test, number(end, test.type)), value, none, value.type)
 
 
 def lanes_of(tangent: Tangent) -> Lanes | None:

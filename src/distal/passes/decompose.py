@@ -17,7 +17,7 @@ from dataclasses import replace
 from typing import Final
 
 from distal.diagnostics import Span
-from distal.ir.build import binary, builtin, components, divide, integer, multiply, splat, subtract
+from distal.ir.build import binary, components, integer, splat
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Assign,
@@ -49,6 +49,14 @@ from distal.ir.types import INT, Kind, Scalar, Texture, TextureShape, Type, Vect
 from distal.ir.walk import map_statement, rebuild, rewrite
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
+from distal.passes.decompose_edges import (
+    divides,
+    floor_quotient,
+    held,
+    never_crossed,
+    remainder,
+    target_serves,
+)
 from distal.passes.decompose_indices import assignments, picked_element, settled_index
 from distal.passes.decompose_limits import Blame, constant_loop, refuse_expression, refuse_statement
 from distal.passes.naming import Names, local_names, module_names
@@ -144,6 +152,7 @@ class _Body:
         self._names = Names(local_names(function))
         # A host that leaves a parameter's declared range gets a loop of that range's length.
         self._ranges = Ranges(uniforms=declared_ranges(linker.module.uniforms))
+        self._known: dict[Expr, Expr] = {}
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = function.span
 
@@ -178,6 +187,8 @@ class _Body:
             before = [self._mapped(s) for s in before]
         if isinstance(stmt, Let | For):
             self._ranges.enter(stmt)
+        if isinstance(stmt, Let):
+            self._known[Read(stmt.name, stmt.value.type)] = stmt.value
         if isinstance(stmt, Assign):
             assign = Assign(self._path(stmt.target), self._expression(stmt.value), span=stmt.span)
             if self._target.dynamic_index:
@@ -230,6 +241,7 @@ class _Body:
     def _builtin(self, e: Builtin) -> Expr:
         row = INTRINSICS[e.name]
         family = self._target.family
+        e = held(e, row, self._target, self._context.precision)
         if self._target.rough and row.careful is not None:
             careful = self._scene(e, row.careful, e.args, e.name)
             self._linker.natives[careful.function] = e.name
@@ -238,8 +250,13 @@ class _Body:
         # GLSL ES 1.00 has the functions of numbers for floats only.
         if family == "glsl100" and row.scene and kind_of(e.args[0].type) in _WHOLE:
             spelling = f"@{row.scene}"
+        if e.name == "mod" and divides(e.args[1], self._known):
+            return remainder(*e.args)
+        if row.guarded and not target_serves(e, self._known):
+            assert row.scene is not None, row
+            return self._scene(e, row.scene, e.args, e.name)
         if spelling is None or not spelling.startswith("@"):
-            return e
+            return never_crossed(e) if e.name == "clamp" else e
         # The elementary polynomials hold in 32 bits; in 64 the backend has the functions itself.
         if self._context.precision == 64 and family == "llvm" and "@elementary." in spelling:
             return e
@@ -247,10 +264,11 @@ class _Body:
 
     def _floored(self, e: Binary) -> Expr:
         if kind_of(e.type) is Kind.FLOAT:
-            floor = builtin("floor", divide(e.lhs, e.rhs))
             if e.op is BinaryOp.FLOOR_DIV:
-                return floor
-            return subtract(e.lhs, multiply(e.rhs, floor))
+                return floor_quotient(e.lhs, e.rhs)
+            if divides(e.rhs, self._known):
+                return remainder(e.lhs, e.rhs)
+            return self._scene(e, "rounding.remainder", (e.lhs, e.rhs), e.op.value)
         if self._target.integer_floor:
             return e
         power = _power_of_two(e.rhs)

@@ -41,6 +41,7 @@ from distal.ir.types import (
     kind_of,
 )
 from distal.passes.arithmetic import NotFoldableError, Number
+from distal.passes.float_ranges import interval
 from distal.passes.fold_aggregates import Aggregates
 from distal.passes.fold_constants import constant
 
@@ -259,6 +260,8 @@ class Rules(Aggregates):
         match name, args:
             case "min" | "max", (a, b) if a is b:
                 return a
+            case "min" | "max", (a, b) if self._is_idle(name, a, b):
+                return a
             case "abs", (Unary(UnaryOp.NEGATE, inner),):
                 return Builtin("abs", (inner,), e.type, span=e.span)
             case "abs", (Builtin("abs"),):
@@ -269,6 +272,13 @@ class Rules(Aggregates):
                 return args[0]
             case _:
                 return e
+
+    def _is_idle(self, name: str, a: Expr, b: Expr) -> bool:
+        """True for a bound that ``a`` is seen to keep without it."""
+        if kind_of(a.type) is not Kind.FLOAT or self.components(b) is None:
+            return False
+        (low, high), bound = interval(a, self._known), interval(b, {})
+        return low >= bound[1] if name == "max" else high <= bound[0]
 
 
 def _negated(e: Expr) -> Expr | None:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from distal.ir.nodes import Builtin, Expr, Let, PerFrame, Read, Return, Stmt, Uniform
+from distal.ir.nodes import Builtin, Call, Expr, Let, PerFrame, Read, Return, Stmt, Uniform
 from distal.ir.types import Matrix, Scalar, Struct, Type, Vector, component_count
 from distal.ir.walk import children, nodes_in, rebuild, substitute
 from distal.passes.cost import Costs, node_cost
@@ -47,11 +47,12 @@ class Wish(NamedTuple):
 
 
 def suggestion(form: Expr) -> Wish:
-    """``cos_angle`` for a built-in of one named thing."""
-    if isinstance(form, Builtin):
+    """``cos_angle`` for a built-in or a function of one named thing."""
+    if isinstance(form, Builtin | Call):
         leaves = {n.name for n in nodes_in(form) if isinstance(n, Read | Uniform)}
         if len(leaves) == 1:
-            return Wish(f"{form.name}_{leaves.pop()}")
+            name = form.name if isinstance(form, Builtin) else form.function
+            return Wish(f"{name}_{leaves.pop()}")
     return Wish(None)
 
 

@@ -12,6 +12,7 @@ import math
 from distal.backends.llvm.arithmetic import Arithmetic
 from distal.backends.llvm.lanes import Leaf, Leaves, leaf_count
 from distal.backends.llvm.roots import inverse_square_root, square_root
+from distal.ir.limits import largest_power, smallest
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind, Matrix, Type
 
@@ -160,8 +161,12 @@ def _library(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
         angle = arithmetic.intrinsic("atan2", Kind.FLOAT, *args)
         return arithmetic.select(flat, arithmetic.select(behind, half_turn, zero), angle)
     if name in ("pow", "raw_power"):
+        precision = arithmetic.lanes.precision
         zero = arithmetic.constant(0.0, Kind.FLOAT)
-        below = arithmetic.compare(CompareOp.LT, zero, args[0])
-        base = arithmetic.select(below, args[0], zero)
-        return arithmetic.intrinsic("pow", Kind.FLOAT, base, args[1])
+        least = arithmetic.constant(smallest(precision), Kind.FLOAT)
+        most = arithmetic.constant(largest_power(precision), Kind.FLOAT)
+        below = arithmetic.compare(CompareOp.LT, args[0], least)
+        base = arithmetic.select(below, zero, args[0])
+        power = arithmetic.intrinsic("pow", Kind.FLOAT, base, args[1])
+        return arithmetic.select(arithmetic.compare(CompareOp.LT, most, power), most, power)
     raise AssertionError(f"the table lets the row '{name}' through to the CPU, which lacks it")

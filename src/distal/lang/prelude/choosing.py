@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TypeVar
 
+from distal.ir.limits import SMALLEST
 from distal.lang import (
     Floats,
+    abs,
     clamp,
     func,
     ivec2,
@@ -14,6 +16,7 @@ from distal.lang import (
     max,
     min,
     select,
+    step,
     uint,
     uvec2,
     uvec3,
@@ -87,8 +90,14 @@ def stepped(edge: float, x: float) -> float:
 
 @func
 def smoothstepped(low: Floats, high: Floats, x: Floats) -> Floats:
-    """Hermite's cubic from 0 at ``low`` to 1 at ``high``, level at both ends."""
-    t = clamp((x - low) / (high - low), 0.0, 1.0)
+    """Hermite's cubic from 0 at ``low`` to 1 at ``high``, level at both ends.
+
+    A step where both are the same; a ``low`` above ``high`` turns it about.
+    """
+    extent = high - low
+    is_step = abs(extent) < SMALLEST
+    ramp = clamp((x - low) / select(is_step, 1.0, extent), 0.0, 1.0)
+    t = select(is_step, step(low, x), ramp)
     return t * t * (3.0 - 2.0 * t)
 
 

@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
-from distal.lang import cross, dot, func, mat2, mat3, mat4, transpose, vec2, vec3, vec4
+from distal.ir.limits import SMALLEST_DETERMINANT
+from distal.lang import (
+    abs,
+    cross,
+    dot,
+    func,
+    mat2,
+    mat3,
+    mat4,
+    select,
+    transpose,
+    vec2,
+    vec3,
+    vec4,
+)
 
 
 @func
@@ -87,9 +101,17 @@ def determinant_of_4(m: mat4) -> float:
 
 
 @func
+def inverse_factor(determinant: float) -> float:
+    """1 / determinant; 0 for that of a singular matrix, which makes its inverse 0."""
+    is_singular = abs(determinant) < SMALLEST_DETERMINANT
+    return select(is_singular, 0.0, 1.0 / select(is_singular, 1.0, determinant))
+
+
+@func
 def inverse_of(m: mat2) -> mat2:
     """The adjugate over the determinant (Cramer's rule)."""
-    return mat2(vec2(m[1].y, -m[0].y), vec2(-m[1].x, m[0].x)) / determinant_of(m)
+    adjugate = mat2(vec2(m[1].y, -m[0].y), vec2(-m[1].x, m[0].x))
+    return adjugate * inverse_factor(determinant_of(m))
 
 
 @inverse_of.overload
@@ -97,7 +119,7 @@ def inverse_of_3(m: mat3) -> mat3:
     """The adjugate over the determinant: its rows are the cross products of the columns."""
     first = cross(m[1], m[2])
     rows = mat3(first, cross(m[2], m[0]), cross(m[0], m[1]))
-    return transpose(rows) / dot(m[0], first)
+    return transpose(rows) * inverse_factor(dot(m[0], first))
 
 
 @inverse_of.overload
@@ -110,4 +132,4 @@ def inverse_of_4(m: mat4) -> mat4:
         cofactors_4(m[0], m[1], m[3]),
         -cofactors_4(m[0], m[1], m[2]),
     )
-    return transpose(rows) / dot(m[0], first)
+    return transpose(rows) * inverse_factor(dot(m[0], first))

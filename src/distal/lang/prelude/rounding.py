@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from distal.ir.limits import SMALLEST_DIVISOR
 from distal.lang import Floats, abs, floor, func, select
 
 
@@ -23,11 +24,13 @@ def truncate(x: float) -> float:
 
 @func
 def fraction(x: Floats) -> Floats:
-    """What floor leaves: in [0, 1), but for tiny negative x, where it rounds to 1."""
+    """What floor leaves: from 0 to 1, which tiny negative x are rounded to."""
     return x - floor(x)
 
 
 @func
 def remainder(a: Floats, b: Floats) -> Floats:
-    """A floored remainder, with the sign of ``b``: Python's ``%`` of floats."""
-    return a - b * floor(a / b)
+    """A floored remainder, with the sign of ``b``: Python's ``%`` of floats; 0 for ``b`` = 0."""
+    is_zero = abs(b) < SMALLEST_DIVISOR
+    divisor = select(is_zero, 1.0, b)
+    return select(is_zero, 0.0, a - divisor * floor(a / divisor))

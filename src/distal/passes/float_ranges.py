@@ -1,0 +1,158 @@
+"""Between which numbers a float expression certainly lies.
+
+What flows in: an expression and what is known of immutable locals. What flows out: an interval that
+holds every component, without end where nothing better is seen. It is asked whether a guard is
+needed, so that ``exp(-0.02 * t * t)`` keeps its short form. Rounding is allowed for: what is not
+exact makes an interval a little wider, but 0 stays 0. A NaN is in no interval, and in all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from typing import Final, TypeAlias
+
+from distal.ir.nodes import (
+    Binary,
+    BinaryOp,
+    Builtin,
+    Compose,
+    Const,
+    Expr,
+    Read,
+    Select,
+    Splat,
+    Swizzle,
+    Unary,
+    UnaryOp,
+)
+
+Interval: TypeAlias = tuple[float, float]
+
+ANYWHERE: Final[Interval] = (-math.inf, math.inf)
+_POSITIVE: Final[Interval] = (0.0, math.inf)
+_DEPTH: Final = 10  # operations within one another that are looked at
+_WIDER: Final = 2e-6  # of a value: more than any target's arithmetic is off by
+# A driver's own function may overshoot.
+_RESULTS: Final[dict[str, Interval]] = {
+    **dict.fromkeys(("length", "distance", "sqrt", "exp", "exp2", "cosh", "pow"), _POSITIVE),
+    **dict.fromkeys(("fract", "step", "smoothstep"), (0.0, 1.0 + _WIDER)),
+    **dict.fromkeys(("sin", "cos", "tanh"), (-1.01, 1.01)),
+}
+
+
+def interval(e: Expr, known: Mapping[Expr, Expr], depth: int = _DEPTH) -> Interval:
+    """Where every component of ``e`` lies; ``known``: Reads of immutable locals to their values."""
+    if depth == 0:
+        return ANYWHERE
+
+    def of(part: Expr) -> Interval:
+        return interval(part, known, depth - 1)
+
+    match e:
+        case Const(value):
+            return float(value), float(value)
+        case Read() if e in known:
+            return of(known[e])
+        case Splat(value) | Swizzle(value):
+            return of(value)
+        case Compose(parts):
+            return _hull([of(part) for part in parts])
+        case Select(_, yes, no):
+            return _hull([of(yes), of(no)])
+        case Unary(UnaryOp.NEGATE, operand):
+            low, high = of(operand)
+            return -high, -low
+        case Binary(BinaryOp.ADD | BinaryOp.SUB as op, lhs, rhs):
+            a, b = of(lhs), of(rhs)
+            if op is BinaryOp.SUB:
+                b = -b[1], -b[0]
+            return _widened(a[0] + b[0], a[1] + b[1])
+        case Binary(BinaryOp.MUL):
+            return _product(e, of)
+        case Builtin():
+            return _result(e, known, depth)
+        case _:
+            return ANYWHERE
+
+
+def _result(e: Builtin, known: Mapping[Expr, Expr], depth: int) -> Interval:
+    def of(part: Expr) -> Interval:
+        return interval(part, known, depth - 1)
+
+    match e.name, e.args:
+        case "abs", (x,):
+            low, high = of(x)
+            return max(low, -high, 0.0), max(-low, high)
+        case "min" | "max" as name, (a, b):
+            pick = min if name == "min" else max
+            first, second = of(a), of(b)
+            return pick(first[0], second[0]), pick(first[1], second[1])
+        case "clamp", (x, low_end, high_end):
+            (low, high), least, most = of(x), of(low_end), of(high_end)
+            return min(max(low, least[0]), most[0]), min(max(high, least[1]), most[1])
+        case "dot", (a, b) if a is b:
+            return _sum_of_squares(a, known, of)
+        case _:
+            return _RESULTS.get(e.name, ANYWHERE)
+
+
+def _hull(parts: list[Interval]) -> Interval:
+    return min(low for low, _ in parts), max(high for _, high in parts)
+
+
+def _widened(low: float, high: float) -> Interval:
+    """Of arithmetic that rounds; what is no number is no bound."""
+    low = -math.inf if math.isnan(low) else low - abs(low) * _WIDER if math.isfinite(low) else low
+    high = math.inf if math.isnan(high) else high + abs(high) * _WIDER
+    return low, high
+
+
+def _product(e: Binary, of: Callable[[Expr], Interval]) -> Interval:
+    """Of a chain of factors: what occurs twice is a square, wherever it stands."""
+    factors: list[Expr] = []
+    rest: list[Expr] = [e]
+    while rest and len(factors) < 8:
+        part = rest.pop()
+        if isinstance(part, Splat):
+            part = part.value
+        if isinstance(part, Binary) and part.op is BinaryOp.MUL:
+            rest += [part.lhs, part.rhs]
+        else:
+            factors.append(part)
+    low, high = 1.0, 1.0
+    for factor, count in Counter([*factors, *rest]).items():
+        single = of(factor)
+        for _ in range(count // 2):
+            low, high = _times((low, high), _square(single))
+        if count % 2:
+            low, high = _times((low, high), single)
+    return low, high
+
+
+def _times(a: Interval, b: Interval) -> Interval:
+    ends = [x * y for x in a for y in b]
+    if any(map(math.isnan, ends)):  # 0 times infinity: only the signs are known
+        if a[0] >= 0.0 and b[0] >= 0.0:
+            return _POSITIVE
+        if (a[1] <= 0.0 and b[0] >= 0.0) or (a[0] >= 0.0 and b[1] <= 0.0):
+            return -math.inf, 0.0
+        return ANYWHERE
+    return _widened(min(ends), max(ends))
+
+
+def _square(a: Interval) -> Interval:
+    low = max(a[0], -a[1], 0.0)
+    high = max(-a[0], a[1])
+    return _widened(low * low, high * high)
+
+
+def _sum_of_squares(
+    v: Expr, known: Mapping[Expr, Expr], of: Callable[[Expr], Interval]
+) -> Interval:
+    while v in known or isinstance(v, Unary):
+        v = v.operand if isinstance(v, Unary) else known[v]
+    parts = v.parts if isinstance(v, Compose) else (v,)
+    squares = [_square(of(part)) for part in parts]
+    return _widened(sum(low for low, _ in squares), math.inf)
