@@ -22,33 +22,40 @@ struct Nearest {
 
 const float[3] table = float[3](0.2, 0.9, 0.4);
 
-// elementary.py:50
+// careful.py:22
+float held_angle(float x) {
+    return clamp(x, -4194304.0, 4194304.0);
+}
+
+// elementary.py:52
 float sine_near_zero(float r) {
     float s = r * r;
-    float p = -0.00019809778 + s * 2.606103e-6;
+    float p = -0.00019809778 + s * 2.6058e-6;
     p = 0.008333069 + s * p;
     p = -0.1666666 + s * p;
     return r + r * s * p;
 }
 
-// careful.py:21
+// careful.py:28
 #ifdef TRUST_SIN
 float sine(float x) { return sin(x); }
 #else
 float sine(float x) {
-    float n = floor(x * 0.15915494 + 0.25) + 0.25;
-    float rest = x - n * 6.28125 - n * 0.0019353072;
+    float held = held_angle(x);
+    float n = floor(held * 0.15915494 + 0.25) + 0.25;
+    float rest = held - n * 6.28125 - n * 0.0019353072;
     return sine_near_zero(1.5707964 - abs(rest));
 }
 #endif
 
-// careful.py:30
+// careful.py:38
 #ifdef TRUST_COS
 float cosine(float x) { return cos(x); }
 #else
 float cosine(float x) {
-    float n = floor(x * 0.15915494 + 0.5);
-    float rest = x - n * 6.28125 - n * 0.0019353072;
+    float held = held_angle(x);
+    float n = floor(held * 0.15915494 + 0.5);
+    float rest = held - n * 6.28125 - n * 0.0019353072;
     return sine_near_zero(1.5707964 - abs(rest));
 }
 #endif

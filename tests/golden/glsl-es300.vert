@@ -7,19 +7,25 @@ uniform float time;
 // The per-frame part, handed to the fragment stage.
 flat out vec4 packed_0;
 
-// elementary.py:50
+// careful.py:22
+float held_angle(float x) {
+    return clamp(x, -4194304.0, 4194304.0);
+}
+
+// elementary.py:52
 float sine_near_zero(float r) {
     float s = r * r;
-    float p = -0.00019809778 + s * 2.606103e-6;
+    float p = -0.00019809778 + s * 2.6058e-6;
     p = 0.008333069 + s * p;
     p = -0.1666666 + s * p;
     return r + r * s * p;
 }
 
-// careful.py:21
+// careful.py:28
 float sine(float x) {
-    float n = floor(x * 0.15915494 + 0.25) + 0.25;
-    float rest = x - n * 6.28125 - n * 0.0019353072;
+    float held = held_angle(x);
+    float n = floor(held * 0.15915494 + 0.25) + 0.25;
+    float rest = held - n * 6.28125 - n * 0.0019353072;
     return sine_near_zero(1.5707964 - abs(rest));
 }
 

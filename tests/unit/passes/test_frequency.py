@@ -173,7 +173,7 @@ def test_a_call_of_uniforms_runs_in_the_frame_part_as_a_whole() -> None:
     loop = For("i", zero, nine, 1, (Assign(v, build.add(v, build.builtin("sin", v))),))
     slow = function("slow", {"x": FLOAT}, Var("v", x), loop, Return(v))
     module = hoisted(slow, entry(Return(build.add(x, call("slow", time)))))
-    assert module.frame == (("frame_0", call("slow", time)),)
+    assert module.frame == (("slow_time", call("slow", time)),)
     assert [f.name for f in module.functions] == ["slow", "entry"]
 
 
@@ -185,7 +185,7 @@ def test_a_function_that_both_parts_call_stands_twice_when_pixels_changed_it() -
     use = build.add(call("mixed", x, time), call("mixed", time, time))
     module = hoisted(mixed, entry(Return(use)))
     assert [f.name for f in module.functions] == ["mixed_per_frame", "mixed", "entry"]
-    assert dict(module.frame)["frame_0"] == call("mixed_per_frame", time, time)
+    assert dict(module.frame)["mixed_time"] == call("mixed_per_frame", time, time)
 
 
 def test_a_while_does_not_run_where_no_pixel_asks_for_it() -> None:
