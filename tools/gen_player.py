@@ -12,6 +12,7 @@ is an error here, and no text.
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import re
 import sys
@@ -52,6 +53,7 @@ class Translator:
         self.known = known
         self.source = (SOURCES / path).read_text(encoding="utf-8")
         self.tree = ast.parse(self.source)
+        self.module = importlib.import_module(f"distal.{path.removesuffix('.py').replace('/', '.')}")
         self.functions = {f.name for f in self.tree.body if isinstance(f, ast.FunctionDef)}
 
     def constants(self) -> str:
@@ -60,7 +62,10 @@ class Translator:
         for node in self.tree.body:
             if isinstance(node, ast.AnnAssign):
                 assert isinstance(node.target, ast.Name) and node.value is not None
-                text = self.expression(node.value)
+                if isinstance(node.value, ast.Name):  # of another module: its value
+                    text = f"{getattr(self.module, node.value.id):.17g}"
+                else:
+                    text = self.expression(node.value)
                 lines.append(f"export const {node.target.id} = {text};")
         return "\n".join(lines) + "\n"
 

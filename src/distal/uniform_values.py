@@ -12,10 +12,11 @@ import operator
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from distal.ir.limits import LARGEST_TIME
 from distal.ir.nodes import Module, Origin, UniformDeclaration
 from distal.ir.types import BOOL, FLOAT, INT, Vector
 from distal.lang.chosen_values import checked_values
-from distal.lang.parameter_values import LARGEST_FLOAT, as_bool, as_float, as_int, as_point
+from distal.lang.parameter_values import as_bool, as_float, as_int, as_point
 from distal.lang.parameters import Parameter
 from distal.passes.entry import renamed_parameters
 
@@ -114,7 +115,7 @@ def checked_size(size: Any) -> tuple[int, int]:
 
 
 def checked_time(seconds: Any) -> float:
-    """A time in seconds that 32 bits hold."""
+    """A time in seconds that 32 bits still tell from its neighbours."""
     try:
         value = float(seconds)
     except (TypeError, ValueError):
@@ -123,8 +124,11 @@ def checked_time(seconds: Any) -> float:
         value = math.inf
     if not math.isfinite(value):
         raise ValueError(f"time is finite, not {value}")
-    if abs(value) > LARGEST_FLOAT:
-        raise ValueError(f"time fits 32 bits, {value} does not")
+    if abs(value) > LARGEST_TIME:
+        raise ValueError(
+            f"time is within {LARGEST_TIME:.0f} seconds (12 days) of 0, not {value:g}: floats of "
+            "32 bits are too far apart there"
+        )
     return value
 
 

@@ -20,7 +20,9 @@ from distal.ir.intrinsics import INTRINSICS, Intrinsic
 from distal.ir.nodes import Expr, Function, FunctionRef, Gradient, Param, Read, Return
 from distal.ir.types import (
     FLOAT,
+    MAT4,
     VEC3,
+    VEC4,
     FunctionType,
     Kind,
     Matrix,
@@ -39,21 +41,29 @@ LOOKED_AT: Final = frozenset(("raw_power", "raw_atan2", "saturated_int", "satura
 BIT_CASTS: Final = frozenset(("int_bits_to_float", "uint_bits_to_float"))
 
 _SIZES: Final = (1e-30, 1e-19, 2.0**-64, 1e-9, 0.5, 1.0, 1.5707964, 9.5, 88.5, 129.0, 1e7)
-_CENTRAL: Final = (0.0, 1e-30, -1e-30, 0.5, 1.0, -1.0, 3.0)
+_CENTRAL: Final = (0.0, 1e-30, -1e-30, 0.5, 1.0, -3.0)
 
 
-def edge_cases() -> Iterator[Case]:
-    """A case or two for each row of floats, on its scalar form or else its form of three."""
+def edge_cases() -> Iterator[tuple[Case, Numbers]]:
+    """A case or two for each row of floats, and what its first samples are known to give.
+
+    On the row's scalar form, or else its form of vectors of three (matrices of two): there the
+    components are all equal first, since what is known is known of such.
+    """
     for row in INTRINSICS.values():
         params = _params(row)
         if params is None or row.name in LOOKED_AT | BIT_CASTS:
             continue
-        rows = _rows(row, len(params))
-        for first in range(0, len(rows), SAMPLES):
-            yield _case(row, params, rows[first : first + SAMPLES])
-        if not isinstance(params[0], Scalar):
-            same = (0.0, 1e-30, -1e-30, 1e-19, 2.0**-64, 1e-9, -0.5, 1.0, row.reach, -row.reach)
-            yield _case(row, params, _equal([(x,) * len(params) for x in same]))
+        given = [args for n, args, _ in KNOWN if n == row.name]
+        values = np.array([value for n, _, value in KNOWN if n == row.name])
+        edges = _rows(row, len(params))
+        if isinstance(params[0], Scalar):
+            assert len(given) + len(edges) <= SAMPLES, row.name
+            yield _case(row, params, [*given, *edges]), values
+        else:
+            same = [(x,) * len(params) for x in (0.0, 1e-30, 1e-19, 1.0, row.reach, -row.reach)]
+            yield _case(row, params, _equal([*given, *same])), values
+            yield _case(row, params, edges[:SAMPLES]), np.array([])
 
 
 def _equal(rows: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
@@ -89,7 +99,7 @@ def _rows(row: Intrinsic, count: int) -> list[tuple[float, ...]]:
     """Every edge alone where there is one argument, else central ones in all combinations."""
     if count == 1:
         return [(x,) for size in (0.0, *_SIZES, row.reach) for x in (size, -size)]
-    found = list(product(_CENTRAL[: 7 if count == 2 else 4], repeat=count))
+    found = list(product(_CENTRAL if count == 2 else (0.0, 1.0, -1.0), repeat=count))
     for size in (row.reach, -row.reach):
         found += [tuple(size if i == j else 1.0 for j in range(count)) for i in range(count)]
     return [*found, (row.reach,) * count]
@@ -144,31 +154,20 @@ KNOWN: Final[tuple[tuple[str, tuple[float, ...], float], ...]] = (
 )
 
 
-def known_cases() -> Iterator[tuple[Case, Numbers]]:
-    """A case of each row of which numbers are known, and those, one for each of its first samples.
-
-    On scalars, or vectors of three (matrices of two) whose components are all equal.
-    """
-    for name in dict.fromkeys(name for name, _, _ in KNOWN):
-        row = INTRINSICS[name]
-        params = _params(row)
-        assert params is not None, name
-        given = [args for n, args, _ in KNOWN if n == name]
-        values = np.array([value for n, _, value in KNOWN if n == name])
-        yield _case(row, params, _equal(given)), values
-
-
 def constant_cases() -> Iterator[tuple[Case, Numbers]]:
-    """The known numbers of rows of scalars with the arguments as constants of the text."""
+    """The known numbers of rows of scalars with constants for arguments, sixteen in a matrix."""
+    found = []
     for name, args, value in KNOWN:
-        row = INTRINSICS[name]
-        params = _params(row)
+        params = _params(INTRINSICS[name])
         if params is not None and all(p is FLOAT for p in params):
-
-            def applied(_: object, name: str = name, args: tuple[float, ...] = args) -> Expr:
-                return builtin(name, *map(number, args))
-
-            yield Case(f"{name}{args}", (), applied, [], row.rtol, row.atol), np.array([value])
+            found.append((builtin(name, *map(number, args)), value))
+    found += found[: -len(found) % 16]
+    for first in range(0, len(found), 16):
+        calls = [call for call, _ in found[first : first + 16]]
+        columns = [compose(VEC4, *calls[i : i + 4]) for i in range(0, 16, 4)]
+        matrix = compose(MAT4, *columns)
+        values = np.array([value for _, value in found[first : first + 16]])
+        yield Case(f"constants from {first}", (), lambda _, m=matrix: m, []), values
 
 
 def gradient_cases() -> tuple[list[Case], tuple[Function, ...]]:

@@ -40,8 +40,10 @@ from distal.ir.target import FramePlace, Target
 from distal.ir.types import Type
 from distal.ir.walk import expressions_in
 
+_TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
+
 TARGETS: Final = (
-    Target("glsl-es300", "glsl", FramePlace.VERTEX, rough=True, one_way=True),
+    Target("glsl-es300", "glsl", FramePlace.VERTEX, rough=frozenset(_TRUST), one_way=True),
     Target("glsl-330", "glsl", FramePlace.VERTEX),
     *(
         Target(
@@ -58,7 +60,6 @@ TARGETS: Final = (
     Target("shadertoy", "glsl", FramePlace.PIXEL),
 )
 
-_TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
 _HOST_NAMES: Final = {
     "glsl-es100": GLSL_CANVAS_NAMES,
     "glslcanvas": GLSL_CANVAS_NAMES,

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
+from distal.ir.limits import LARGEST_TIME
 from distal.lang.parameter_values import LARGEST_FLOAT, Value
 from distal.lang.parameters import Parameter
 from distal.loading import EXAMPLE_PREFIX, split_source
@@ -47,8 +48,10 @@ def read_time(text: str) -> float:
         raise UsageError(f"a time is a number of seconds, not '{text:.40}'") from None
     if not math.isfinite(time):
         raise UsageError(f"a time is finite, not {time}")
-    if abs(time) > LARGEST_FLOAT:
-        raise UsageError(f"a time fits 32 bits, {time} does not")
+    if abs(time) > LARGEST_TIME:
+        raise UsageError(
+            f"a time is within {LARGEST_TIME:.0f} seconds (12 days) of 0, not {time:g}"
+        )
     return time
 
 

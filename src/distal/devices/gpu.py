@@ -10,7 +10,9 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +23,9 @@ from distal.backends.llvm.layout import kinds_in, shape_of
 from distal.backends.wgsl_functions import leaf_count
 from distal.compiler import run_passes
 from distal.devices import cpu_memory
-from distal.devices.adapters import Gpu, chosen, opened, wgpu_module
+from distal.devices.adapters import Adapter, Gpu, chosen, opened, wgpu_module
 from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test
+from distal.devices.driver_errors import rough_names, uses_rough
 from distal.devices.gpu_program import LARGEST_DISPATCH, Program
 from distal.devices.pool import PICTURES
 from distal.devices.tiles import Pace, Tile, tiles
@@ -67,6 +70,8 @@ def prepare(
     is_image = module.kind is EntryKind.IMAGE
     name = "wgsl" if path == "fragment" and is_image else "wgsl-compute"
     target = get_target(name)
+    if uses_rough(module):
+        target = replace(target, rough=_rough_names(row))
     shaped = (passes or run_passes)(module, target, precision)
     artifact = emit(shaped, target)
     kernel = GpuKernel(shaped, artifact, lambda: opened(row))
@@ -80,6 +85,25 @@ def prepare(
         "compile_s": time.perf_counter() - started,
     }
     return kernel
+
+
+_ROUGH: Final[WeakKeyDictionary[Gpu, frozenset[str]]] = WeakKeyDictionary()
+
+
+def _rough_names(row: Adapter) -> frozenset[str]:
+    """The built-ins that an adapter's driver is too rough in; measured once while it is open."""
+    gpu = opened(row)
+    found = _ROUGH.get(gpu)
+    if found is None:
+        found = _ROUGH[gpu] = rough_names(lambda module, points: _drivers_own(row, module, points))
+    return found
+
+
+def _drivers_own(row: Adapter, module: Module, points: list[NDArray[np.float32]]) -> Values:
+    """A function's values with all built-ins as the driver has them."""
+    target = get_target("wgsl-compute")
+    shaped = run_passes(module, target)
+    return GpuKernel(shaped, emit(shaped, target), lambda: opened(row)).evaluate(points, {}, {})
 
 
 class GpuKernel:

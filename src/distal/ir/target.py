@@ -30,7 +30,7 @@ class Target:
         saturating_cast: Its float to int conversion saturates and gives 0 for NaN.
         texel_fetch: Reads single texels and sizes.
         samples: Filters textures itself (else the prelude's filter over single texels).
-        rough: Its drivers' own sine and the like may be off by what a picture shows; the table's
+        rough: Built-ins that its drivers may have off by what a picture shows; the table's
             ``careful`` functions stand in, unless a host that has measured its driver trusts it.
             Texts for people and their sites keep the short names.
         inline: Wants small functions inlined.
@@ -49,7 +49,7 @@ class Target:
     saturating_cast: bool = False
     texel_fetch: bool = True
     samples: bool = True
-    rough: bool = False
+    rough: frozenset[str] = frozenset()
     inline: bool = False
     predicated: bool = False
     outlined: bool = False

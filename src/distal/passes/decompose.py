@@ -242,7 +242,7 @@ class _Body:
         row = INTRINSICS[e.name]
         family = self._target.family
         e = held(e, row, self._target, self._context.precision)
-        if self._target.rough and row.careful is not None:
+        if e.name in self._target.rough and row.careful is not None:
             careful = self._scene(e, row.careful, e.args, e.name)
             self._linker.natives[careful.function] = e.name
             return careful

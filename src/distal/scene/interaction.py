@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.ir.limits import LARGEST_TIME
 from distal.lang.number_text import fixed, precise
 
 # The camera
@@ -84,8 +85,7 @@ def notches_of(delta: float, unit: int, is_pinch: bool) -> float:
 
 # Time
 
-# A finite float of 32 bits still tells frames apart here: 2 ** 20 s is twelve days.
-LATEST_S: Final = 1048576.0
+LATEST_S: Final = LARGEST_TIME
 FIRST_SPAN_S: Final = 10.0
 STEP_S: Final = 0.25
 FRAMES_PER_S: Final = 60.0

@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Final
 
 from distal.film.video import WishError
+from distal.ir.limits import LARGEST_TIME
 
 # More is a mistake of units: three hours at 90 frames a second are fewer.
 MOST_FRAMES: Final = 1_000_000
@@ -70,6 +71,12 @@ def timing(start: object, duration: object, rate: object) -> Timing:
     made = Timing(_seconds("start", start), _seconds("duration", duration), frame_rate(rate))
     if made.duration <= 0:
         raise WishError(f"a duration is more than 0 seconds, not {_plain(duration)}")
+    first, last = made.time(0), made.time(made.count - 1)
+    if max(abs(first), abs(last)) > LARGEST_TIME:
+        raise WishError(
+            f"times are within {LARGEST_TIME:.0f} seconds (12 days) of 0, this goes from "
+            f"{first:g} to {last:g}"
+        )
     if made.count > MOST_FRAMES:
         raise WishError(
             f"{made.count} frames are too many: {float(made.duration):g} s at "

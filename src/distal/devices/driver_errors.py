@@ -1,0 +1,75 @@
+"""Which of a GPU's own functions are too rough to draw with (decision 18).
+
+What flows in: an open GPU. What flows out: the names of the built-ins whose careful stand-in a
+program should have there, of those that the table has one for. Measured once for each open GPU, by
+a kernel of its own, at the same arguments and against the same error as a page measures
+(``web/src/trust.ts``; a test holds the two together).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.ir.build import builtin, compare, number, read, select
+from distal.ir.intrinsics import INTRINSICS
+from distal.ir.nodes import Builtin, CompareOp, EntryKind, Expr, Function, Module, Param, Return
+from distal.ir.types import FLOAT
+from distal.ir.walk import expressions_in, nodes_in
+
+NAMES: Final = tuple(row.name for row in INTRINSICS.values() if row.careful)
+COUNT: Final = 256  # arguments: exact in a shader, and all around the turn
+STEP: Final = 25 / 32  # between angles, to 99.6 either way; arcs are measured from -1 to 1
+# An angle near 100 is itself known to 4e-6, and folding it in 32 bits loses as much again.
+MOST: Final = 1e-5
+_ANGLES: Final = ("sin", "cos", "tan")
+
+Measured = Callable[[Module, list[NDArray[np.float32]]], Any]
+
+
+def uses_rough(module: Module) -> bool:
+    """True when a module calls a built-in that drivers may compute roughly."""
+    return any(
+        isinstance(node, Builtin) and node.name in NAMES
+        for function in module.functions
+        for e in expressions_in(function.body)
+        for node in nodes_in(e)
+    )
+
+
+def rough_names(run: Measured) -> frozenset[str]:
+    """The built-ins that are off by more than ``MOST``; ``run`` computes a function of points."""
+    errors = measured_errors(run)
+    return frozenset(name for name, error in errors.items() if not error <= MOST)
+
+
+def measured_errors(run: Measured) -> dict[str, float]:
+    """The greatest error of each; a tangent's as of its angle. NaN where one is no number."""
+    place = np.arange(COUNT) + 0.5 - COUNT / 2
+    arguments = [place * (STEP if name in _ANGLES else 2.0 / COUNT) for name in NAMES]
+    which = np.repeat(np.arange(len(NAMES)), COUNT).astype(np.float32)
+    values = run(_module(), [which, np.concatenate(arguments).astype(np.float32)])
+    errors = {}
+    for name, x, row in zip(
+        NAMES, arguments, np.reshape(values, (len(NAMES), COUNT)).astype(np.float64), strict=True
+    ):
+        exact = np.array([getattr(math, name)(a) for a in x])
+        slope = 1.0 + exact**2 if name == "tan" else 1.0
+        errors[name] = float(np.max(np.abs(row - exact) / slope))
+    return errors
+
+
+def _module() -> Module:
+    """Of (which, x): the built-in of that number at x."""
+    which, x = read("which", FLOAT), read("x", FLOAT)
+    value: Expr = builtin(NAMES[-1], x)
+    for i, name in enumerate(NAMES[:-1]):
+        here = compare(CompareOp.EQ, which, number(float(i)))
+        value = select(here, builtin(name, x), value)
+    params = (Param("which", FLOAT), Param("x", FLOAT))
+    function = Function("measured", params, FLOAT, (Return(value),), "measured")
+    return Module((function,), "measured", EntryKind.FUNCTION)
