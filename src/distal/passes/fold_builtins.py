@@ -12,6 +12,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias
 
+from distal.ir import limits
+from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import BinaryOp
 from distal.ir.types import Kind, Type, kind_of
 from distal.passes.arithmetic import Arithmetic, NotFoldableError, Number, wrap
@@ -43,6 +45,13 @@ def fold_builtin(
     if kind is not Kind.FLOAT:
         raise NotFoldableError
     floats = [tuple(float(c) for c in arg) for arg in args]
+    held = INTRINSICS[name].held
+    if held is not None:
+        low, high = held.limits(math32.precision)
+        floats = [tuple(min(max(c, low), high) for c in arg) for arg in floats]
+    if name == "pow":
+        parts = zip(*floats, strict=True)
+        return tuple(math32.round(_power(x, y, math32.precision)) for x, y in parts)
     if name in _ROUNDING:
         return tuple(float(_ROUNDING[name](a)) for a in floats[0])
     if name in _ELEMENTARY:
@@ -76,16 +85,25 @@ _ELEMENTARY: Final[dict[str, Callable[..., float]]] = {
     "asin": math.asin,
     "acos": math.acos,
     "atan": math.atan,
-    "atan2": math.atan2,
+    "atan2": lambda y, x: math.atan2(y + 0.0, x + 0.0),  # no zero is negative
     "raw_atan2": math.atan2,
     "sinh": math.sinh,
     "cosh": math.cosh,
     "tanh": math.tanh,
-    "pow": lambda x, y: math.pow(max(x, 0.0), y),
     "raw_power": math.pow,
     "radians": math.radians,
     "degrees": math.degrees,
 }
+
+
+def _power(x: float, y: float, precision: int) -> float:
+    most = limits.largest_power(precision)
+    if x < limits.smallest(precision):
+        return 1.0 if y == 0.0 else most if y < 0.0 else 0.0
+    try:
+        return min(math.pow(x, y), most)
+    except OverflowError:
+        return most
 
 
 def _choosing(name: str, parts: tuple[Number, ...], kind: Kind) -> Number:
@@ -163,8 +181,8 @@ class _Rows:
         return self.length(tuple(self.sub(x, y) for x, y in zip(a, b, strict=True)))
 
     def normalize(self, a: tuple[float, ...]) -> tuple[float, ...]:
-        length = self.length(a)[0]
-        return tuple(self.div(x, length) for x in a)
+        square = max(self.dot(a, a)[0], limits.smallest(self._math.precision))
+        return tuple(self.div(x, self.sqrt(square)) for x in a)
 
     def cross(self, a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
         pairs = ((1, 2), (2, 0), (0, 1))
@@ -177,7 +195,9 @@ class _Rows:
         return tuple(self.sub(x, float(math.floor(x))) for x in a)
 
     def mod(self, a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
-        return tuple(self.op(BinaryOp.MOD, x, y) for x, y in zip(a, b, strict=True))
+        parts = zip(a, b, strict=True)
+        least = limits.SMALLEST_DIVISOR
+        return tuple(0.0 if abs(y) < least else self.op(BinaryOp.MOD, x, y) for x, y in parts)
 
     def step(self, edge: tuple[float, ...], a: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(0.0 if x < e else 1.0 for e, x in zip(edge, a, strict=True))
@@ -193,8 +213,11 @@ class _Rows:
     ) -> tuple[float, ...]:
         result = []
         for bottom, top, x in zip(low, high, a, strict=True):
-            t = self.div(self.sub(x, bottom), self.sub(top, bottom))
-            t = min(max(t, 0.0), 1.0)
+            extent = self.sub(top, bottom)
+            if abs(extent) < limits.SMALLEST:
+                t = 0.0 if x < bottom else 1.0
+            else:
+                t = min(max(self.div(self.sub(x, bottom), extent), 0.0), 1.0)
             result.append(self.mul(self.mul(t, t), self.sub(3.0, self.mul(2.0, t))))
         return tuple(result)
 
