@@ -7,6 +7,7 @@ nothing and fails when the page is stale.
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from collections.abc import Iterable
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from distal.ir.intrinsics import INTRINSICS, Intrinsic
+from distal.ir.limits import ORDINARY
 from distal.ir.signatures import Follows, Pattern, Signature
 from distal.ir.types import Kind, Type, Vector, kind_of
 from distal.lang.names import FORMS
@@ -38,6 +40,8 @@ Import them from `distal.lang`. Each takes numbers and vectors in scene code, an
 and arrays when called from Python. Angles are radians. In the lists of types, `T` is the same type
 wherever it stands in a signature.
 
+- **Edges**: what it gives where mathematics has no answer, or none that a float holds. Everywhere
+  else too, finite arguments up to 2^60 in magnitude give a finite number, unless a row says less.
 - **Domain**: where tests compare the targets, argument by argument (for whole numbers more).
 - **Difference**: how far any two targets may be apart, as tests allow: a share of the value, plus
   an amount. Measured with Mesa's drivers, which are the loosest.
@@ -68,9 +72,15 @@ def make_page() -> str:
 
 def _row(row: Intrinsic) -> str:
     lines = [f"\n### `{row.name}({', '.join(row.args)})`\n", row.doc.replace("``", "`"), ""]
+    if row.edges:
+        lines += [f"- Edges: {row.edges}"]
+    if row.reach != ORDINARY:
+        lines += [f"- Finite for arguments up to 2^{math.log2(row.reach):.0f}."]
     lines += [f"- Types: {'; '.join(_signature(row, s) for s in row.signatures)}"]
     lines += [f"- Domain: {_domain(row)}. Difference: {_difference(row)}. Gradient: {_slope(row)}."]
     spellings = "; ".join(f"{_TITLES[f]} {_spelling(row, f)}" for f in FAMILIES)
+    if row.guarded:
+        spellings += "; the prelude's where arguments are not seen to have an answer"
     return "\n".join([*lines, f"- Spelling: {spellings}."]) + "\n"
 
 
