@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 
+from distal.diagnostics import Span
 from distal.frontend.body import Body
 from distal.frontend.fitting import settle
 from distal.frontend.meeting import meet
 from distal.frontend.values import Value, Whole
-from distal.ir.build import builtin, number
-from distal.ir.nodes import Binary, BinaryOp, Const, Expr
+from distal.ir.build import builtin, compare, number, select
+from distal.ir.limits import LARGEST_POWER, SMALLEST
+from distal.ir.nodes import Binary, BinaryOp, CompareOp, Const, Expr
 from distal.ir.types import FLOAT, Kind, Matrix, kind_of
 
 
@@ -84,6 +86,13 @@ def _multiplied(body: Body, base: Expr, exponent: int, node: ast.expr | ast.stmt
         if left > 1:
             power = body.bind("power", power)
     assert result is not None
-    if exponent < 0:
-        result = Binary(BinaryOp.DIV, number(1, base.type), result, base.type, span=span)
-    return result
+    return result if exponent > 0 else _reciprocal(body, result, span)
+
+
+def _reciprocal(body: Body, product: Expr, span: Span) -> Expr:
+    """1 / product, as large as a power becomes (the row ``pow``) where that is 0."""
+    product = body.bind("product", product)
+    inverse = Binary(BinaryOp.DIV, number(1, product.type), product, product.type, span=span)
+    size = builtin("abs", product)
+    is_zero = compare(CompareOp.LT, size, number(SMALLEST, product.type))
+    return select(is_zero, number(LARGEST_POWER, product.type), inverse)
