@@ -65,7 +65,8 @@ def test_bad_size_is_one_short_message(text):
 
 def test_time():
     assert read_time("-1.5e1") == -15.0
-    for text in ("", "soon", "nan", "inf"):
+    assert read_time("1048576") == 2.0**20
+    for text in ("", "soon", "nan", "inf", "1048577", "-1e6000", "-2e6"):
         with pytest.raises(UsageError, match="a time is"):
             read_time(text)
 
