@@ -53,7 +53,9 @@ class Translator:
         self.known = known
         self.source = (SOURCES / path).read_text(encoding="utf-8")
         self.tree = ast.parse(self.source)
-        self.module = importlib.import_module(f"distal.{path.removesuffix('.py').replace('/', '.')}")
+        self.module = importlib.import_module(
+            f"distal.{path.removesuffix('.py').replace('/', '.')}"
+        )
         self.functions = {f.name for f in self.tree.body if isinstance(f, ast.FunctionDef)}
 
     def constants(self) -> str:
