@@ -4,6 +4,8 @@
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
 # make parity    draws every example in every place and writes docs/parity.md
+# make mutate    changes the source in small ways and reports what no test notices:
+#                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
 # make versions  runs the tests on every other supported Python that is installed
 #
 # Needs Python 3.11 or newer (with venv) and make. Everything else goes into .venv. System packages
@@ -19,10 +21,13 @@ PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 p
 WORKERS ?= 2
 SWEEP ?= 5000
 SAMPLES ?= 40
+MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
+COUNT ?= 100
+SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test lint units system bench sweep sweep-fields parity versions clean
+.PHONY: picture test lint units system bench sweep sweep-fields parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -54,6 +59,12 @@ sweep-fields: $(VENV)/.setup-test
 # Every example in every place it can be drawn in, against the CPU; writes docs/parity.md.
 parity: system $(VENV)/.setup-test
 	$(BIN)/python tools/gen_parity.py
+
+# Mutations are drawn by SEED (printed; another each time when not given). The first run records for
+# every test which functions it runs; accepted survivors stand in tests/mutation/survivors.toml.
+mutate: $(VENV)/.setup-test
+	nice $(BIN)/python tools/mutate.py --count $(COUNT) $(if $(SEED),--seed $(SEED)) \
+		--modules $(foreach m,$(MODULES),'$(m)')
 
 # Python 3.11 is what `make test` uses; the others are tried where they are installed.
 versions: system

@@ -1,0 +1,182 @@
+"""Change the source in small ways and see whether a test notices (``make mutate``).
+
+    python tools/mutate.py --modules distal/fields 'distal/passes/fold*' --count 100 --seed 7
+
+What flows in: globs below ``src``, how many mutations, a seed. What flows out: a line for each
+mutation, counts for each package, and the survivors that ``tests/mutation/survivors.toml`` does
+not accept, as entries to put there once their reason is known. Fails when there is one, and when
+an entry is stale or its mutation is killed. Which tests run what is recorded first (about half an
+hour of processor time for all of them); later only tests whose file is new or changed are.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import random
+import secrets
+import sys
+import time
+from collections import Counter, defaultdict
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+ROOT: Final = Path(__file__).parents[1]
+sys.path[:0] = [str(ROOT)]
+
+from tools.mutation.operators import Mutation, mutations, parses  # noqa: E402
+from tools.mutation.project import Project  # noqa: E402
+from tools.mutation.recording import recorded  # noqa: E402
+from tools.mutation.running import (  # noqa: E402
+    KILLED,
+    SURVIVED,
+    TIMED_OUT,
+    UNTESTED,
+    Outcome,
+    run,
+)
+from tools.mutation.selection import Selection  # noqa: E402
+from tools.mutation.survivors import accepted, entry_text, stale  # noqa: E402
+
+MODULES: Final = ("distal/fields", "distal/render", "distal/passes/fold*", "distal/scene")
+# Tests of meaning: golden texts and error texts notice any change, and so say nothing.
+TESTS: Final = (
+    "tests/unit/passes",
+    "tests/unit/frontend",
+    "tests/unit/lang",
+    "tests/fields",
+    "tests/scene",
+    "tests/render",
+    "tests/optics",
+    "tests/gradients/test_found.py",
+    "tests/gradients/test_texts.py",
+    "tests/export",
+    "tests/parity/test_elementary.py",
+    "tests/window/test_state.py",
+    "tests/film/test_rerender.py",
+)
+PRELOAD: Final = ("numpy", "scipy.spatial", "hypothesis", "llvmlite.binding", "PIL.Image")
+VERDICTS: Final = (KILLED, SURVIVED, TIMED_OUT, UNTESTED)
+ACCEPTED: Final = "accepted"
+
+
+def main() -> int:
+    """Draw, run, report; whether all is well."""
+    options = _options()
+    root = options.root.resolve()
+    project = Project(root, root / "src", tuple(options.tests), tuple(options.preload))
+    entries = accepted(options.survivors)
+    old = stale(project, entries)
+    if options.count <= 0:
+        return _report_stale(old)
+    chosen, total = _drawn(project, options.modules, options.count, options.seed)
+    print(f"{len(chosen)} of {total} mutations, SEED={options.seed}", flush=True)
+    for name in project.preload:
+        importlib.import_module(name)
+    if options.record:
+        options.map.unlink(missing_ok=True)
+    tests = recorded(project, options.map, complete=not options.keep_record)
+    selection = Selection(project, tests, options.seconds)
+    keys = {entry.key for entry in entries}
+    outcomes = _run_all(project, chosen, selection, keys, options)
+    survivors = [o for o in outcomes if o.verdict in (SURVIVED, UNTESTED)]
+    fresh = [o for o in survivors if o.mutation.key not in keys]
+    dead = [o for o in outcomes if o.verdict in (KILLED, TIMED_OUT) and o.mutation.key in keys]
+    _report(outcomes, keys)
+    for outcome in fresh:
+        print(f"\n# line {outcome.mutation.line}: {outcome.verdict}, {outcome.tests} tests")
+        print(entry_text(outcome.mutation))
+    for outcome in dead:
+        print(f"\nan accepted survivor is killed by {outcome.by}: take it out")
+        print(entry_text(outcome.mutation))
+    return max(_report_stale(old), 1 if fresh or dead else 0)
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--modules", nargs="+", default=MODULES, help="globs below src")
+    parser.add_argument("--count", type=int, default=100, help="how many; 0: only check the list")
+    parser.add_argument("--seed", type=int, default=None, help="which ones; drawn when not given")
+    parser.add_argument("--seconds", type=float, default=30.0, help="of tests for a mutation")
+    parser.add_argument("--minutes", type=float, default=0.0, help="stop drawing after these")
+    parser.add_argument("--record", action="store_true", help="record every test anew")
+    parser.add_argument("--keep-record", action="store_true", help="record nothing")
+    parser.add_argument("--map", type=Path, default=None, help="where the record is kept")
+    parser.add_argument("--root", type=Path, default=ROOT, help="another project")
+    parser.add_argument("--tests", nargs="+", default=TESTS)
+    parser.add_argument("--preload", nargs="*", default=PRELOAD)
+    parser.add_argument("--survivors", type=Path, default=None)
+    options = parser.parse_args()
+    options.seed = secrets.randbelow(10**6) if options.seed is None else options.seed
+    options.survivors = options.survivors or options.root / "tests/mutation/survivors.toml"
+    options.map = options.map or options.root / "build/mutation/record.jsonl"
+    return options
+
+
+def _drawn(
+    project: Project, patterns: Iterable[str], count: int, seed: int
+) -> tuple[list[Mutation], int]:
+    """So many, at random; and of how many."""
+    files = {path: None for pattern in patterns for path in project.files(pattern)}
+    if not files:
+        raise SystemExit(f"no Python file below {project.source} is named by {' '.join(patterns)}")
+    every = [
+        m
+        for path in files
+        for m in mutations(project.name(path), project.index(project.name(path)))
+    ]
+    chosen: list[Mutation] = []
+    for mutation in random.Random(seed).sample(every, len(every)):
+        if len(chosen) == count:
+            break
+        if parses(mutation.applied(project.index(mutation.file).text)):
+            chosen.append(mutation)
+    return chosen, len(every)
+
+
+def _run_all(
+    project: Project,
+    chosen: list[Mutation],
+    selection: Selection,
+    keys: set[tuple[str, str, str, str]],
+    options: argparse.Namespace,
+) -> list[Outcome]:
+    outcomes: list[Outcome] = []
+    begin = time.monotonic()
+    for number, mutation in enumerate(chosen, 1):
+        if options.minutes and time.monotonic() - begin > 60.0 * options.minutes:
+            print(f"stopped after {options.minutes:g} minutes")
+            break
+        outcome = run(project, mutation, selection.tests(mutation))
+        outcomes.append(outcome)
+        known = " (accepted)" if mutation.key in keys else ""
+        print(
+            f"{number:4} {outcome.verdict}{known} {outcome.seconds:.1f} s"
+            f" {mutation.file}:{mutation.line} {mutation.function}:"
+            f" {mutation.was[:80]} => {mutation.becomes[:80]} [{outcome.by}]",
+            flush=True,
+        )
+    return outcomes
+
+
+def _report(outcomes: list[Outcome], keys: set[tuple[str, str, str, str]]) -> None:
+    counts: dict[str, Counter[str]] = defaultdict(Counter)
+    for outcome in outcomes:
+        lives = outcome.verdict in (SURVIVED, UNTESTED) and outcome.mutation.key in keys
+        package = outcome.mutation.file.rpartition("/")[0] or "."
+        counts[package][ACCEPTED if lives else outcome.verdict] += 1
+    print()
+    for package, counter in sorted(counts.items()):
+        words = ", ".join(f"{counter[verdict]} {verdict}" for verdict in (*VERDICTS, ACCEPTED))
+        print(f"{package}: {counter.total()} made, {words}")
+
+
+def _report_stale(old: list[object]) -> int:
+    for entry in old:
+        print(f"stale entry, the text has no such mutation any more: {entry}")
+    return 1 if old else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

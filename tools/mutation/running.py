@@ -1,0 +1,187 @@
+"""One mutation, one process: forked where pytest and the heavy packages are imported already.
+
+What flows in: a mutation and its tests. What flows out: whether a test failed, and which. The
+child imports the project anew, with the mutated text in place of the file's: as code, and as what
+``linecache`` gives those who read the source of functions. Nothing is written to the source.
+
+The kernel cache is a folder of the child's own. Its key names the lowered scene and the compiler's
+files on disk; a mutated pass changes neither.
+"""
+
+from __future__ import annotations
+
+import importlib.abc
+import importlib.machinery
+import importlib.util
+import linecache
+import os
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import CodeType, ModuleType
+
+import pytest
+
+from tools.mutation.operators import Mutation
+from tools.mutation.project import Project
+from tools.mutation.recording import Test
+
+KILLED, SURVIVED, TIMED_OUT, UNTESTED = "killed", "survived", "timed out", "no test"
+MEMORY_BYTES = 16 * 2**30  # of addresses: a mutated size must not take the machine with it
+_WAITING_S = 300.0  # for a process that waits for ever, and so uses no time
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a mutation.
+
+    Attributes:
+        mutation: The mutation.
+        verdict: Killed, survived, timed out, or no test ran the function.
+        by: The test that failed.
+        tests: How many were chosen.
+        seconds: How long it took.
+    """
+
+    mutation: Mutation
+    verdict: str
+    by: str = ""
+    tests: int = 0
+    seconds: float = 0.0
+
+
+def run(project: Project, mutation: Mutation, tests: Sequence[Test]) -> Outcome:
+    """Run tests with a mutation in place, until one fails."""
+    if not tests:
+        return Outcome(mutation, UNTESTED)
+    begin = time.monotonic()
+    folder = Path(tempfile.mkdtemp(prefix="mutate-"))
+    try:
+        child = os.fork()
+        if child == 0:
+            _child(project, mutation, tests, folder)
+        limit = _WAITING_S + 10.0 * sum(test.seconds for test in tests)
+        in_time, code = _wait(child, begin + limit)
+        said = folder / "failed"
+        by = said.read_text("utf-8") if said.exists() else ""
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    seconds = time.monotonic() - begin
+    if not in_time or code == -signal.SIGPROF:
+        return Outcome(mutation, TIMED_OUT, by, len(tests), seconds)
+    verdict = SURVIVED if code == 0 else KILLED
+    return Outcome(mutation, verdict, by or f"exit {code}", len(tests), seconds)
+
+
+def _wait(child: int, until: float) -> tuple[bool, int]:
+    while time.monotonic() < until:
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return True, os.waitstatus_to_exitcode(status)
+        time.sleep(0.02)
+    os.killpg(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return False, 0
+
+
+def _limit(test: Test) -> float:
+    return 10.0 + 10.0 * test.seconds
+
+
+def _child(project: Project, mutation: Mutation, tests: Sequence[Test], folder: Path) -> None:
+    code = 3
+    try:
+        os.setpgid(0, 0)
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        os.chdir(project.root)
+        log = os.open(folder / "log", os.O_WRONLY | os.O_CREAT)
+        os.dup2(log, 1)
+        os.dup2(log, 2)
+        os.environ["DISTAL_CACHE_DIR"] = str(folder / "kernels")
+        os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(folder / "hypothesis")
+        install(project, mutation)
+        files = list(dict.fromkeys(test.id.partition("::")[0] for test in tests))
+        words = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *files]
+        code = int(pytest.main(words, plugins=[_Chooser(tests, folder / "failed")]))
+    finally:
+        os._exit(code)
+
+
+class _Chooser:
+    """A pytest plugin: the chosen tests in their order, each with a time limit."""
+
+    def __init__(self, tests: Sequence[Test], said: Path) -> None:
+        self.tests = {test.id: test for test in tests}
+        self.said = said
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Keep what was chosen. A test that is no longer there was changed by the mutation."""
+        found = {item.nodeid: item for item in items if item.nodeid in self.tests}
+        if len(found) < len(self.tests):
+            missing = next(name for name in self.tests if name not in found)
+            self.said.write_text(f"{missing} (not collected)", encoding="utf-8")
+            os._exit(1)
+        items[:] = [found[name] for name in self.tests]
+
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        """A signal that nothing catches ends the process, wherever it is.
+
+        Processor time is counted: on a busy machine a test may wait long.
+        """
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, _limit(self.tests[item.nodeid]))
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Name the first that fails."""
+        if report.failed and not self.said.exists():
+            self.said.write_text(report.nodeid, encoding="utf-8")
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """Or that could not be collected."""
+        if report.failed and not self.said.exists():
+            self.said.write_text(f"{report.nodeid} (collection)", encoding="utf-8")
+
+
+def install(project: Project, mutation: Mutation) -> None:
+    """Let this process import the mutated text instead of the file's."""
+    path = str(project.source / mutation.file)
+    text = mutation.applied(project.index(mutation.file).text)
+    lines = text.splitlines(keepends=True)
+    linecache.cache[path] = (len(text), None, lines, path)  # None: not compared with the disk
+    sys.meta_path.insert(0, _Finder(project.module(mutation.file), path, text))
+
+
+class _Finder(importlib.abc.MetaPathFinder):
+    def __init__(self, module: str, path: str, text: str) -> None:
+        self.module, self.path, self.text = module, path, text
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        """Of the one module."""
+        if name != self.module:
+            return None
+        loader = _Loader(name, self.path, self.text)
+        return importlib.util.spec_from_file_location(name, self.path, loader=loader)
+
+
+class _Loader(importlib.machinery.SourceFileLoader):
+    def __init__(self, name: str, path: str, text: str) -> None:
+        super().__init__(name, path)
+        self.text = text
+
+    def get_code(self, fullname: str) -> CodeType:
+        """From the text: compiled code on disk is the file's."""
+        return compile(self.text, self.path, "exec", dont_inherit=True)
+
+    def get_source(self, fullname: str) -> str:
+        """The mutated text."""
+        return self.text
