@@ -37,7 +37,7 @@ from tools.mutation.running import (  # noqa: E402
     run,
 )
 from tools.mutation.selection import Selection  # noqa: E402
-from tools.mutation.survivors import accepted, entry_text, stale  # noqa: E402
+from tools.mutation.survivors import Accepted, accepted, entry_text, stale  # noqa: E402
 
 MODULES: Final = ("distal/fields", "distal/render", "distal/passes/fold*", "distal/scene")
 # Tests of meaning: golden texts and error texts notice any change, and so say nothing.
@@ -172,7 +172,7 @@ def _report(outcomes: list[Outcome], keys: set[tuple[str, str, str, str]]) -> No
         print(f"{package}: {counter.total()} made, {words}")
 
 
-def _report_stale(old: list[object]) -> int:
+def _report_stale(old: list[Accepted]) -> int:
     for entry in old:
         print(f"stale entry, the text has no such mutation any more: {entry}")
     return 1 if old else 0

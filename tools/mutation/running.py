@@ -91,7 +91,7 @@ def _wait(child: int, until: float) -> tuple[bool, int]:
 
 
 def _limit(test: Test) -> float:
-    return 10.0 + 10.0 * test.seconds
+    return 5.0 + 10.0 * test.seconds
 
 
 def _child(project: Project, mutation: Mutation, tests: Sequence[Test], folder: Path) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 from tools.mutation.operators import Mutation, mutations
 from tools.mutation.project import Project
 
-WHY = ("equivalent", "performance", "tolerance")
+WHY = ("equivalent", "performance", "tolerance", "choice")
 _PARTS = ("file", "function", "was", "becomes", "why", "reason")
 
 
@@ -25,8 +25,9 @@ class Accepted:
 
     Attributes:
         key: File, function, line before, line after.
-        why: ``equivalent`` (no input tells them apart), ``performance`` (the result is the same),
-            or ``tolerance`` (a result within what is claimed).
+        why: ``equivalent`` (no input tells them apart), ``performance`` (the result is as right),
+            ``tolerance`` (within what is claimed), ``choice`` (a number that could be another, such
+            as a default, which the reference states and a test holds the reference to).
         reason: Why that is so.
     """
 
