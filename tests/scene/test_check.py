@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import pytest
 
@@ -210,6 +211,15 @@ def test_plain_values_are_json_without_infinity():
     }
     assert own["own_function"]
     assert own["place"]["file"] == __file__
+    # Lines and columns as editors count them: the shape is made where this test calls for it.
+    first = test_plain_values_are_json_without_infinity.__code__.co_firstlineno
+    lines = Path(__file__).read_text("utf-8").splitlines()
+    text = lines[own["place"]["line"] - 1][
+        own["place"]["column"] - 1 : own["place"]["end_column"] - 1
+    ]
+    assert own["place"]["line"] == own["place"]["end_line"] == first + 1
+    assert text == "Shape.from_function(wobbly, slope=1.2, depth=0.05)"
+    assert made["version"] == 1  # the schema of docs/guide/checking.md
     assert set(made["findings"][0]) == {
         *("severity", "code", "shape", "message", "hint", "place"),
     }

@@ -102,6 +102,19 @@ def test_arcs_make_a_circle_and_y_points_up():
     assert distances(ramp, [(4.0, 4.0)])[0] < 0.0 < distances(ramp, [(-4.0, -4.0)])[0]
 
 
+def test_size_is_the_longer_side_and_the_middle_is_the_origin():
+    """Whatever the path's own place and units: 4 by 2 far from the origin, at size 3."""
+    for path, half in (
+        ("M 10 20 h 4 v 2 h -4 z", (1.5, 0.75)),
+        ("M -9 -7 h 2 v 4 h -2 z", (0.75, 1.5)),
+    ):
+        outline = svg_path(path, size=3.0)
+        assert outline.high == pytest.approx(half)
+        assert outline.low == pytest.approx((-half[0], -half[1]))
+    kept = svg_path("M 10 20 h 4 v 2 h -4 z")
+    assert (kept.low, kept.high) == ((-2.0, -1.0), (2.0, 1.0))
+
+
 def test_parabolas_stay_near_their_cubic():
     rng = np.random.default_rng(3)
     for _ in range(20):
