@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal.fields import ease, noise, noise_flat, noise_lattice
+from distal.fields import ease, noise, noise_flat, noise_lattice, voronoi
 from tests.fields.test_tiers_noise import MASK, pcg
 
 TINY = 1e-4
@@ -149,6 +149,32 @@ def test_the_slope_of_fractal_noise_is_the_weighted_sum_of_its_octaves() -> None
     steep = sum(0.7**i * 1.9**i for i in range(4)) / sum(0.7**i for i in range(4))
     found = noise.fbm_slope(4, 1.9, 0.7)
     assert found == pytest.approx(noise.GRADIENT_SLOPE * steep, rel=1e-6)
+
+
+# Cells in the plane, against all points around
+
+
+def scattered(cell: np.ndarray, jitter: float) -> np.ndarray:
+    row = pcg((int(cell[1]) + SEED * 2654435769) & MASK)
+    bits = pcg((int(cell[0]) + row) & MASK)
+    return cell + 0.5 + jitter * (np.array([bits & 65535, bits >> 16]) / 65536.0 - 0.5)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.6, 1.0])
+def test_cells_of_the_plane_against_all_points_around(jitter: float) -> None:
+    limit = 1.5 - 0.5 * jitter
+    for p in places(2, 60):
+        points = np.array([scattered(np.floor(p) + o, jitter) for o in around(2, 2)])
+        points = points[np.argsort(np.linalg.norm(points - p, axis=1))]
+        away = np.linalg.norm(points - p, axis=1)
+        assert voronoi.worley(p[None], jitter, SEED)[0] == pytest.approx(min(away[0], limit))
+        across = points[1:] - points[0]
+        middle = 0.5 * (points[1:] + points[0]) - p
+        borders = (middle * across).sum(axis=1) / np.linalg.norm(across, axis=1)
+        found = voronoi.voronoi_border(p[None], jitter, SEED)[0]
+        assert found <= borders.min() + 1e-9
+        wanted = min(borders.min(), max(0.5 * (limit - away[0]), 0.0))
+        assert found == pytest.approx(wanted, abs=1e-9)
 
 
 # Ways from 0 to 1

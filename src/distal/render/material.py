@@ -178,12 +178,6 @@ def shares(surface: Surface, cosine: float, inside: bool) -> Shares:
 
 
 @func
-def luminance(color: vec3) -> float:
-    """How bright a linear colour is (Rec. ITU-R BT.709)."""
-    return dot(color, vec3(0.2126, 0.7152, 0.0722))
-
-
-@func
 def brightest(color: vec3) -> float:
     """The largest of the three."""
     return max(color.r, color.g, color.b)
