@@ -5,8 +5,9 @@
 What flows in: globs below ``src``, how many mutations, a seed. What flows out: a line for each
 mutation, counts for each package, and the survivors that ``tests/mutation/survivors.toml`` does
 not accept, as entries to put there once their reason is known. Fails when there is one, and when
-an entry is stale or its mutation is killed. Which tests run what is recorded first (about half an
-hour of processor time for all of them); later only tests whose file is new or changed are.
+an entry is stale; names entries whose mutation is killed now. Which tests run what is recorded
+first (about half an hour of processor time for all of them); later only tests whose file is new or
+changed are.
 """
 
 from __future__ import annotations
@@ -88,9 +89,9 @@ def main() -> int:
         print(f"\n# line {outcome.mutation.line}: {outcome.verdict}, {outcome.tests} tests")
         print(entry_text(outcome.mutation))
     for outcome in dead:
-        print(f"\nan accepted survivor is killed by {outcome.by}: take it out")
+        print(f"\nan accepted survivor is killed by {outcome.by}: take it out of the list")
         print(entry_text(outcome.mutation))
-    return max(_report_stale(old), 1 if fresh or dead else 0)
+    return max(_report_stale(old), 1 if fresh else 0)
 
 
 def _options() -> argparse.Namespace:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
+from distal import PolylineTube
 from distal.fields.claims import Limit
 from distal.ir.types import FLOAT, VEC2, VEC3
 from distal.lang import (
@@ -335,3 +338,22 @@ def test_numbers_that_do_not_go_together():
         make(radius=slider("R", 0.7))
     make(radius=slider("R", 0.3))
     make(radius=time + 2)
+
+
+@pytest.mark.parametrize(
+    ("points", "error", "message"),
+    [
+        (5, SceneTypeError, "takes a list of vec3, not int 5"),
+        ("ab", SceneTypeError, "takes a list of vec3, not str 'ab'"),
+        ([], SceneValueError, "needs at least one vec3"),
+        (
+            [(0.0, 0.0, 0.0), (1.0, time, 0.0)],
+            SceneTypeError,
+            "'points[1] of PolylineTube' is data",
+        ),
+    ],
+    ids=["number", "text", "nothing", "changing"],
+)
+def test_a_list_of_points_is_a_list_of_plain_numbers(points, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        PolylineTube(points)
