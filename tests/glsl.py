@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from distal.backends.base import Artifact
 from distal.backends.messages import map_message
 from tests import egl
+from tests.buffer_data import buffer_data
 
 # What shadertoy.com writes around a text, as far as we use it.
 SHADERTOY_HEAD = """#version 300 es
@@ -97,8 +98,7 @@ def run_glsl(
         bound.append(_texture(entry, textures[entry["name"]]))
         values[entry["uniform"]] = len(bound) - 1
     for entry in artifact.interface["buffers"]:
-        assert buffers is not None
-        data = np.asarray(buffers[entry["name"]])
+        data = buffer_data(entry, buffers or {})
         bound.append(_buffer(data))
         values[entry["uniform"]] = len(bound) - 1
         values[entry["count"]] = len(data)

@@ -19,6 +19,7 @@ import wgpu
 from numpy.typing import NDArray
 
 from distal.backends.base import Artifact
+from tests.buffer_data import buffer_data
 
 # Mesa complains on stderr without one; any folder that exists will do.
 os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
@@ -222,7 +223,7 @@ def _resources(
             address_mode_w=mode,
         )
     for entry in artifact.interface["buffers"]:
-        data = _padded(entry["element"], buffers[entry["name"]])
+        data = _padded(entry["element"], buffer_data(entry, buffers))
         found[entry["binding"]] = device().create_buffer_with_data(
             data=data, usage=wgpu.BufferUsage.STORAGE
         )

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from distal.backends.base import Artifact
 from tests.browser import MESA, BrowserUnavailableError, browser
+from tests.buffer_data import buffer_data
 from tests.glsl import BUFFER_WIDTH, complete_text, uniform_values
 
 PAGE: Final = Path(__file__).with_name("webgl_page.html")
@@ -173,7 +174,7 @@ def _bound(
         found.append({"unit": len(found), **told, **_texels(texels)})
     for entry in artifact.interface["buffers"]:
         values[entry["uniform"]] = len(found)
-        data = np.asarray(buffers[entry["name"]])
+        data = buffer_data(entry, buffers)
         values[entry["count"]] = len(data)
         told = {"shape": "flat", "wrap": "clamp", "linear": False}
         found.append({"unit": len(found), **told, **_texels(_rows_of(data))})

@@ -190,9 +190,11 @@ class ExpressionWriter(Dialect):
 
     def table_part(self, e: Expr) -> Code:
         """An element of an array's constructor."""
-        if isinstance(e, Construct) and isinstance(e.type, Array):
+        if not isinstance(e, Construct):
+            return self.expression(e)
+        if isinstance(e.type, Array):
             return self.array_text(e)
-        return self.expression(e)
+        return self.call(self.type_name(e.type), map(self.table_part, e.parts))
 
     def _binary(self, e: Binary) -> Code:
         op, type = e.op, e.type

@@ -36,15 +36,22 @@ from distal.backends.names import Reserved
 from distal.backends.packing import Packing, pack
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import EntryKind, Module, Origin
-from distal.ir.target import FramePlace, Target
+from distal.ir.target import LARGEST_TABLE, FramePlace, Target
 from distal.ir.types import Type
 from distal.ir.walk import expressions_in
 
 _TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
 
 TARGETS: Final = (
-    Target("glsl-es300", "glsl", FramePlace.VERTEX, rough=frozenset(_TRUST), one_way=True),
-    Target("glsl-330", "glsl", FramePlace.VERTEX),
+    Target(
+        "glsl-es300",
+        "glsl",
+        FramePlace.VERTEX,
+        rough=frozenset(_TRUST),
+        one_way=True,
+        largest_table=LARGEST_TABLE,
+    ),
+    Target("glsl-330", "glsl", FramePlace.VERTEX, largest_table=LARGEST_TABLE),
     *(
         Target(
             name,

@@ -46,9 +46,10 @@ def texture_entry(texture: ResourceDeclaration, spelled: str) -> dict[str, Any]:
 
 
 def buffer_entry(buffer: ResourceDeclaration, spelled: str) -> dict[str, Any]:
-    """One read-only buffer."""
+    """One read-only buffer; with its ``values`` where the program's own tables are in it."""
     assert isinstance(buffer.type, Buffer)
-    return {"name": buffer.name, "uniform": spelled, "element": str(buffer.type.element)}
+    entry = {"name": buffer.name, "uniform": spelled, "element": str(buffer.type.element)}
+    return entry if buffer.values is None else entry | {"values": plain(buffer.values)}
 
 
 def interface(module: Module, target: Target, names: ModuleNames) -> dict[str, Any]:

@@ -21,12 +21,12 @@ from distal.backends.wgsl_names import OWN, VOCABULARY
 from distal.backends.wgsl_resources import texture_binding
 from distal.backends.wgsl_stages import Program, program_lines
 from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
-from distal.ir.target import FramePlace, Target
+from distal.ir.target import LARGEST_TABLE, FramePlace, Target
 from distal.ir.types import VEC2, Kind, Vector
 
 TARGETS: Final = (
-    Target("wgsl", "wgsl", FramePlace.HOST),
-    Target("wgsl-compute", "wgsl", FramePlace.HOST),
+    Target("wgsl", "wgsl", FramePlace.HOST, largest_table=LARGEST_TABLE),
+    Target("wgsl-compute", "wgsl", FramePlace.HOST, largest_table=LARGEST_TABLE),
 )
 
 _RESOLUTION: Final = "resolution"

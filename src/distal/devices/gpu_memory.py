@@ -93,6 +93,8 @@ class Resources:
         self._types = types
         self._textures = interface["textures"]
         self._buffers = interface["buffers"]
+        # The program's own tables, which are no one's to change.
+        self._tables = {e["name"]: _values(e) for e in interface["buffers"] if "values" in e}
         self._known: dict[str, tuple[Any, Any]] = {}
         self.uploads = 0
 
@@ -105,7 +107,10 @@ class Resources:
             found[entry["binding"]], found[entry["sampler_binding"]] = view
             is_new |= changed
         for entry in self._buffers:
-            found[entry["binding"]], changed = self._kept(device, entry, sources[entry["name"]])
+            source = self._tables.get(entry["name"])
+            if source is None:
+                source = sources[entry["name"]]
+            found[entry["binding"]], changed = self._kept(device, entry, source)
             is_new |= changed
         return found, is_new
 
@@ -114,21 +119,24 @@ class Resources:
         known = self._known.get(name)
         if known is not None and _is_same(known[0], source):
             return known[1], False
-        type = self._types[name]
-        assert isinstance(type, Texture | Buffer)
         state = _state(source)
-        array = source if isinstance(source, np.ndarray) else load(source, type)
+        array = source if isinstance(source, np.ndarray) else self._loaded(name, source)
         if state is None:  # nested lists: only the array made of them can be compared
             if known is not None and _is_same(known[0], array):
                 return known[1], False
             state = array
-        if isinstance(type, Buffer):
+        if "element" in entry:
             thing = self._buffer(device, entry, array)
         else:
             thing = self._texture(device, entry, array), _sampler(device, entry)
         self._known[name] = state, thing
         self.uploads += 1
         return thing, True
+
+    def _loaded(self, name: str, source: Any) -> NDArray[Any]:
+        type = self._types[name]
+        assert isinstance(type, Texture | Buffer)
+        return load(source, type)
 
     def _texture(self, device: Any, entry: Mapping[str, Any], texels: NDArray[Any]) -> Any:
         wgpu = wgpu_module()
@@ -168,6 +176,11 @@ class Resources:
             raise DeviceError(f"{name} has buffers of up to {most} bytes; '{label}' is larger:"
                               " --device cpu")  # fmt: skip
         return device.create_buffer_with_data(data=bytes_, usage=wgpu.BufferUsage.STORAGE)
+
+
+def _values(entry: Mapping[str, Any]) -> NDArray[Any]:
+    """The elements of a buffer of the program's own tables."""
+    return np.array(entry["values"], _WORDS.get(entry["element"][0], np.uint32))
 
 
 def view_dimension(entry: Mapping[str, Any]) -> str:

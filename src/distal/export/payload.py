@@ -20,7 +20,7 @@ from distal.backends import emit, get_target
 from distal.backends.base import Artifact
 from distal.compiler import run_passes
 from distal.diagnostics import CompileError
-from distal.export.resources import resource
+from distal.export.resources import resource, table
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.types import Buffer, Texture
@@ -217,6 +217,7 @@ class Programs:
         assert artifact.vertex is not None
         told = artifact.interface
         names = {r.name: self._resource(r.name, r.source, r.type) for r in module.resources}
+        names |= {e["name"]: self._table(e) for e in told["buffers"] if "values" in e}
         fragment, lines = self._lean(artifact.text, artifact.lines)
         vertex, vertex_lines = self._lean(artifact.vertex, artifact.vertex_lines)
         return {
@@ -243,12 +244,23 @@ class Programs:
         key = (id(source), str(type))
         if key not in self._names:
             assert isinstance(type, Texture | Buffer)
-            free, count = name, 2
-            while free in self.resources:
-                free, count = f"{name}_{count}", count + 1
-            self._names[key] = free
-            self.resources[free] = resource(source, type)
+            self._names[key] = self._added(name, resource(source, type))
         return self._names[key]
+
+    def _table(self, entry: Mapping[str, Any]) -> str:
+        """The same of a buffer that has the program's own tables; equal ones are there once."""
+        made = table(entry)
+        for name, known in self.resources.items():
+            if known == made:
+                return name
+        return self._added(entry["name"], made)
+
+    def _added(self, name: str, made: dict[str, Any]) -> str:
+        free, count = name, 2
+        while free in self.resources:
+            free, count = f"{name}_{count}", count + 1
+        self.resources[free] = made
+        return free
 
     def _lean(self, text: str, places: Places) -> tuple[str, list[list[int]]]:
         """A text without comments, empty lines and indentation, and where its lines come from."""

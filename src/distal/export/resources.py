@@ -7,6 +7,7 @@ narrowest format that shows the same picture. Knows no page and no program.
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -26,6 +27,11 @@ def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
     """
     data = load(source, type)
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
+
+
+def table(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """The same of a buffer of the program's own tables, whose entry has the values."""
+    return _buffer(np.array(entry["values"], np.int32 if entry["element"] == "int" else np.float32))
 
 
 def _buffer(data: NDArray[Any]) -> dict[str, Any]:

@@ -94,6 +94,9 @@ def with_header(artifact: Artifact, target: str, file: str) -> str:
             kind = "uniforms"
         names = ", ".join(_spelled(u["uniform"]) for u in parameters)
         lines += _broken(f"Parameters ({kind}): {names}.")
+    for buffer in artifact.interface.get("buffers", ()):
+        if "values" in buffer:
+            lines += _broken(f"{buffer['uniform']}: constants of the scene, in the file .json.")
     for texture in artifact.interface["textures"] if target == "glslcanvas" else ():
         lines.append(f"{texture['uniform']}: {comment_text(texture['name'])}, by data-textures.")
     comment = "\n".join(("/*", *(f" * {line}" for line in lines), " */", ""))

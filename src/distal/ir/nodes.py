@@ -542,13 +542,15 @@ class UniformDeclaration:
 class ResourceDeclaration:
     """One texture or buffer of a module; ``source`` is the author's object that has its data.
 
-    ``wrap`` is "repeat" or "clamp" (textures).
+    ``wrap`` is "repeat" or "clamp" (textures). ``values`` are the elements of a buffer that the
+    compiler made of the program's own tables; the host has no data for it.
     """
 
     name: str
     type: Type
     source: Any = field(compare=False, repr=False)
     wrap: str = "repeat"
+    values: tuple[Any, ...] | None = field(default=None, repr=False)
 
 
 class EntryKind(Enum):

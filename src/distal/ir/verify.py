@@ -60,7 +60,8 @@ DEEPEST = 200
 # The passes in order (``distal.passes.pipeline``), and what each leaves behind for good.
 _STAGES = (
     *("entry", "specialise", "gradient", "decompose", "specialise-prelude", "bounds"),
-    *("fold", "frequency", "inline", "fold-inlined", "share", "predicate", "outline", "one-way"),
+    *("fold", "frequency", "inline", "fold-inlined", "tables", "share", "predicate"),
+    *("outline", "one-way"),
 )
 _NO_FRAME = frozenset(_STAGES)
 _NO_FUNCTION_VALUES = frozenset(_STAGES[1:])

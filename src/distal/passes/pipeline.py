@@ -19,6 +19,7 @@ from distal.passes import (
     predicate,
     share,
     specialise,
+    tables,
 )
 from distal.passes.context import Context
 
@@ -39,6 +40,7 @@ PIPELINE: Final[tuple[tuple[str, Pass], ...]] = (
     ("frequency", frequency.run),
     ("inline", inline.run),
     ("fold-inlined", fold.run),
+    ("tables", tables.run),
     ("share", share.run),
     ("predicate", predicate.run),
     ("outline", outline.run),

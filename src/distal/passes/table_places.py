@@ -1,0 +1,323 @@
+"""Tables of literals laid out in buffers, and places in them.
+
+What flows in: tables, as trees of literals; indices and fields that pick a part. What flows out:
+reads of buffers, and the buffers' declarations with their values. A table takes slots of three
+sorts: floats, vec4 (float vectors, and the columns of matrices), ints (ints, uints, bools). Knows
+no functions and no statements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any, Final, TypeAlias
+
+from distal.ir.build import add, cast, integer, multiply, select, swizzle
+from distal.ir.nodes import (
+    Compare,
+    CompareOp,
+    Compose,
+    Const,
+    Construct,
+    Expr,
+    Index,
+    Resource,
+    ResourceDeclaration,
+    Splat,
+)
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    VEC4,
+    Array,
+    Buffer,
+    Kind,
+    Matrix,
+    Scalar,
+    Struct,
+    Type,
+    Vector,
+    component_count,
+)
+from distal.ir.walk import nodes_in
+from distal.passes.naming import Names
+
+_LARGEST_FLOAT: Final = 3.4028234663852886e38
+_SORTS: Final[dict[Type, str]] = {
+    FLOAT: "float_table",
+    VEC4: "vector_table",
+    INT: "int_table",
+}
+
+
+def numbers_in(type: Type) -> int:
+    """How many numbers a value of a type holds."""
+    match type:
+        case Scalar() | Vector() | Matrix():
+            return component_count(type)
+        case Array(element, length):
+            return length * numbers_in(element)
+        case Struct(_, fields):
+            return sum(numbers_in(t) for _, t in fields)
+        case _:
+            raise AssertionError(f"{type} is no value")
+
+
+def holds_table(type: Type, largest: int) -> bool:
+    """Whether a value of the type is, or has in it, an array of more numbers than ``largest``."""
+    match type:
+        case Array():
+            return numbers_in(type) > largest
+        case Struct(_, fields):
+            return any(holds_table(t, largest) for _, t in fields)
+        case _:
+            return False
+
+
+@cache
+def _slots(type: Type, sort: Type) -> int:
+    """How many slots of a sort a value takes."""
+    match type:
+        case Scalar(kind):
+            return int(sort is (FLOAT if kind is Kind.FLOAT else INT))
+        case Vector(Kind.FLOAT):
+            return int(sort is VEC4)
+        case Vector(_, size):
+            return size if sort is INT else 0
+        case Matrix(size):
+            return size if sort is VEC4 else 0
+        case Array(element, length):
+            return length * _slots(element, sort)
+        case Struct(_, fields):
+            return sum(_slots(t, sort) for _, t in fields)
+        case _:
+            raise AssertionError(f"{type} is no value")
+
+
+def is_large_literal(e: Expr, largest: int) -> bool:
+    """Whether it is a large table, or a struct with one, of literals that 32 bits hold."""
+    if not isinstance(e, Construct) or not holds_table(e.type, largest):
+        return False
+    for part in nodes_in(*e.parts):
+        match part:
+            case Const(value):
+                if isinstance(value, float) and not abs(value) <= _LARGEST_FLOAT:
+                    return False
+            case Splat() | Compose() | Construct():
+                pass
+            case _:
+                return False
+    return True
+
+
+@dataclass(frozen=True)
+class Location:
+    """A part of a table.
+
+    Attributes:
+        table: The whole table's literals.
+        type: The part's type.
+        start: For each sort, how many slots lie before the first such part.
+        steps: The type of the element that each computed index counts.
+        indices: The computed indices.
+    """
+
+    table: Expr
+    type: Type
+    start: tuple[int, ...]
+    steps: tuple[Type, ...] = ()
+    indices: tuple[Expr, ...] = ()
+
+    @property
+    def operands(self) -> tuple[Expr, ...]:
+        """What is computed when the program runs."""
+        return self.indices
+
+    def with_operands(self, operands: Sequence[Expr]) -> Location:
+        """The same place by other indices."""
+        return replace(self, indices=tuple(operands))
+
+    def element(self, index: Expr) -> Location:
+        """The element of that index, which is in range."""
+        assert isinstance(self.type, Array)
+        inner = self.type.element
+        if isinstance(index, Const):
+            here = int(index.value)
+            return replace(self, type=inner, start=self._after(inner, here))
+        return replace(self, type=inner, steps=(*self.steps, inner), indices=(*self.indices, index))
+
+    def field(self, name: str) -> Location:
+        """The field of that name."""
+        assert isinstance(self.type, Struct)
+        found, start = self, self.start
+        for field_name, type in self.type.fields:
+            if field_name == name:
+                return replace(found, type=type)
+            start = found._after(type, 1)
+            found = replace(found, start=start)
+        raise AssertionError(f"{self.type} has no {name}")
+
+    def _after(self, type: Type, count: int) -> tuple[int, ...]:
+        return tuple(
+            s + count * _slots(type, sort) for s, sort in zip(self.start, _SORTS, strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of two places, chosen when the program runs."""
+
+    condition: Expr
+    yes: Place
+    no: Place
+
+    @property
+    def type(self) -> Type:
+        """The type of both."""
+        return self.yes.type
+
+    @property
+    def operands(self) -> tuple[Expr, ...]:
+        """What is computed when the program runs."""
+        return (self.condition, *self.yes.operands, *self.no.operands)
+
+    def with_operands(self, operands: Sequence[Expr]) -> Choice:
+        """The same choice by other operands."""
+        middle = 1 + len(self.yes.operands)
+        yes = self.yes.with_operands(operands[1:middle])
+        return Choice(operands[0], yes, self.no.with_operands(operands[middle:]))
+
+    def element(self, index: Expr) -> Choice:
+        """The element of that index, which is in range."""
+        return Choice(self.condition, self.yes.element(index), self.no.element(index))
+
+    def field(self, name: str) -> Choice:
+        """The field of that name."""
+        return Choice(self.condition, self.yes.field(name), self.no.field(name))
+
+
+Place: TypeAlias = Location | Choice
+
+
+def whole(table: Expr) -> Location:
+    """The place of a whole table."""
+    return Location(table, table.type, (0,) * len(_SORTS))
+
+
+@dataclass
+class Tables:
+    """The buffers, as they grow by the tables that are read."""
+
+    names: Names
+    _values: dict[Type, list[Any]] = field(default_factory=lambda: {sort: [] for sort in _SORTS})
+    _starts: dict[Expr, tuple[int, ...]] = field(default_factory=dict)
+    _spelled: dict[Type, str] = field(default_factory=dict)
+
+    def declarations(self) -> Iterator[ResourceDeclaration]:
+        """The buffers that are read."""
+        for sort, values in self._values.items():
+            if values:
+                name, type = self._name(sort), Buffer(sort)
+                yield ResourceDeclaration(name, type, None, "clamp", values=tuple(values))
+
+    def value(self, place: Place) -> Expr:
+        """What stands at a place: reads of the buffers, or all of a table as it was written."""
+        if isinstance(place, Choice):
+            return select(place.condition, self.value(place.yes), self.value(place.no))
+        if place.type is place.table.type and not place.indices:
+            return place.table
+        match place.type:
+            case Array(_, length):
+                parts = (self.value(place.element(integer(i))) for i in range(length))
+                return Construct(tuple(parts), place.type)
+            case Struct(_, fields):
+                parts = (self.value(place.field(name)) for name, _ in fields)
+                return Construct(tuple(parts), place.type)
+            case Matrix(size):
+                columns = (self._vector(place, size, i) for i in range(size))
+                return Compose(tuple(columns), place.type)
+            case Vector(Kind.FLOAT, size):
+                return self._vector(place, size, 0)
+            case Vector(kind, size):
+                lanes = (self._scalar(place, kind, i) for i in range(size))
+                return Compose(tuple(lanes), place.type)
+            case Scalar(kind):
+                return self._scalar(place, kind, 0)
+            case _:
+                raise AssertionError(f"{place.type} is no value")
+
+    def _vector(self, place: Location, size: int, further: int) -> Expr:
+        value = self._slot(place, VEC4, further)
+        return value if size == 4 else swizzle(value, "xyzw"[:size])
+
+    def _scalar(self, place: Location, kind: Kind, further: int) -> Expr:
+        value = self._slot(place, FLOAT if kind is Kind.FLOAT else INT, further)
+        if kind is Kind.BOOL:
+            return Compare(CompareOp.NE, value, integer(0), BOOL)
+        return cast(value, kind)
+
+    def _slot(self, place: Location, sort: Type, further: int) -> Expr:
+        """One slot of a sort, counted from the first of a place."""
+        position = list(_SORTS).index(sort)
+        start = self._start(place.table)[position] + place.start[position] + further
+        at: Expr | None = None
+        for index, step in zip(place.indices, place.steps, strict=True):
+            stride = _slots(step, sort)
+            term = index if stride == 1 else multiply(index, integer(stride))
+            at = term if at is None else add(at, term)
+        if at is None:
+            at = integer(start)
+        elif start:
+            at = add(at, integer(start))
+        return Index(Resource(self._name(sort), Buffer(sort)), at, sort)
+
+    def _name(self, sort: Type) -> str:
+        if sort not in self._spelled:
+            self._spelled[sort] = self.names.fresh(_SORTS[sort])
+        return self._spelled[sort]
+
+    def _start(self, table: Expr) -> tuple[int, ...]:
+        """Where a table starts in each buffer; its values are put there the first time."""
+        if table not in self._starts:
+            self._starts[table] = tuple(len(self._values[sort]) for sort in _SORTS)
+            self._store(table)
+        return self._starts[table]
+
+    def _store(self, e: Expr) -> None:
+        match e.type:
+            case Array() | Struct():
+                assert isinstance(e, Construct)
+                for part in e.parts:
+                    self._store(part)
+            case Matrix():
+                assert isinstance(e, Compose)
+                for column in e.parts:
+                    self._store(column)
+            case Vector(Kind.FLOAT):
+                lanes = list(_numbers(e))
+                self._values[VEC4].append((*lanes, *(0.0,) * (4 - len(lanes))))
+            case Scalar(Kind.FLOAT):
+                self._values[FLOAT] += _numbers(e)
+            case _:
+                self._values[INT] += map(_signed, _numbers(e))
+
+
+def _numbers(e: Expr) -> Iterator[Any]:
+    """The components of a literal."""
+    match e:
+        case Const(value):
+            yield value
+        case Splat(value, type):
+            yield from [*_numbers(value)] * component_count(type)
+        case Compose(parts):
+            for part in parts:
+                yield from _numbers(part)
+        case _:
+            raise AssertionError(f"{e.__class__.__name__} is no literal")
+
+
+def _signed(value: bool | int) -> int:
+    """The int of the same bits."""
+    return (int(value) + 2**31) % 2**32 - 2**31
