@@ -21,7 +21,7 @@ from tests.fields.rows import Sample, dimension_of, slots_of
 from tests.fields.seeds import seed_of, seeded
 from tests.fields.subject import subject_of
 
-SAMPLES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "2"))
+SAMPLES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "1"))
 EFFORT: Final = 0.8 if SAMPLES < 10 else 3.0
 ROWS: Final = [pytest.param(row, id=name) for name, row in primitives().items()]
 
