@@ -221,6 +221,10 @@ def test_light_is_exposed_then_mapped_then_encoded():
     assert np.all(shown[:, 3] == color[:, 3])
 
 
-def test_below_nothing_is_nothing():
-    for name in ("encode_srgb", "decode_srgb"):
-        assert np.all(asked(tonemap, name, np.full((1, 3), -0.5)) == 0.0)
+def test_light_below_nothing_is_shown_as_nothing():
+    assert np.all(asked(tonemap, "encode_srgb", np.full((1, 3), -0.5)) == 0.0)
+
+
+def test_values_below_nothing_follow_the_straight_part():
+    linear = asked(tonemap, "decode_srgb", np.full((1, 3), -0.5))
+    assert linear == pytest.approx(np.full((1, 3), -0.5 / 12.92))

@@ -23,7 +23,7 @@ from distal import (
     glass,
 )
 from distal.diagnostics import CompileError
-from distal.lang import Frame, func, image, length, slider, sqrt, vec3, vec4
+from distal.lang import Frame, func, image, length, max, slider, vec3, vec4
 
 LOW = slider("Low", 0.5, -1.0, 1.0)
 HALF = slider("Half", 0.5, 0.1, 1.0)
@@ -46,7 +46,8 @@ def nowhere(p: vec3) -> float:
 
 @func
 def rooted(p: vec3) -> float:
-    return sqrt(p.x) - 0.5
+    inside = max(p.x, 0.0)
+    return p.x * (inside / inside) - 0.5
 
 
 @func
@@ -304,7 +305,7 @@ PYTHON = {
     "unknown device": (
         lambda: Scene(Sphere()).render(device="gqu"),
         ValueError,
-        "there is no device 'gqu'; devices: auto, cpu, reference, gpu, gpu-fragment",
+        "there is no device 'gqu'; devices: auto, cpu, gpu, gpu-fragment, reference",
     ),
     "no time": (
         lambda: Scene(Sphere()).render(time=math.nan),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from distal import Box, Hexagon, Plane, Shape, Sphere
-from distal.lang import func, length, max, sin, slider, sqrt, vec3
+from distal.lang import func, length, max, sin, slider, vec3
 from distal.scene.checkup import Severity, check, described
 from distal.scene.measuring import measure
 from distal.scene.survey import survey
@@ -36,7 +36,8 @@ def kinked(p: vec3) -> float:
 
 @func
 def rooted(p: vec3) -> float:
-    return sqrt(p.x) + length(p) - 1.0
+    inside = max(p.x, 0.0)
+    return length(p) * (inside / inside) - 1.0
 
 
 BOX = ((-1.2,) * 3, (1.2,) * 3)

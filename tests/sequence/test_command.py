@@ -73,7 +73,7 @@ def test_without_pyav_it_says_what_to_install(run, monkeypatch):
     result = run("-o", "out.mp4", "--duration", "1")
     assert (result.exit_code, result.stderr) == (
         1,
-        "error: videos need PyAV: pip install 'distal[video]'\n",
+        "error: videos need PyAV: av is missing: pip install 'distal[video]'\n",
     )
     result = run("-o", "frames/%02d.png", "--duration", "0.1", "--fps", "10", "--size", "16x12")
     assert result.exit_code == 0, result.output

@@ -79,8 +79,9 @@ def _call(node: Node, inner: Sequence[KnownPromise]) -> KnownPromise:
     args += [_plain(number.value) for number in node.numbers.values()]
     doubles = tuple(np.asarray(arg, np.float64)[None] for arg in args)
     found = executor().call(_step_of(node, len(inner)), doubles, {}, device="reference")
-    rows = [np.asarray(part, np.float64)[0].tolist() for part in found]
-    slope, divisor, low, high, growth, side_growth = rows
+    # A shape without numbers is a function of nothing: its results have no axis of rows.
+    first = [np.asarray(part, np.float64)[0 if doubles else ...].tolist() for part in found]
+    slope, divisor, low, high, growth, side_growth = first
     return KnownPromise(slope, divisor, tuple(low), tuple(high), growth, side_growth)
 
 

@@ -35,7 +35,7 @@ def test_whole_numbers_wrap_at_32_bits():
         (
             {"device": "abacus"},
             ValueError,
-            "there is no device 'abacus'; devices: auto, cpu, reference, gpu, gpu-fragment",
+            "there is no device 'abacus'; devices: auto, cpu, gpu, gpu-fragment, reference",
         ),
         ({"params": {"radius": 1}}, ValueError, "there is no parameter 'radius'; parameters: none"),
     ],
