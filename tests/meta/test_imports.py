@@ -36,9 +36,10 @@ for name in ("numpy", "llvmlite", "wgpu", "PIL", "moderngl"):
 
 
 def run(code, *words):
+    # What passes leave behind is verified where their results are looked at; here imports are.
     answer = subprocess.run(
         [sys.executable, "-c", code, *words],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "DISTAL_VERIFY": ""},
         capture_output=True,
         text=True,
         timeout=120,
@@ -70,6 +71,8 @@ ALONE = [
     for name, path in distal.gallery().items()
     if "import numpy" not in path.read_text() and name != "sea_sphere_tracing"
 ]
+# An image, a scene with data, and the most of shapes and materials: all scenes for one text only.
+FEW = ("raymarcher", "city", "bunny")
 REFUSED = dict.fromkeys(("glsl-es100", "glslcanvas", "isf"), ("catalogue", "city", "room_door"))
 
 
@@ -79,7 +82,11 @@ def test_scenes_are_among_those_that_need_nothing():
 
 @pytest.mark.parametrize("target", [t.value for t in TargetName])
 def test_every_target_compiles_on_the_standard_library_alone(target):
-    names = [name for name in ALONE if name not in REFUSED.get(target, ())]
+    names = [
+        name
+        for name in ALONE
+        if name not in REFUSED.get(target, ()) and (name in FEW or target == "glsl-es300")
+    ]
     code = f"""
 import distal
 for name in {names}:

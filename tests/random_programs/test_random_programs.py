@@ -1,13 +1,14 @@
 """Random programs: all targets give the reference's bits.
 
 ``DISTAL_RANDOM_PROGRAMS`` is how many functions are made in all (``make sweep`` makes thousands),
-``DISTAL_RANDOM_SEED`` where the choices start; a failure prints the seed of its part and the
-smallest program that still fails.
+``DISTAL_RANDOM_SEED`` where the choices start (else another place each day); a failure prints the
+seed of its part and the smallest program that still fails.
 """
 
 from __future__ import annotations
 
 import os
+import time
 from functools import cache
 
 import numpy as np
@@ -19,8 +20,8 @@ from tests.parity import targets
 from tests.random_programs.running import lowered
 from tests.random_programs.statements import ROWS, Sources, sources
 
-PROGRAMS = int(os.environ.get("DISTAL_RANDOM_PROGRAMS", "240"))
-SEED = int(os.environ.get("DISTAL_RANDOM_SEED", "20"))
+PROGRAMS = int(os.environ.get("DISTAL_RANDOM_PROGRAMS", "144"))
+SEED = int(os.environ.get("DISTAL_RANDOM_SEED") or time.time() // 86400 * 100)
 PARTS = 6
 FUNCTIONS = 8  # in one picture
 EXAMPLES = max(1, PROGRAMS // (PARTS * FUNCTIONS))
