@@ -41,7 +41,9 @@ from distal.passes.cost import size
 from distal.passes.naming import Names, local_names, module_names
 from distal.passes.versions import assigned_in
 
-LARGE: Final = 5000  # the largest function of the examples has 3600
+# The largest function of the examples has 3600. A union of 150 shapes has 5700: cut, it compiles in
+# 8.8 s instead of 11.5, and renders a quarter slower.
+LARGE: Final = 5000
 PIECE: Final = 1200
 LARGE_ARRAY: Final = 16  # elements
 
