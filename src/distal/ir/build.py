@@ -38,6 +38,7 @@ from distal.ir.types import (
     Struct,
     Type,
     Vector,
+    component_count,
     kind_of,
     vector_of,
     with_kind,
@@ -163,6 +164,23 @@ def components(value: Expr) -> tuple[Expr, ...]:
         return (value,)
     assert isinstance(value.type, Vector)
     return tuple(swizzle(value, lane) for lane in "xyzw"[: value.type.size])
+
+
+def literal_components(e: Expr) -> tuple[bool | int | float, ...] | None:
+    """The numbers of a literal scalar, vector or matrix; None for what is no literal."""
+    match e:
+        case Const(value):
+            return (value,)
+        case Splat(value, type):
+            one = literal_components(value)
+            return one and one * component_count(type)
+        case Compose(parts):
+            found = [literal_components(part) for part in parts]
+            if any(numbers is None for numbers in found):
+                return None
+            return tuple(number for numbers in found if numbers is not None for number in numbers)
+        case _:
+            return None
 
 
 def element_type(type: Type) -> Type:

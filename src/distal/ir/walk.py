@@ -231,6 +231,11 @@ def expressions_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
                 yield e
 
 
+def names_read(body: tuple[Stmt, ...]) -> set[str]:
+    """The parameters and locals that a block reads, blocks inside it included."""
+    return {e.name for e in expressions_in(body) if isinstance(e, Read)}
+
+
 def map_statement(
     stmt: Stmt,
     expr: Callable[[Expr], Expr],

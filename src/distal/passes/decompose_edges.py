@@ -13,10 +13,18 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from distal.ir.build import binary, builtin, divide, multiply, number, subtract
+from distal.ir.build import (
+    binary,
+    builtin,
+    divide,
+    literal_components,
+    multiply,
+    number,
+    subtract,
+)
 from distal.ir.intrinsics import Intrinsic
 from distal.ir.limits import SMALLEST, SMALLEST_DIVISOR
-from distal.ir.nodes import BinaryOp, Builtin, Compose, Const, Expr, Splat
+from distal.ir.nodes import BinaryOp, Builtin, Expr
 from distal.ir.target import Target
 from distal.passes.float_ranges import interval
 
@@ -80,25 +88,7 @@ def floor_quotient(a: Expr, b: Expr) -> Expr:
 
 def _in_order(low: Expr, high: Expr, test: Callable[[float, float], bool]) -> bool:
     """True when both are constants and the test holds for every component."""
-    bottoms, tops = _numbers(low), _numbers(high)
+    bottoms, tops = literal_components(low), literal_components(high)
     if bottoms is None or tops is None:
         return False
-    count = max(len(bottoms), len(tops))
-    pairs = zip(bottoms * count, tops * count, strict=False)
-    return all(test(a, b) for a, b in list(pairs)[:count])
-
-
-def _numbers(e: Expr) -> tuple[float, ...] | None:
-    """The components of a constant; one where all are equal."""
-    match e:
-        case Const(value):
-            return (float(value),)
-        case Splat(value):
-            return _numbers(value)
-        case Compose(parts):
-            found = [_numbers(part) for part in parts]
-            if any(f is None for f in found):
-                return None
-            return tuple(x for f in found if f is not None for x in f)
-        case _:
-            return None
+    return all(test(a, b) for a, b in zip(bottoms, tops, strict=True))

@@ -16,15 +16,12 @@ from typing import Final
 
 from distal.ir.nodes import (
     Assign,
-    Break,
     Call,
     Construct,
-    Continue,
     Expr,
     Field,
     For,
     Function,
-    If,
     Let,
     Module,
     Param,
@@ -32,13 +29,13 @@ from distal.ir.nodes import (
     Return,
     Stmt,
     Var,
-    While,
 )
 from distal.ir.types import INT, Array, Struct, Type
-from distal.ir.walk import expressions_in, map_statement, statements_in
+from distal.ir.walk import map_statement, names_read, statements_in
 from distal.passes.context import Context
 from distal.passes.cost import size
 from distal.passes.naming import Names, local_names, module_names
+from distal.passes.places import leaves
 from distal.passes.versions import assigned_in
 
 # The largest function of the examples has 3600. A union of 150 shapes has 5700: cut, it compiles in
@@ -98,7 +95,7 @@ class _Outlining:
         body = tuple(map_statement(s, lambda e: e, self._block) for s in body)
         last_reads: dict[str, int] = {}
         for position, stmt in enumerate(body):
-            for name in _read_in((stmt,)):
+            for name in names_read((stmt,)):
                 last_reads[name] = position
         result: list[Stmt] = []
         position = 0
@@ -126,16 +123,16 @@ class _Outlining:
         return runs
 
     def _stays(self, stmt: Stmt) -> bool:
-        if _leaves((stmt,)):
+        if leaves((stmt,)):
             return True
-        names = _read_in((stmt,)) | _declared_in((stmt,))
+        names = names_read((stmt,)) | _declared_in((stmt,))
         return any(_is_large(self._types[name]) for name in names)
 
     def _piece(self, body: tuple[Stmt, ...], last_reads: dict[str, int], last: int) -> list[Stmt]:
         """Make a function of a run, and call it in its place."""
         declared = _declared_in(body)
         assigned = sorted(assigned_in(body) - declared)
-        given = sorted(_read_in(body) - declared)
+        given = sorted(names_read(body) - declared)
         kept = [s for s in body if isinstance(s, Let | Var) and last_reads.get(s.name, -1) > last]
         wanted = [*assigned, *(s.name for s in kept)]
         if not wanted:
@@ -188,26 +185,8 @@ class _Outlining:
         return result
 
 
-def _read_in(body: tuple[Stmt, ...]) -> set[str]:
-    return {e.name for e in expressions_in(body) if isinstance(e, Read)}
-
-
 def _declared_in(body: tuple[Stmt, ...]) -> set[str]:
     return {s.name for s in statements_in(body) if isinstance(s, Let | Var | For)}
-
-
-def _leaves(body: tuple[Stmt, ...]) -> bool:
-    """Whether control may leave the block other than by its end."""
-    for stmt in body:
-        if isinstance(stmt, Return | Break | Continue):
-            return True
-        if isinstance(stmt, If) and (_leaves(stmt.then) or _leaves(stmt.otherwise)):
-            return True
-        if isinstance(stmt, For | While) and any(
-            isinstance(s, Return) for s in statements_in(stmt.body)
-        ):
-            return True
-    return False
 
 
 def _is_large(type: Type) -> bool:

@@ -11,7 +11,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from distal.ir.nodes import Call, Expr, Function, Let, Module, PerFrame, Read, Stmt
-from distal.ir.walk import expressions_in, map_expressions, map_statement, rewrite, substitute
+from distal.ir.walk import (
+    expressions_in,
+    map_expressions,
+    map_statement,
+    names_read,
+    rewrite,
+    substitute,
+)
 from distal.passes.fold import fold_function
 from distal.passes.naming import Names, local_names, module_names
 from distal.passes.per_frame_values import Slots, reads
@@ -57,7 +64,7 @@ def _without_unread_params(
     for function in functions:
         body = map_expressions(function.body, lambda e: rewrite(e, shorter, memo))
         function = fold_function(replace(function, body=body), precision)
-        read = {e.name for e in expressions_in(function.body) if isinstance(e, Read)}
+        read = names_read(function.body)
         kept[function.name] = [
             i
             for i, param in enumerate(function.params)

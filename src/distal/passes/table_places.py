@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Final, TypeAlias
 
-from distal.ir.build import add, cast, integer, multiply, select, swizzle
+from distal.ir.build import add, cast, integer, literal_components, multiply, select, swizzle
 from distal.ir.nodes import (
     Compare,
     CompareOp,
@@ -296,7 +296,7 @@ class Tables:
                 for column in e.parts:
                     self._store(column)
             case Vector(Kind.FLOAT):
-                lanes = list(_numbers(e))
+                lanes = _numbers(e)
                 self._values[VEC4].append((*lanes, *(0.0,) * (4 - len(lanes))))
             case Scalar(Kind.FLOAT):
                 self._values[FLOAT] += _numbers(e)
@@ -304,18 +304,10 @@ class Tables:
                 self._values[INT] += map(_signed, _numbers(e))
 
 
-def _numbers(e: Expr) -> Iterator[Any]:
-    """The components of a literal."""
-    match e:
-        case Const(value):
-            yield value
-        case Splat(value, type):
-            yield from [*_numbers(value)] * component_count(type)
-        case Compose(parts):
-            for part in parts:
-                yield from _numbers(part)
-        case _:
-            raise AssertionError(f"{e.__class__.__name__} is no literal")
+def _numbers(e: Expr) -> tuple[Any, ...]:
+    found = literal_components(e)
+    assert found is not None, f"{e.__class__.__name__} is no literal"
+    return found
 
 
 def _signed(value: bool | int) -> int:

@@ -8,7 +8,7 @@ function. Where a table is read as a whole its literals stay. Decision 19 has th
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import Final
@@ -44,6 +44,7 @@ from distal.ir.walk import (
     statements_in,
 )
 from distal.passes.context import Context
+from distal.passes.dead_code import remove_dead
 from distal.passes.naming import Names, local_names, module_names
 from distal.passes.reachable import drop_unused
 from distal.passes.table_places import (
@@ -149,7 +150,7 @@ class _Body:
             place = shape.with_operands([Read(p.name, p.type) for p in extra])
             self._places[param.name] = place
             bound.append(Let(param.name, self._clones.tables.value(place), span=function.span))
-        body = _without_unread((*bound, *self._block(function.body)), self._places)
+        body = remove_dead((*bound, *self._block(function.body)))
         return replace(function, name=name, params=tuple(params), body=body)
 
     def frame(self, values: Iterable[tuple[str, Expr]]) -> tuple[tuple[str, Expr], ...]:
@@ -254,20 +255,3 @@ class _Body:
         for arg, place in zip(e.args, places, strict=True):
             args += [self.expression(arg)] if place is None else place.operands
         return Call(name, tuple(args), e.type, span=e.span)
-
-
-def _without_unread(body: tuple[Stmt, ...], names: Collection[str]) -> tuple[Stmt, ...]:
-    """A block without those of the bindings that nothing reads."""
-    while True:
-        read = {e.name for e in expressions_in(body) if isinstance(e, Read)}
-        bound = {s.name for s in statements_in(body) if isinstance(s, Let)}
-        unread = (bound & set(names)) - read
-        if not unread:
-            return body
-        body = _without(body, unread)
-
-
-def _without(body: tuple[Stmt, ...], names: Collection[str]) -> tuple[Stmt, ...]:
-    """A block without the bindings of those names."""
-    kept = (s for s in body if not (isinstance(s, Let) and s.name in names))
-    return tuple(map_statement(s, lambda e: e, lambda b: _without(b, names)) for s in kept)
