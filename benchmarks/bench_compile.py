@@ -29,7 +29,7 @@ LANGUAGE = IMPORT.replace("import distal\n", "import distal, distal.lang\n")
 # What the first picture costs once the packages are imported: lowering, passes, LLVM, linking.
 COMPILE = """
 import time
-import numpy, llvmlite.binding, distal.executor, distal.devices.cpu
+import numpy, llvmlite.binding, distal.runtime.executor, distal.devices.cpu
 import distal
 image = distal.load("example:raymarcher")
 begin = time.perf_counter()

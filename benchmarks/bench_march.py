@@ -25,7 +25,7 @@ import bunny
 import sea
 import sea_sphere_tracing
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Frame, func, image, vec2, vec3, vec4
 from distal.render.camera import Ray, look_at
 from distal.render.heightfield_march import STRIDE, march_heightfield

@@ -24,12 +24,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import distal
 from distal.devices.threads import usable_threads
-from distal.executor_hook import executor
-from distal.film.video import KINDS, codec_of
-from distal.film.video_pixels import Converter
-from distal.film.video_segments import Piece, join
-from distal.sequence import video
-from distal.sequence.encoding import encoder_threads
+from distal.lang.runtime_hook import executor
+from distal.video import video
+from distal.video.encoding import encoder_threads
+from distal.video.formats import KINDS, codec_of
+from distal.video.pixels import Converter
+from distal.video.segments import Piece, join
 
 SIZE, RATE = (640, 480), Fraction(60)
 HELD = 60

@@ -7,20 +7,11 @@ differences halve its compilation.
 
 import inspect
 
-from distal import (
-    DistantLight,
-    HemisphereLight,
-    OrbitCamera,
-    Plane,
-    Scene,
-    Shape,
-    pattern,
-    plastic,
-)
-from distal.fields.noise_lattice import fraction, lattice_hash
+from distal import DistantLight, HemisphereLight, OrbitCamera, Plane, Scene, Shape, pattern, plastic
+from distal.fields.library import PRIMITIVES
+from distal.fields.noise.lattice import fraction, lattice_hash
 from distal.lang import Buffer, cos, func, ivec3, round, slider, vec3
-from distal.scene.library import PRIMITIVES
-from distal.scene.shapes import CLASSES
+from distal.scene.objects.shapes import CLASSES
 
 turn = slider("Turn", 0.35, low=-3.15, high=3.15, help="The camera's way around.")
 

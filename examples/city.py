@@ -4,17 +4,8 @@ The index of a repetition tells the copies apart: ``cell`` in a field and in a p
 share of windows that are lit.
 """
 
-from distal import (
-    Background,
-    Camera,
-    DistantLight,
-    HemisphereLight,
-    Plane,
-    Scene,
-    Shape,
-    pattern,
-)
-from distal.fields.noise_lattice import fraction, lattice_hash
+from distal import Background, Camera, DistantLight, HemisphereLight, Plane, Scene, Shape, pattern
+from distal.fields.noise.lattice import fraction, lattice_hash
 from distal.lang import (
     abs,
     clamp,

@@ -4,12 +4,12 @@ What a scene does by itself is spelled out here: the distance to its shapes, the
 lights, how far rays go, and how light becomes what a display shows.
 """
 
-from distal.fields.claims import UNBOUNDED, Bounds
-from distal.fields.place import rotated_y, translated
-from distal.fields.smooth import cubic
-from distal.fields.solids_rings import torus
-from distal.fields.solids_round import sphere
-from distal.fields.solids_surfaces import plane
+from distal.fields.combine.smooth import cubic
+from distal.fields.guarantees import UNBOUNDED, Bounds
+from distal.fields.place.solid import rotated_y, translated
+from distal.fields.solids.rings import torus
+from distal.fields.solids.round import sphere
+from distal.fields.solids.surfaces import plane
 from distal.lang import (
     Frame,
     atan,

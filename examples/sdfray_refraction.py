@@ -7,18 +7,7 @@ Functions" (sdfray) showed such a scene.
 
 import numpy as np
 
-from distal import (
-    Box,
-    OrbitCamera,
-    Plane,
-    Scene,
-    Sky,
-    Sphere,
-    checker,
-    glass,
-    matte,
-    time,
-)
+from distal import Box, OrbitCamera, Plane, Scene, Sky, Sphere, checker, glass, matte, time
 from distal.lang import color, slider
 
 ior = slider("Index of refraction", 1.5, low=1.0, high=2.4, help="Air 1, water 1.33, diamond 2.4.")

@@ -5,7 +5,7 @@ import os
 import shutil
 import tempfile
 
-# Each pass's output is held against the IR's rules; read when distal.compiler is imported.
+# Each pass's output is held against the IR's rules; read when distal.compiler.driver is imported.
 os.environ.setdefault("DISTAL_VERIFY", "1")
 
 # The person's own cache stays untouched; workers inherit the folder of the process that made it.

@@ -29,9 +29,9 @@ from distal import (
     Sphere,
     Torus,
 )
+from distal.fields.library import OPERATORS, PRIMITIVES
 from distal.lang import Texture2D, Texture3D, cos, func, sin, vec2
-from distal.scene.library import OPERATORS, PRIMITIVES
-from distal.scene.shapes import CLASSES
+from distal.scene.objects.shapes import CLASSES
 
 GROUPS: Final = ("solids", "flats", "operators", "blends")
 JOINS: Final = ("union", "intersection", "difference", "xor")

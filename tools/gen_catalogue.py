@@ -21,7 +21,7 @@ import numpy as np
 ROOT: Final = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "src")]
 
-from distal.fields.claims import EXACT, NOTHING, Claim, Limit, Operator, Primitive  # noqa: E402
+from distal.fields.guarantees import EXACT, NOTHING, Claim, Limit, Operator, Primitive  # noqa: E402
 from distal.ir.types import Buffer, Texture  # noqa: E402
 from distal.lang import Func  # noqa: E402
 from tests.fields.checks import Report, examined  # noqa: E402

@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from distal import Box, Camera, DistantLight, HemisphereLight, Scene
-from distal.fields.claims import EXACT
+from distal.fields.guarantees import EXACT
 from distal.lang import Frame, image, slider, vec2, vec4
 from distal.render.views import isolines
-from distal.scene.steepness import check_slopes
+from distal.scene.lowering.slope_limit import check_slopes
 
 FOLDER: Final = Path(__file__).parents[1] / "docs/pictures"
 ACROSS: Final = 10

@@ -32,7 +32,7 @@ from typing import (
     overload,
 )
 
-from distal.film.picture import Picture
+from distal.images.picture import Picture
 from distal.ir.types import Type as Type
 from distal.lang.functions import Func as _Func
 from distal.lang.functions import Image as _Image

@@ -1,12 +1,9 @@
 """Write the parts of the page's player whose one definition is Python: ``web/src/generated/``.
 
-The rules of a hand (``distal/scene/interaction.py``), sRGB's curve (``distal/lang/srgb.py``) and
-the table of keys (``distal/scene/bindings.py``) are translated to TypeScript. Run it after any
-change of these, then build the player; a test fails when it was forgotten.
-
-It knows the part of Python that those modules are written in: functions of numbers, assignments,
-if, while, for over a range, arithmetic, comparisons and the functions of ``CALLS``. Anything else
-is an error here, and no text.
+The rules of camera movement (``distal/scene/viewing/interaction.py``), sRGB's curve
+(``distal/lang/srgb.py``) and the key bindings (``distal/scene/viewing/key_bindings.py``) are
+translated to TypeScript. Run it after any change of these, then build the player; a test fails when
+it was forgotten.
 """
 
 from __future__ import annotations
@@ -19,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
-from distal.scene.bindings import BINDINGS, HELP
+from distal.scene.viewing.key_bindings import BINDINGS, HELP
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / "src" / "distal"
@@ -199,7 +196,7 @@ def camel(name: str) -> str:
 
 def interaction() -> str:
     """The rules of a hand."""
-    path = "scene/interaction.py"
+    path = "scene/viewing/interaction.py"
     made = Translator(path, ("fixed", "precise"))
     functions = [made.function(f) for f in made.tree.body if isinstance(f, ast.FunctionDef)]
     head = NOTE.format(path) + '\nimport { fixed, precise } from "../numbers";\n'
@@ -228,7 +225,7 @@ def bindings() -> str:
     rows = "".join(f"  {json.dumps(key)}: {json.dumps(keys[key])},\n" for key in keys)
     helps = "".join(f"  {json.dumps(line, ensure_ascii=False)},\n" for line in lines)
     return (
-        f"{NOTE.format('scene/bindings.py')}\nexport type Action = {names};\n\n"
+        f"{NOTE.format('scene/viewing/key_bindings.py')}\nexport type Action = {names};\n\n"
         f"export const KEYS: Record<string, Action> = {{\n{rows}}};\n\n"
         'export type Needs = Action | "camera" | "mouse";\n\n'
         f"export const HELP: readonly (readonly [string, string, Needs])[] = [\n{helps}];\n"

@@ -1,7 +1,7 @@
 """Write what editors and type checkers know of the shapes' classes.
 
 The classes are made from the field library's rows when they are imported. This writes
-``src/distal/scene/shapes.pyi`` with their signatures and first sentences, and
+``src/distal/scene/objects/shapes.pyi`` with their signatures and first sentences, and
 ``src/distal/shape_names.py`` with their names alone, for ``import distal`` to know them
 without loading them. Run it after any change of the library; a test fails when it was forgotten.
 """
@@ -12,8 +12,8 @@ import inspect
 from pathlib import Path
 
 from distal.lang.functions import Func
-from distal.scene import shapes
-from distal.scene.numbers import slots_of
+from distal.scene.objects import shapes
+from distal.scene.tree.arguments import slots_of
 
 ROOM = Path(__file__).parents[1] / "src" / "distal" / "scene"
 
@@ -26,7 +26,7 @@ from typing import Any, TypeAlias
 from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, TextureValue
-from distal.scene.shape import Shape, Shape2D
+from distal.scene.objects.shape import Shape, Shape2D
 
 Number: TypeAlias = float | Parameter | Expression
 Vector: TypeAlias = Sequence[Number] | Parameter | Expression | Any
@@ -89,7 +89,7 @@ def names() -> str:
     return f"{NAMES_HEAD}SHAPE_NAMES: Final = (\n{listed})\n"
 
 
-FILES = {ROOM / "shapes.pyi": stub, ROOM.parent / "shape_names.py": names}
+FILES = {ROOM / "objects" / "shapes.pyi": stub, ROOM.parent / "shape_names.py": names}
 
 if __name__ == "__main__":
     for path, text in FILES.items():

@@ -55,7 +55,7 @@ TESTS: Final = (
     "tests/export",
     "tests/parity/test_elementary.py",
     "tests/window/test_state.py",
-    "tests/film/test_rerender.py",
+    "tests/images/test_rerender.py",
 )
 PRELOAD: Final = ("numpy", "scipy.spatial", "hypothesis", "llvmlite.binding", "PIL.Image")
 VERDICTS: Final = (KILLED, SURVIVED, TIMED_OUT, UNTESTED)

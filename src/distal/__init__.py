@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from distal.executor_hook import (
+from distal.lang.runtime_hook import (
     set_calculator_loader,
     set_combiner_loader,
     set_executor_loader,
@@ -20,79 +20,79 @@ from distal.version import __version__
 
 if TYPE_CHECKING:
     from distal.backends.base import Artifact as Artifact
-    from distal.compiler import compile as compile
+    from distal.compiler.driver import compile as compile
     from distal.diagnostics import CompileError as CompileError
     from distal.diagnostics import LoadError as LoadError
-    from distal.film.picture import Picture as Picture
+    from distal.images.picture import Picture as Picture
     from distal.lang.expressions import time as time
     from distal.loading import gallery as gallery
     from distal.loading import load as load
-    from distal.scene.backgrounds import Background as Background
-    from distal.scene.backgrounds import Environment as Environment
-    from distal.scene.backgrounds import GradientBackground as GradientBackground
-    from distal.scene.backgrounds import Sky as Sky
-    from distal.scene.cameras import Camera as Camera
-    from distal.scene.cameras import FisheyeCamera as FisheyeCamera
-    from distal.scene.cameras import OrbitCamera as OrbitCamera
-    from distal.scene.cameras import OrthographicCamera as OrthographicCamera
-    from distal.scene.cameras import PanoramaCamera as PanoramaCamera
-    from distal.scene.letters import SvgPath as SvgPath
-    from distal.scene.letters import Text as Text
-    from distal.scene.lights import AmbientLight as AmbientLight
-    from distal.scene.lights import DistantLight as DistantLight
-    from distal.scene.lights import HemisphereLight as HemisphereLight
-    from distal.scene.lights import PointLight as PointLight
-    from distal.scene.lights import SpotLight as SpotLight
-    from distal.scene.materials import Material as Material
-    from distal.scene.materials import emissive as emissive
-    from distal.scene.materials import glass as glass
-    from distal.scene.materials import glossy as glossy
-    from distal.scene.materials import matte as matte
-    from distal.scene.materials import metal as metal
-    from distal.scene.materials import mirror as mirror
-    from distal.scene.materials import plastic as plastic
-    from distal.scene.patterns import by_cell as by_cell
-    from distal.scene.patterns import checker as checker
-    from distal.scene.patterns import cube_map as cube_map
-    from distal.scene.patterns import gradient as gradient
-    from distal.scene.patterns import image_pattern as image_pattern
-    from distal.scene.patterns import noise as noise
-    from distal.scene.patterns import palette as palette
-    from distal.scene.patterns import pattern as pattern
-    from distal.scene.patterns import radial_gradient as radial_gradient
-    from distal.scene.patterns import stripes as stripes
-    from distal.scene.patterns import waves as waves
+    from distal.scene.objects.backgrounds import Background as Background
+    from distal.scene.objects.backgrounds import Environment as Environment
+    from distal.scene.objects.backgrounds import GradientBackground as GradientBackground
+    from distal.scene.objects.backgrounds import Sky as Sky
+    from distal.scene.objects.cameras import Camera as Camera
+    from distal.scene.objects.cameras import FisheyeCamera as FisheyeCamera
+    from distal.scene.objects.cameras import OrbitCamera as OrbitCamera
+    from distal.scene.objects.cameras import OrthographicCamera as OrthographicCamera
+    from distal.scene.objects.cameras import PanoramaCamera as PanoramaCamera
+    from distal.scene.objects.letters import SvgPath as SvgPath
+    from distal.scene.objects.letters import Text as Text
+    from distal.scene.objects.lights import AmbientLight as AmbientLight
+    from distal.scene.objects.lights import DistantLight as DistantLight
+    from distal.scene.objects.lights import HemisphereLight as HemisphereLight
+    from distal.scene.objects.lights import PointLight as PointLight
+    from distal.scene.objects.lights import SpotLight as SpotLight
+    from distal.scene.objects.materials import Material as Material
+    from distal.scene.objects.materials import emissive as emissive
+    from distal.scene.objects.materials import glass as glass
+    from distal.scene.objects.materials import glossy as glossy
+    from distal.scene.objects.materials import matte as matte
+    from distal.scene.objects.materials import metal as metal
+    from distal.scene.objects.materials import mirror as mirror
+    from distal.scene.objects.materials import plastic as plastic
+    from distal.scene.objects.patterns import by_cell as by_cell
+    from distal.scene.objects.patterns import checker as checker
+    from distal.scene.objects.patterns import cube_map as cube_map
+    from distal.scene.objects.patterns import gradient as gradient
+    from distal.scene.objects.patterns import image_pattern as image_pattern
+    from distal.scene.objects.patterns import noise as noise
+    from distal.scene.objects.patterns import palette as palette
+    from distal.scene.objects.patterns import pattern as pattern
+    from distal.scene.objects.patterns import radial_gradient as radial_gradient
+    from distal.scene.objects.patterns import stripes as stripes
+    from distal.scene.objects.patterns import waves as waves
+    from distal.scene.objects.shape import Shape as Shape
+    from distal.scene.objects.shape import Shape2D as Shape2D
+    from distal.scene.objects.shapes import *  # noqa: F403 (a stub lists them)
     from distal.scene.scene import Scene as Scene
-    from distal.scene.shape import Shape as Shape
-    from distal.scene.shape import Shape2D as Shape2D
-    from distal.scene.shapes import *  # noqa: F403 (a stub lists them)
     from distal.scene.steering import Steering as Steering
 
 _ROOMS = {
     "distal.backends.base": ("Artifact",),
-    "distal.compiler": ("compile",),
+    "distal.compiler.driver": ("compile",),
     "distal.diagnostics": ("CompileError", "LoadError"),
-    "distal.film.picture": ("Picture",),
+    "distal.images.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.loading": ("gallery", "load"),
-    "distal.scene.backgrounds": ("Background", "Environment", "GradientBackground", "Sky"),
-    "distal.scene.cameras": (
+    "distal.scene.objects.backgrounds": ("Background", "Environment", "GradientBackground", "Sky"),
+    "distal.scene.objects.cameras": (
         *("Camera", "FisheyeCamera", "OrbitCamera", "OrthographicCamera", "PanoramaCamera"),
     ),
-    "distal.scene.letters": ("SvgPath", "Text"),
-    "distal.scene.lights": (
+    "distal.scene.objects.letters": ("SvgPath", "Text"),
+    "distal.scene.objects.lights": (
         *("AmbientLight", "DistantLight", "HemisphereLight", "PointLight", "SpotLight"),
     ),
-    "distal.scene.materials": (
+    "distal.scene.objects.materials": (
         *("Material", "emissive", "glass", "glossy", "matte", "metal", "mirror", "plastic"),
     ),
-    "distal.scene.patterns": (
+    "distal.scene.objects.patterns": (
         *("by_cell", "checker", "cube_map", "gradient", "image_pattern", "noise", "palette"),
         *("pattern", "radial_gradient", "stripes", "waves"),
     ),
     "distal.scene.scene": ("Scene",),
-    "distal.scene.shape": ("Shape", "Shape2D"),
-    "distal.scene.shapes": SHAPE_NAMES,
+    "distal.scene.objects.shape": ("Shape", "Shape2D"),
+    "distal.scene.objects.shapes": SHAPE_NAMES,
     "distal.scene.steering": ("Steering",),
 }
 _HOMES = {name: room for room, names in _ROOMS.items() for name in names}
@@ -102,11 +102,11 @@ __all__ = ["__version__", *(name for name in _HOMES if name != "compile")]
 
 
 def _executor() -> Any:
-    return importlib.import_module("distal.executor").PythonExecutor()
+    return importlib.import_module("distal.runtime.executor").PythonExecutor()
 
 
 def _calculator() -> Any:
-    return importlib.import_module("distal.constant_values").compute
+    return importlib.import_module("distal.compiler.constant_evaluation").compute
 
 
 def _combiner() -> Any:

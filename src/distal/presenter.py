@@ -30,4 +30,4 @@ class Presenter:
 
     def video(self, obj: Any, path: str | PathLike[str], **options: Any) -> Any:
         """A video, or a sequence of pictures."""
-        return importlib.import_module("distal.sequence").video(obj, path, **options)
+        return importlib.import_module("distal.video").video(obj, path, **options)

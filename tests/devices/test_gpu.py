@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import distal
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.devices import adapters, cpu, gpu
 from distal.devices.base import Cancelled, DeviceError
 from distal.devices.gpu import GpuKernel

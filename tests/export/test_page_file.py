@@ -22,7 +22,7 @@ from distal.diagnostics import CompileError, LoadError
 from distal.export import payload as payload_room
 from distal.export import resources
 from distal.export.registry import export
-from distal.film.replacement import SaveError
+from distal.images.atomic_files import SaveError
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang import resources as lang
 
@@ -210,7 +210,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
     monkeypatch.setattr(payload_room, "_compiled", refusing)
     path = tmp_path / "p.html"
     obj = distal.load(rings)
-    obj_view = distal.scene.viewable.viewable(obj).image("signal").name
+    obj_view = distal.scene.viewing.viewable.viewable(obj).image("signal").name
     bad = obj_view
     made = obj.export(path)
     assert dict(made.omitted) == {"signal": "it cannot be said"}

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from distal.fields.claims import UNBOUNDED, Claim
+from distal.fields.guarantees import UNBOUNDED, Claim
 from tests.fields.rows import Doubles, Sample
 from tests.fields.slopes import steepest
 from tests.fields.subject import Subject

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from distal.fields.claims import Limit, Operator, Primitive
+from distal.fields.guarantees import Limit, Operator, Primitive
 from distal.ir.types import BOOL, FLOAT, INT, TEXTURE_2D, VEC2, VEC3, VEC4, Texture, Vector
 from distal.ir.types import Buffer as BufferType
 from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue

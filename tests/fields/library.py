@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from distal import fields
-from distal.fields.claims import OPERATORS, PRIMITIVES, Operator, Primitive
+from distal.fields.guarantees import OPERATORS, PRIMITIVES, Operator, Primitive
 from distal.lang import Func
 
 

@@ -16,23 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices import cpu, reference
-from distal.fields.claims import UNBOUNDED, Claim, Primitive
+from distal.fields.guarantees import UNBOUNDED, Claim, Primitive
 from distal.frontend import Assembly, lower
-from distal.frontend.annotations import to_type
-from distal.frontend.headers import MISSING, Header, read_header
+from distal.frontend.signatures.annotations import to_type
+from distal.frontend.signatures.signatures import MISSING, Header, read_header
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, Construct, Expr, FunctionRef, Gradient, Param, Read, Return
-from distal.ir.types import (
-    BOOL,
-    FLOAT,
-    INT,
-    VEC2,
-    VEC3,
-    FunctionType,
-    Type,
-    Vector,
-    tuple_type,
-)
+from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Type, Vector, tuple_type
 from distal.lang import Func
 from distal.lang.composed import Composed
 from distal.lang.resources import Buffer, TextureValue

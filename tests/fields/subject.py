@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from distal.fields.claims import Claim
+from distal.fields.guarantees import Claim
 from tests.fields.rows import Doubles, Sample, dimension_of
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from distal import Box, Rectangle
 from distal.fields import extents
-from distal.fields.claims import Bounds, Bounds2
+from distal.fields.guarantees import Bounds, Bounds2
 from tests.fields.trees import Tree
 
 SIZE, MIDDLE = np.array([0.9, 1.1, 0.5]), np.array([0.15, -0.2, 0.1])

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from distal.diagnostics import CompileError
-from distal.fields.claims import Claim, Growth, Operator, Primitive
+from distal.fields.guarantees import Claim, Growth, Operator, Primitive
 from distal.lang import Func, func, length, slider, vec3
-from distal.scene.field import Field
-from distal.scene.node import Node
-from distal.scene.shape import Shape
-from distal.scene.shapes import (
+from distal.scene.objects.field import Field
+from distal.scene.objects.shape import Shape
+from distal.scene.objects.shapes import (
     Box,
     BoxCheap,
     ConeCheap,
@@ -25,6 +24,7 @@ from distal.scene.shapes import (
     Spring,
     Superellipsoid,
 )
+from distal.scene.tree.node import Node
 from tests.fields.drawing import sample_with
 from tests.fields.library import operators, primitives
 from tests.fields.seeds import SEED, seed_of
@@ -180,7 +180,7 @@ def test_a_parameter_that_takes_the_slope_is_refused_when_it_is_drawn():
 
 def test_shapes_are_refused_cheaply():
     """One function for each kind of operator, however many shapes are made."""
-    from distal.scene import known_promises  # noqa: PLC0415
+    from distal.scene.lowering import known_bounds as known_promises  # noqa: PLC0415
 
     [Sphere(0.1).translate(0.01 * i, 0, 0).twist(0.1 * i) for i in range(3)]
     before = len(known_promises._steps)

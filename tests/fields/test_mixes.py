@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from distal.devices import reference
-from distal.fields.claims import Bounds, Bounds2, Operator
+from distal.fields.guarantees import Bounds, Bounds2, Operator
 from distal.frontend import Assembly, lower
 from distal.ir.nodes import Expr, Param, Read, Return
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3

@@ -12,7 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal.fields import ease, noise, noise_flat, noise_lattice, voronoi
+from distal.fields import ease
+from distal.fields.noise import lattice as noise_lattice
+from distal.fields.noise import plane as noise_flat
+from distal.fields.noise import space as noise
+from distal.fields.noise import voronoi
 from tests.fields.test_tiers_noise import MASK, pcg
 
 TINY = 1e-4

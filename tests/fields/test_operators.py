@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import pytest
 
-from distal.fields.claims import Operator
+from distal.fields.guarantees import Operator
 from tests.fields.checks import examined
 from tests.fields.library import operators
 from tests.fields.seeds import seed_of, seeded

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from distal.fields import edge_profiles, edges, smooth
-from distal.fields.edges import BLENDS, COMBINATIONS, combination
+from distal.fields.combine import blends as edges
+from distal.fields.combine import edge_profiles, smooth
+from distal.fields.combine.blends import BLENDS, COMBINATIONS, combination
 
 PLAIN = [name for name, blend in BLENDS.items() if not blend.counted]
 SMOOTH = [

@@ -7,10 +7,13 @@ from itertools import product
 import numpy as np
 import pytest
 
-from distal.fields import deform, ease, extents, place
-from distal.fields.claims import UNBOUNDED, Bounds
-from distal.fields.combine import displaced
-from distal.fields.repeat import (
+from distal.fields import ease, extents
+from distal.fields.combine.joins import displaced
+from distal.fields.deform import solid as deform
+from distal.fields.guarantees import UNBOUNDED, Bounds
+from distal.fields.place import solid as place
+from distal.fields.repeat.along import along_line, along_line_value, around_ring
+from distal.fields.repeat.cells import (
     limited,
     limited_around,
     limited_value,
@@ -20,8 +23,7 @@ from distal.fields.repeat import (
     repeated_slope,
     repeated_value,
 )
-from distal.fields.repeat_along import along_line, along_line_value, around_ring
-from distal.fields.repeat_polar import (
+from distal.fields.repeat.polar import (
     repeated_polar,
     repeated_polar_around,
     repeated_polar_slope,

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 import pytest
 
-from distal.fields.claims import Primitive
+from distal.fields.guarantees import Primitive
 from tests.fields.checks import examined, numbers_hold
 from tests.fields.drawing import default_sample, random_sample, sample_with
 from tests.fields.library import measured, primitives

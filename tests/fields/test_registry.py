@@ -7,10 +7,10 @@ from typing import Final
 
 import pytest
 
-from distal.fields.claims import EXACT, Claim, Limit, Operator, Primitive
+from distal.fields.guarantees import EXACT, Claim, Limit, Operator, Primitive
 from distal.ir.types import Buffer, Texture
 from distal.lang import Func
-from distal.scene.numbers import RESERVED, RESERVED_OF_SHAPES
+from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES
 from tests.fields.library import MODULES, docstring, measured, operators, primitives
 from tests.fields.rows import PLACE, default_of, header_of, slots_of
 from tests.fields.trees import operator_functions, operator_slots

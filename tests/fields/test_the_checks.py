@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from distal.fields.claims import EXACT, LOWER_BOUND, NOTHING, Bounds, Claim, Limit, Primitive
+from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Claim, Limit, Primitive
 from distal.lang import abs, func, length, max, min, normalize, select, vec2, vec3
 from tests.fields.checks import examined, numbers_hold
 from tests.fields.drawing import default_sample, random_sample

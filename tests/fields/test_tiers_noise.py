@@ -8,7 +8,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from distal.fields import noise, noise_flat, voronoi
+from distal.fields.noise import plane as noise_flat
+from distal.fields.noise import space as noise
+from distal.fields.noise import voronoi
 
 MASK = 0xFFFFFFFF
 EDGES = np.array(

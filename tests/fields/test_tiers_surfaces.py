@@ -5,15 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from distal.fields import (
-    coils,
-    fractals,
-    heightfield,
-    lattices,
-    tpms,
-    tubes,
-    volumes,
-)
+from distal.fields.solids import coils, fractals, heightfield, lattices, tpms, tubes, volumes
 from distal.lang import Buffer, Texture2D, Texture3D, func, vec2, vec3
 from tests.fields.drawing import sample_with
 from tests.fields.library import primitives

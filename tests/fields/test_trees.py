@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import pytest
 
-from distal.fields.claims import ENDLESS, OPERATORS
+from distal.fields.guarantees import ENDLESS, OPERATORS
 from tests.fields.quick_checks import glanced
 from tests.fields.seeds import seed_of, seeded
 from tests.fields.trees import Tree, flatness, nested_tree, random_node

@@ -11,22 +11,22 @@ from typing import Any, Final
 import numpy as np
 
 from distal.devices import cpu, reference
-from distal.fields.claims import OPERATORS, PRIMITIVES, UNBOUNDED, Operator
+from distal.fields.guarantees import OPERATORS, PRIMITIVES, UNBOUNDED, Operator
 from distal.frontend import Assembly, lower
 from distal.ir.nodes import Gradient, Param, Read, Return
 from distal.ir.printer import print_identity
 from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, tuple_type
 from distal.lang import Func
 from distal.lang.composed import Composed
-from distal.scene import shapes  # the classes come from the rows that importing it declares
-from distal.scene.binding import bound
-from distal.scene.compose import ZERO_CELL, Composer
-from distal.scene.derived import PromiseOf
-from distal.scene.field import Field
-from distal.scene.node import Node
-from distal.scene.numbers import RESERVED
-from distal.scene.numbers import slots_of as scene_slots_of
-from distal.scene.values import Body
+from distal.scene.lowering.derived import PromiseOf
+from distal.scene.lowering.shapes import ZERO_CELL, Composer
+from distal.scene.objects import shapes  # the classes come from the rows that importing it declares
+from distal.scene.objects.binding import bound
+from distal.scene.objects.field import Field
+from distal.scene.tree.arguments import RESERVED
+from distal.scene.tree.arguments import slots_of as scene_slots_of
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body
 from tests.fields.drawing import drawn, fits, random_sample
 from tests.fields.rows import Doubles, Slot, endless
 from tests.fields.subject import Subject

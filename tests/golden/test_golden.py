@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from distal.backends.base import Artifact
-from distal.compiler import compile
+from distal.compiler.driver import compile
 
 HERE = Path(__file__).parent
 SUFFIXES = {

@@ -8,8 +8,8 @@ import pytest
 
 import distal
 from distal.cli.base import Device
-from distal.device_names import AUTO, DEVICE_NAMES
-from distal.executor import DEVICES
+from distal.runtime.device_names import AUTO, DEVICE_NAMES
+from distal.runtime.executor import DEVICES
 
 SOURCE = Path(distal.__file__).parent
 ROOT = Path(__file__).parents[2]
@@ -51,8 +51,8 @@ def test_an_entry_of_a_docstring_names_every_device_or_none(place, text):
 @pytest.mark.parametrize(
     "place",
     [
-        *("scene/scene.py:render", "lang/functions.py:render", "executor.py:render"),
-        "sequence/recording.py:video",
+        *("scene/scene.py:render", "lang/functions.py:render", "runtime/executor.py:render"),
+        "video/recording.py:video",
     ],
 )
 def test_what_authors_call_names_every_device(place):

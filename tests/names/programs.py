@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from distal.backends import emit, get_target
 from distal.backends.base import Artifact
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.frontend import lower
 from distal.ir.nodes import Module
 

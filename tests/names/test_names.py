@@ -16,12 +16,12 @@ import pytest
 from numpy.typing import NDArray
 
 from distal.backends import emit, get_target
-from distal.backends import numpy as reference
 from distal.backends.base import Artifact
-from distal.backends.glsl import vocabulary
-from distal.backends.glsl_stages import DIALECTS
-from distal.backends.wgsl_names import VOCABULARY
-from distal.compiler import run_passes
+from distal.backends.glsl.backend import vocabulary
+from distal.backends.glsl.stages import DIALECTS
+from distal.backends.numpy import interpreter as reference
+from distal.backends.wgsl.names import VOCABULARY
+from distal.compiler.driver import run_passes
 from distal.devices import cpu as cpu_device
 from distal.devices.cache import Cache
 from distal.ir.nodes import Module

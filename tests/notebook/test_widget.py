@@ -173,7 +173,7 @@ def test_the_picture_as_it_stands_is_computed_by_python():
         steering={"yaw": 0.7, "pitch": 0.2, "zoom": 0.8, "pan": [0.1, 0.0]},
     )
     found = widget.render()
-    wanted = distal.scene.viewable.viewable(scene).render(
+    wanted = distal.scene.viewing.viewable.viewable(scene).render(
         size=(48, 36), params={"softness": 0.2}, steering=Steering(0.7, 0.2, 0.8, (0.1, 0.0))
     )
     assert (found.array == wanted.array).all()

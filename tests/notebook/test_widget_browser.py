@@ -13,7 +13,7 @@ pytest.importorskip("anywidget")
 from distal import Box, Camera, Scene, Sphere, time
 from distal.lang import slider
 from distal.notebook.widget import LiveView
-from distal.scene.viewable import viewable
+from distal.scene.viewing.viewable import viewable
 from tests.browser import BrowserUnavailableError, browser
 from tests.page.looking import looked_at
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from distal.scene.steering import Steering
-from distal.scene.viewable import Viewable
+from distal.scene.viewing.viewable import Viewable
 from tests.browser import Watched, offline_page
 from tests.pictures.comparison import Difference, difference
 

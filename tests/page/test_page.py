@@ -12,7 +12,7 @@ from PIL import Image
 
 import distal
 from distal.export.page import TOO_OLD
-from distal.scene.viewable import viewable
+from distal.scene.viewing.viewable import viewable
 from tests.browser import BrowserUnavailableError, offline_page
 from tests.browser import browser as running_browser
 from tests.page.looking import looked_at

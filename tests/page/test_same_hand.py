@@ -22,9 +22,9 @@ from distal.lang import Frame, image, integer, slider, vec3
 from distal.lang.number_text import shown
 from distal.lang.parameters import Parameter
 from distal.lang.srgb import hex_of, linear_of
-from distal.scene import interaction
-from distal.scene.bindings import BINDINGS
-from distal.scene.viewable import viewable
+from distal.scene.viewing import interaction
+from distal.scene.viewing.key_bindings import BINDINGS
+from distal.scene.viewing.viewable import viewable
 from distal.window.dials import Dial
 from distal.window.keys import action_of_character, action_of_key
 from distal.window.session import Session

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal.compiler import compile
+from distal.compiler.driver import compile
 from distal.lang import Frame, acos, asin, cos, image, sin, tan, vec4
 from tests import webgl
 from tests.browser import MESA, BrowserUnavailableError, browser, offline_page

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.backends import emit, get_target
-from distal.backends import numpy as reference_backend
-from distal.compiler import run_passes
+from distal.backends.numpy import interpreter as reference_backend
+from distal.compiler.driver import run_passes
 from distal.devices import cpu as cpu_device
 from distal.devices.cache import Cache
 from distal.ir.nodes import Module

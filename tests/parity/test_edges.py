@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from distal.backends import get_target
-from distal.backends import numpy as reference_backend
-from distal.compiler import run_passes
+from distal.backends.numpy import interpreter as reference_backend
+from distal.compiler.driver import run_passes
 from distal.devices import cpu
 from distal.devices.cache import Cache
 from distal.devices.features import host_levels

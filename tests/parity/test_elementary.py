@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from distal.backends.numpy import Interpreter
+from distal.backends.numpy.interpreter import Interpreter
+from distal.compiler.prelude_library import PreludeLibrary
 from distal.frontend import lower_overload
 from distal.ir.nodes import EntryKind, Module
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import FLOAT
 from distal.lang.prelude import careful, elementary
-from distal.passes import decompose
 from distal.passes.context import Context
-from distal.prelude_library import PreludeLibrary
+from distal.passes.decompose import decompose
 
 Reals = NDArray[np.float64]
 POINTS = 100001

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import distal
-from distal.executor import PythonExecutor
 from distal.lang.expressions import time
+from distal.runtime.executor import PythonExecutor
 from tests import egl, gpu
 from tests.glsl import run_glsl
 from tests.unit.executor.composing import Ramp

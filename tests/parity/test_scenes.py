@@ -57,7 +57,7 @@ from distal import (
     waves,
 )
 from distal.backends import emit, get_target
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.devices.resources import load
 from distal.frontend import lower
 from distal.ir.types import Texture

@@ -13,15 +13,16 @@ import numpy as np
 import pytest
 
 from distal.backends import get_target
-from distal.backends.numpy import evaluate
-from distal.backends.numpy_operations import Value
+from distal.backends.numpy.interpreter import evaluate
+from distal.backends.numpy.operations import Value
+from distal.compiler.prelude_library import PreludeLibrary
 from distal.diagnostics import CompileError
 from distal.ir.build import read
 from distal.ir.nodes import EntryKind, Function, Module, Param, Return
 from distal.ir.types import Kind, Matrix, Scalar, component_count, kind_of
-from distal.passes import bounds, decompose
+from distal.passes import bounds
 from distal.passes.context import Context
-from distal.prelude_library import PreludeLibrary
+from distal.passes.decompose import decompose
 from tests.parity.cases import operator_cases, table_cases
 from tests.parity.comparing import disagreement
 from tests.parity.programs import Case, Numbers

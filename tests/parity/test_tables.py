@@ -10,24 +10,12 @@ import numpy as np
 import pytest
 
 from distal.backends import emit, get_target
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.devices import gpu as gpu_device
 from distal.export.payload import Programs
 from distal.frontend import lower
-from distal.lang import (
-    Frame,
-    array,
-    func,
-    image,
-    ivec2,
-    mat2,
-    struct,
-    uint,
-    vec2,
-    vec3,
-    vec4,
-)
-from distal.scene.viewable import viewable
+from distal.lang import Frame, array, func, image, ivec2, mat2, struct, uint, vec2, vec3, vec4
+from distal.scene.viewing.viewable import viewable
 from tests import egl, gpu
 from tests.glsl import run_glsl
 from tests.parity.targets import TARGETS, Unavailable, reference

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from distal.backends import get_target
-from distal.backends import numpy as reference
-from distal.compiler import compile, lower, run_passes
+from distal.backends.numpy import interpreter as reference
+from distal.compiler.driver import compile, lower, run_passes
 from distal.lang import (
     Frame,
     acos,

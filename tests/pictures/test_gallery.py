@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import distal
-from distal.fields.claims import UNBOUNDED
+from distal.fields.guarantees import UNBOUNDED
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs/pictures"
@@ -63,7 +63,7 @@ def test_a_command_of_the_page_renders(tmp_path):
 
 def test_every_row_of_the_library_has_a_cell(tools):
     cells = tools("catalogue_cells")
-    library = tools("distal.scene.library")
+    library = tools("distal.fields.library")
     titles = {group: [c.title for c in cells.cells([group])] for group in cells.GROUPS}
     assert sorted(titles["solids"] + titles["flats"]) == sorted(library.PRIMITIVES)
     assert sorted(titles["operators"] + titles["blends"]) == sorted(library.OPERATORS)
@@ -71,6 +71,6 @@ def test_every_row_of_the_library_has_a_cell(tools):
 
 def test_every_cell_can_be_made_and_has_a_bounded_slope(tools):
     cells = tools("catalogue_cells")
-    known_promise = tools("distal.scene.known_promises").known_promise
+    known_promise = tools("distal.scene.lowering.known_bounds").known_promise
     for cell in cells.cells():
         assert known_promise(cell.make().node).slope < UNBOUNDED / 1000.0, cell.title

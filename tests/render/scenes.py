@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Frame, exp, func, image, length, min, sin, vec2, vec3, vec4
 from distal.render import (
     bounce,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import distal
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import func, length, vec2, vec3
 from distal.render import heightfield_march, legend, march, normals, settings
 from distal.render.camera import Ray

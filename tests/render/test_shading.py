@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal.executor_hook import executor
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import func, length, max, min, vec2, vec3
+from distal.lang.runtime_hook import executor
 from distal.render import ambient, bounce, lights, material, shade, sky
 from distal.render.lights import LightSample
 from distal.render.march import March

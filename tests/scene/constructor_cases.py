@@ -17,7 +17,7 @@ import distal
 from distal.lang import func, vec3
 from distal.render import patterns as pattern_functions
 from distal.render.material import Surface
-from distal.scene.cameras import TurnedCamera
+from distal.scene.objects.cameras import TurnedCamera
 
 Formula = Callable[..., dict[str, Any]]
 RNG = np.random.default_rng(11)

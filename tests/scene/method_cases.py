@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from distal.fields import folds
+from distal.fields.deform import folds
 from tests.scene.method_fields import (
     AROUND,
     AXIS,

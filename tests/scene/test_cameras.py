@@ -10,7 +10,7 @@ import pytest
 from distal.ir.types import VEC3
 from distal.lang import slider
 from distal.lang.expressions import time
-from distal.scene.cameras import (
+from distal.scene.objects.cameras import (
     Camera,
     FisheyeCamera,
     OrbitCamera,
@@ -18,7 +18,7 @@ from distal.scene.cameras import (
     PanoramaCamera,
     TurnedCamera,
 )
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.scene.probing import emitted
 
 MIDDLE = (0.0, 0.0)

@@ -8,9 +8,9 @@ import pytest
 
 from distal import Box, Hexagon, Plane, Shape, Sphere
 from distal.lang import func, length, max, sin, slider, vec3
-from distal.scene.checkup import Severity, check, described
-from distal.scene.measuring import measure
-from distal.scene.survey import survey
+from distal.scene.checks.bounds_report import survey
+from distal.scene.checks.measuring import measure
+from distal.scene.checks.validation import Severity, check, described
 
 
 @func

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import distal
-from distal.executor_hook import executor
 from distal.ir.types import FLOAT, VEC3
-from distal.scene.cameras import TurnedCamera
+from distal.lang.runtime_hook import executor
+from distal.scene.objects.cameras import TurnedCamera
 from tests.scene.constructor_cases import (
     ALL_NUMBERS,
     CAMERAS,

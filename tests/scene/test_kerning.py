@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from distal.scene.lettering import text_outline
+from distal.scene.objects.lettering import text_outline
 
 pytest.importorskip("fontTools")
 

@@ -9,7 +9,7 @@ import pytest
 from distal.ir.types import FLOAT
 from distal.lang import slider
 from distal.lang.expressions import time
-from distal.scene.lights import (
+from distal.scene.objects.lights import (
     AmbientLight,
     DistantLight,
     HemisphereLight,
@@ -17,7 +17,7 @@ from distal.scene.lights import (
     SpotLight,
     as_light,
 )
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.scene.probing import emitted
 
 ORIGIN = (0.0, 0.0, 0.0)

@@ -9,15 +9,15 @@ import pytest
 
 from distal.lang import func, slider, vec3
 from distal.lang.expressions import time
-from distal.scene.backgrounds import (
+from distal.scene.objects.backgrounds import (
     Background,
     Environment,
     GradientBackground,
     Sky,
     as_background,
 )
-from distal.scene.lights import PointLight
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.scene.objects.lights import PointLight
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.scene.probing import emitted
 
 UP, DOWN, AHEAD = (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)

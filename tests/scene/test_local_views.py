@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import distal
-from distal.executor_hook import executor
 from distal.lang import Frame, image, vec3
-from distal.scene.local_views import locals_of, view_of_image
+from distal.lang.runtime_hook import executor
+from distal.scene.lowering.local_views import locals_of, view_of_image
 
 SIZE = (8, 4)
 UNREACHED = (0.08, 0.08, 0.1, 1.0)

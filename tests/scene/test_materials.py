@@ -9,7 +9,7 @@ from distal.ir.types import FLOAT
 from distal.lang import color, func, slider, vec3
 from distal.lang.expressions import time
 from distal.render.material import Surface, mix_surfaces
-from distal.scene.materials import (
+from distal.scene.objects.materials import (
     Material,
     as_material,
     emissive,
@@ -20,7 +20,7 @@ from distal.scene.materials import (
     mirror,
     plastic,
 )
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.scene.probing import emitted
 
 HERE = (0.25, 0.5, 0.75)

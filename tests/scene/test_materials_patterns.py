@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from PIL import Image as PillowImage
 
-from distal.film.picture import Picture
+from distal.images.picture import Picture
 from distal.ir.types import FLOAT
 from distal.lang import Texture2D, func, slider, vec3
 from distal.lang.expressions import time
 from distal.render.material import Surface
-from distal.scene.materials import Material, glass, matte
-from distal.scene.patterns import (
+from distal.scene.objects.materials import Material, glass, matte
+from distal.scene.objects.patterns import (
     by_cell,
     checker,
     cube_map,
@@ -25,7 +25,7 @@ from distal.scene.patterns import (
     stripes,
     waves,
 )
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.scene.probing import emitted
 
 RED, BLUE = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)

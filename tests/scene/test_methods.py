@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 from distal import Shape, Shape2D
-from distal.executor_hook import executor
+from distal.fields.combine.blends import BLENDS
 from distal.fields.ease import EASES
-from distal.fields.edges import BLENDS
+from distal.fields.library import OPERATORS
 from distal.lang import func, sin, vec3
-from distal.scene.library import OPERATORS
+from distal.lang.runtime_hook import executor
 from tests.scene import method_fields as cases
 from tests.scene.method_cases import SOLIDS
 from tests.scene.method_cases_flat import FLATS

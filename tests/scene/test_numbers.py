@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from distal import PolylineTube
-from distal.fields.claims import Limit
+from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, VEC2, VEC3
 from distal.lang import (
     Buffer,
@@ -25,9 +25,9 @@ from distal.lang import (
     vec3,
 )
 from distal.lang.expressions import Expression, time
-from distal.scene.numbers import Number, arguments
-from distal.scene.places import author_place
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.scene.tree.arguments import Number, arguments
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
+from distal.scene.tree.source_places import author_place
 
 ONE = vec3(1.0)
 

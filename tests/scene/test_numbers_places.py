@@ -7,8 +7,8 @@ import linecache
 import pytest
 
 from distal.diagnostics import CompileError, Span
-from distal.scene.places import author_place
-from distal.scene.refusals import refuse, refuse_kind
+from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.source_places import author_place
 
 
 def place_in(source: str) -> Span:

@@ -7,11 +7,11 @@ import importlib
 import numpy as np
 import pytest
 
-from distal.fields.claims import EXACT
-from distal.fields.outlines import OUTLINE
-from distal.scene.lettering import text_outline
-from distal.scene.outlines import TOLERANCE, Outline, _quadratics, svg_path
-from distal.scene.refusals import SceneTypeError, SceneValueError
+from distal.fields.flats.outlines import OUTLINE
+from distal.fields.guarantees import EXACT
+from distal.scene.objects.lettering import text_outline
+from distal.scene.objects.outlines import TOLERANCE, Outline, _quadratics, svg_path
+from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.fields.checks import examined, numbers_hold
 from tests.fields.rows import Sample
 from tests.fields.subject import Subject, subject_of

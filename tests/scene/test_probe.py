@@ -7,7 +7,7 @@ import pytest
 
 from distal import Box, Camera, OrthographicCamera, Plane, Scene, Sphere, matte, mirror
 from distal.lang import slider
-from distal.scene.probe import probe
+from distal.scene.checks.probe import probe
 
 FRONT = Camera((0.0, 0.0, 5.0), target=(0.0, 0.0, 0.0), fov_deg=40.0)
 

@@ -22,7 +22,7 @@ from distal import (
 from distal.frontend import lower
 from distal.ir.printer import print_identity
 from distal.render import normals
-from distal.scene.picture import NORMALS, RENDERERS
+from distal.scene.lowering.picture import NORMALS, RENDERERS
 
 SIZE = (18, 12)
 EYE = Camera((0.4, 1.2, 3.0), (0.1, 0.3, 0.0), fov=0.9)

@@ -5,7 +5,7 @@ import pytest
 
 from distal import Box, Hexagon, Plane, Scene, Sphere
 from distal.lang import slider
-from distal.scene.stage import stage
+from distal.scene.viewing.stage import stage
 
 
 def seen(scene, **options):

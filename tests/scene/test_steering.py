@@ -5,18 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from distal import (
-    Box,
-    Camera,
-    OrbitCamera,
-    OrthographicCamera,
-    PanoramaCamera,
-    Scene,
-    Sphere,
-)
+from distal import Box, Camera, OrbitCamera, OrthographicCamera, PanoramaCamera, Scene, Sphere
 from distal.lang import slider
 from distal.scene.steering import Steering
-from distal.scene.viewable import viewable
+from distal.scene.viewing.viewable import viewable
 
 SIZE = (64, 48)
 FOV = 0.7

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from distal import Box, Material, Plane, Scene, Sphere, glass, matte, metal, pattern
-from distal.executor_hook import executor
 from distal.ir.build import field
 from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import VEC3
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
-from distal.scene.picture import Picturing
+from distal.lang.runtime_hook import executor
+from distal.scene.lowering.picture import Picturing
 
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 

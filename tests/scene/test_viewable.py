@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-import distal
 from distal import Scene, Sphere, time
 from distal.diagnostics import LoadError
 from distal.lang import Frame, func, image, vec3
+from distal.lang.runtime_hook import executor
 from distal.scene.steering import Steering
-from distal.scene.viewable import viewable
+from distal.scene.viewing.viewable import viewable
 
 
 @image
@@ -66,7 +66,7 @@ def test_encoded_views_are_the_pictures_values():
     seen = viewable(Scene(Sphere().paint("#c63"), tone_map="aces", exposure=1.3))
     size = (24, 18)
     whole = seen.render(size=size).array
-    encoded = distal.executor_hook.executor().render(seen.image("color", encoded=True), size=size)
+    encoded = executor().render(seen.image("color", encoded=True), size=size)
     assert np.abs(whole - encoded.array).max() < 1e-4
 
 

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from distal import doctor
+from distal.cli import doctor
 from distal.devices import adapters, jit, levels, threads
 from distal.diagnostics import DeviceError
 from distal.packages import PACKAGES, PackageError, explained, imported

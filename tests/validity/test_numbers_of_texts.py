@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import distal
-from distal.compiler import compile
+from distal.compiler.driver import compile
 from distal.lang import Frame, image, normalize, vec2, vec3
 from tests.egl import EglUnavailableError
 from tests.glsl import run_glsl

@@ -21,10 +21,10 @@ import pytest
 from numpy.typing import NDArray
 
 from distal.backends import get_target
-from distal.backends import numpy as reference
 from distal.backends.base import Artifact
 from distal.backends.messages import map_message
-from distal.compiler import compile, lower, run_passes
+from distal.backends.numpy import interpreter as reference
+from distal.compiler.driver import compile, lower, run_passes
 from distal.diagnostics import CompileError
 from distal.lang import Image
 from distal.loading import load

@@ -12,10 +12,10 @@ import pytest
 import distal
 from distal import Scene, Sphere
 from distal.lang import Frame, choice, color, image, integer, point, slider, toggle, vec3
-from distal.scene import interaction
-from distal.scene.bindings import BINDINGS, HELP
 from distal.scene.steering import STILL, Steering
-from distal.scene.viewable import Viewable, viewable
+from distal.scene.viewing import interaction
+from distal.scene.viewing.key_bindings import BINDINGS, HELP
+from distal.scene.viewing.viewable import Viewable, viewable
 from distal.window.clock import Clock
 from distal.window.dials import Dial, dials
 from distal.window.gestures import Mouse, orbited, panned, zoomed

@@ -13,9 +13,9 @@ import pytest
 from numpy.typing import NDArray
 
 import distal
-from distal.film.metadata import read
+from distal.images.metadata import read
 from distal.scene.steering import Steering
-from distal.scene.viewable import viewable
+from distal.scene.viewing.viewable import viewable
 from tests.pictures.comparison import difference
 from tests.window.display import DisplayUnavailableError, Window, screen
 

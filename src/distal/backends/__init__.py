@@ -12,15 +12,15 @@ from distal.ir.target import Target
 # Target -> the module that has it in its TARGETS.
 _BACKENDS: Final = {
     "llvm": "distal.backends.llvm",
-    "shadertoy": "distal.backends.glsl",
-    "glslcanvas": "distal.backends.glsl",
-    "isf": "distal.backends.glsl",
-    "glsl-es300": "distal.backends.glsl",
-    "glsl-330": "distal.backends.glsl",
-    "glsl-es100": "distal.backends.glsl",
-    "wgsl": "distal.backends.wgsl",
-    "wgsl-compute": "distal.backends.wgsl",
-    "numpy": "distal.backends.numpy",
+    "shadertoy": "distal.backends.glsl.backend",
+    "glslcanvas": "distal.backends.glsl.backend",
+    "isf": "distal.backends.glsl.backend",
+    "glsl-es300": "distal.backends.glsl.backend",
+    "glsl-330": "distal.backends.glsl.backend",
+    "glsl-es100": "distal.backends.glsl.backend",
+    "wgsl": "distal.backends.wgsl.backend",
+    "wgsl-compute": "distal.backends.wgsl.backend",
+    "numpy": "distal.backends.numpy.interpreter",
 }
 
 

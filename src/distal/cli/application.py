@@ -19,7 +19,7 @@ from distal.cli import check, export, probe, render, rerender, video, view
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.export.texts import with_header, write_files
-from distal.film.replacement import check_destination
+from distal.images.atomic_files import check_destination
 from distal.loading import EXAMPLE_PREFIX
 from distal.version import __version__
 
@@ -118,8 +118,8 @@ def examples() -> None:
 @reporting
 def doctor() -> None:
     """Tell what this machine can do, and how to mend what is missing."""
-    from distal.cli.checkup import show
-    from distal.doctor import State, examine
+    from distal.cli.doctor import State, examine
+    from distal.cli.doctor_report import show
 
     findings = examine()
     show(findings)

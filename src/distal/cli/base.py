@@ -16,21 +16,21 @@ from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
 import typer
 
 import distal
-from distal import device_names
 from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError
-from distal.film.replacement import SaveError
+from distal.images.atomic_files import SaveError
 from distal.packages import explained
+from distal.runtime import device_names
 
 if TYPE_CHECKING:
     from distal.lang.functions import Image
     from distal.lang.parameter_values import Value
     from distal.loading import SceneCode
-    from distal.scene.field import Field
+    from distal.scene.objects.field import Field
     from distal.scene.scene import Scene
-    from distal.scene.viewable import Viewable
+    from distal.scene.viewing.viewable import Viewable
 
 Arguments = ParamSpec("Arguments")
 
@@ -186,7 +186,7 @@ def load_picture(
         LoadError: There is none, or it is no picture.
         UsageError: A parameter's value is wrong.
     """
-    from distal.scene.viewable import checked_picture
+    from distal.scene.viewing.viewable import checked_picture
 
     picture = checked_picture(load(scene))
     return picture, read_assignments(assignments or (), picture.parameters())

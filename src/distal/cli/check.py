@@ -27,7 +27,7 @@ from distal.cli.base import (
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
-    from distal.scene.checkup import Checkup, Finding, ShapeRow
+    from distal.scene.checks.validation import Checkup, Finding, ShapeRow
 
 # A tree is shown so deep; what is below a shared shape only once.
 DEEPEST = 12
@@ -46,8 +46,8 @@ def check(
     ] = False,
 ) -> None:
     """Tell what shapes promise, where slope comes from, and which promises do not hold."""
-    from distal.scene.checkup import check as look_over
-    from distal.scene.field import Field
+    from distal.scene.checks.validation import check as look_over
+    from distal.scene.objects.field import Field
     from distal.scene.scene import Scene
 
     seconds = read_time(at)
@@ -113,7 +113,7 @@ def _rows(checkup: Checkup) -> Iterator[tuple[str, str, str, str]]:
 
 
 def _claims(row: ShapeRow) -> str:
-    from distal.scene.checkup import claims_told
+    from distal.scene.checks.validation import claims_told
 
     claims = claims_told(row.node)
     if len(claims) == 3:
@@ -140,7 +140,7 @@ def _line(row: ShapeRow) -> str:
 
 def _slope(checkup: Checkup) -> Iterator[str]:
     """Where the slope of the whole comes from: which shape raised it, by how much, and where."""
-    from distal.scene.checkup import described
+    from distal.scene.checks.validation import described
 
     whole = checkup.shapes[0]
     yield f"slope of '{whole.node.name}': {whole.promised.slope:.3g}"

@@ -105,7 +105,7 @@ def export(
 def _check(scene: str, output: Path, target: str | None, given: dict[str, Any]) -> None:
     """Refuse what does not go together, before any work is spent on it."""
     from distal.export.registry import KINDS, kind_of
-    from distal.film.replacement import check_destination
+    from distal.images.atomic_files import check_destination
 
     try:
         name = kind_of(output, target)
@@ -125,7 +125,7 @@ def _write(
     scene: str, output: Path, target: str | None, assignments: list[str], options: dict[str, Any]
 ) -> None:
     from distal.export.registry import export as written
-    from distal.scene.viewable import viewable
+    from distal.scene.viewing.viewable import viewable
 
     obj, values = load_picture(scene, assignments)
     seen = viewable(obj, values, options["time"])
@@ -138,7 +138,7 @@ def _write(
 
 
 def _size(text: str | None) -> tuple[int, int] | None:
-    from distal.uniform_values import LARGEST_SIDE_PX
+    from distal.runtime.uniform_values import LARGEST_SIDE_PX
 
     return None if text is None else read_size(text, LARGEST_SIDE_PX)
 

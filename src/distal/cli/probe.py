@@ -28,7 +28,7 @@ from distal.diagnostics import LoadError, excerpt
 from distal.lang.srgb import hex_of
 
 if TYPE_CHECKING:
-    from distal.scene.probe import Probed
+    from distal.scene.checks.probe import Probed
 
 
 @application.command()
@@ -50,9 +50,9 @@ def probe(
 ) -> None:
     """Tell what one pixel saw: its ray, the march, the shape and its material."""
     from distal.lang.functions import Func
-    from distal.scene.probe import probe as look
-    from distal.scene.viewable import viewable
-    from distal.uniform_values import LARGEST_SIDE_PX
+    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.scene.checks.probe import probe as look
+    from distal.scene.viewing.viewable import viewable
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     place = read_pixel(pixel, width_height)
@@ -88,7 +88,7 @@ def told(found: Probed, seconds: float) -> Iterator[str]:
 
 
 def _shape(found: Probed) -> Iterator[str]:
-    from distal.scene.checkup import claims_told, described
+    from distal.scene.checks.validation import claims_told, described
 
     leaf = found.path[-1]
     claims = ", ".join(claims_told(leaf)) or "no claims beside its slope"

@@ -16,12 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from distal.cli.arguments import (
-    UsageError,
-    read_plane,
-    read_size,
-    read_time,
-)
+from distal.cli.arguments import UsageError, read_plane, read_size, read_time
 from distal.cli.base import (
     AdapterOption,
     Device,
@@ -40,8 +35,8 @@ from distal.cli.base import (
 )
 
 if TYPE_CHECKING:
-    from distal.film.picture import Picture
-    from distal.scene.viewable import Viewable
+    from distal.images.picture import Picture
+    from distal.scene.viewing.viewable import Viewable
 
 Run: TypeAlias = "Callable[..., Picture]"
 
@@ -141,9 +136,9 @@ def render(
     """Render a scene, a shape or an image to a picture."""
     from distal.cli.messages import say
     from distal.cli.report import ProgressBar, stages
-    from distal.film.picture import check_savable
-    from distal.scene.viewable import viewable
-    from distal.uniform_values import LARGEST_SIDE_PX
+    from distal.images.picture import check_savable
+    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.scene.viewing.viewable import viewable
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     wishes = read_wishes(view, plane, samples, transparent, exposure, tone_map)
@@ -204,7 +199,7 @@ def read_wishes(
 
 def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
     """The layers that a file of a suffix is to hold: those that were asked for, else all."""
-    from distal.scene.layers import NAMES, checked_layers
+    from distal.scene.lowering.layers import NAMES, checked_layers
 
     if given is None:
         all_of_them = suffix == ".exr" and view == "color" and seen.scene is not None

@@ -24,7 +24,7 @@ from distal.cli.base import (
 from distal.diagnostics import printable_lines
 
 if TYPE_CHECKING:
-    from distal.rerender import Difference
+    from distal.scene.rerender import Difference
 
 
 @application.command()
@@ -75,12 +75,12 @@ def rerender(
     threads: ThreadsOption = None,
 ) -> None:
     """Render a saved picture again, from what its file says about itself."""
-    from distal import rerender as room
     from distal.cli.messages import say
     from distal.cli.report import ProgressBar
-    from distal.film.metadata import ReadError
-    from distal.film.picture import check_savable
-    from distal.uniform_values import LARGEST_SIDE_PX
+    from distal.images.metadata import ReadError
+    from distal.images.picture import check_savable
+    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.scene import rerender as room
 
     if check and (size is not None or samples is not None):
         raise UsageError("--check compares with the picture as it was: no --size, no --samples")

@@ -27,7 +27,7 @@ from distal.cli.base import (
 )
 
 if TYPE_CHECKING:
-    from distal.sequence import Made
+    from distal.video import Made
 
 
 @application.command()
@@ -82,8 +82,8 @@ def video(
     """Render a scene that moves to a video or to numbered pictures."""
     from distal.cli.messages import say
     from distal.cli.report import FrameBar
-    from distal.film.video import kind_of
-    from distal.uniform_values import LARGEST_SIDE_PX
+    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.video.formats import kind_of
 
     width_height = read_size(size, LARGEST_SIDE_PX)
     kind = kind_of(output)
@@ -116,8 +116,8 @@ def video(
 
 def _made(obj: Any, output: Path, **wishes: Any) -> Made:
     """The video; a wish without sense is a mistake of the command line."""
-    from distal.film.video import WishError
-    from distal.sequence import video as make
+    from distal.video import video as make
+    from distal.video.formats import WishError
 
     try:
         return make(obj, output, **wishes)

@@ -75,7 +75,7 @@ def prepare(
     kernel = _loaded(cache.load(key))
     hit = kernel is not None
     if kernel is None:
-        passes = passes or importlib.import_module("distal.compiler").run_passes
+        passes = passes or importlib.import_module("distal.compiler.driver").run_passes
         shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
         if any(function.apart for function in shaped.functions):
             lanes = lanes.one_chunk()

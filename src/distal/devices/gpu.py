@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from distal.backends import emit, get_target
 from distal.backends.base import Artifact
 from distal.backends.llvm.layout import kinds_in, shape_of
-from distal.backends.wgsl_functions import leaf_count
-from distal.compiler import run_passes
+from distal.backends.wgsl.functions import leaf_count
+from distal.compiler.driver import run_passes
 from distal.devices import cpu_memory
 from distal.devices.adapters import Adapter, Gpu, chosen, opened, wgpu_module
 from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test

@@ -22,7 +22,7 @@ from distal.version import __version__
 # functions of the prelude, which it lowers.
 _COMPILER: Final = (
     *("ir", "passes", "backends/llvm", "devices", "frontend", "lang/prelude"),
-    *("backends/base.py", "compiler.py", "prelude_library.py"),
+    *("backends/base.py", "compiler"),
 )
 _VERSION_FILE: Final = "_version.py"
 _LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")

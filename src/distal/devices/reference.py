@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.backends import get_target
-from distal.backends import numpy as reference
-from distal.backends.numpy_operations import Value
-from distal.compiler import run_passes
+from distal.backends.numpy import interpreter as reference
+from distal.backends.numpy.operations import Value
+from distal.compiler.driver import run_passes
 from distal.devices.base import Cancel, Cancelled, Progress, Values, cancel_test
 from distal.devices.resources import load
 from distal.ir.nodes import Module

@@ -20,9 +20,9 @@ from typing import Any, Final
 from distal.export.exported import Exported
 from distal.export.payload import payload
 from distal.export.poster import poster as poster_bytes
-from distal.film.replacement import replacement
-from distal.scene.viewable import COLOR, Viewable
-from distal.uniform_values import checked_size, checked_time
+from distal.images.atomic_files import replacement
+from distal.runtime.uniform_values import checked_size, checked_time
+from distal.scene.viewing.viewable import COLOR, Viewable
 from distal.version import __version__
 
 PLAYER: Final = Path(__file__).with_name("player.js")

@@ -18,7 +18,7 @@ from typing import Any, Final
 import distal
 from distal.backends import emit, get_target
 from distal.backends.base import Artifact
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
 from distal.export.resources import resource, table
 from distal.frontend import lower
@@ -28,7 +28,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
-from distal.scene.viewable import COLOR, Viewable, view_label
+from distal.scene.viewing.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
 
 PACKAGE: Final = PurePath(distal.__file__).parent

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 from PIL import Image as PillowImage
 
-from distal.film.png import quantise
-from distal.scene.viewable import Viewable
+from distal.images.png import quantise
+from distal.scene.viewing.viewable import Viewable
 
 WIDTH_PX: Final = 480
 MOST_BYTES: Final = 10_000

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.export.exported import Exported
-from distal.film.replacement import SaveError, check_destination
-from distal.scene.viewable import viewable
+from distal.images.atomic_files import SaveError, check_destination
+from distal.scene.viewing.viewable import viewable
 
 
 @dataclass(frozen=True, slots=True)

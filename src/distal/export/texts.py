@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 from distal.backends import emit, get_target
 from distal.backends.base import Artifact
-from distal.backends.module_text import comment_text
-from distal.compiler import run_passes
+from distal.backends.clike.module_text import comment_text
+from distal.compiler.driver import run_passes
 from distal.export.exported import Exported
-from distal.film.replacement import SaveError, replacement
 from distal.frontend import lower
+from distal.images.atomic_files import SaveError, replacement
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.version import __version__
 
 if TYPE_CHECKING:
-    from distal.scene.viewable import Viewable
+    from distal.scene.viewing.viewable import Viewable
 
 PLACES: Final = {
     "shadertoy": (

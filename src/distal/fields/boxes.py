@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from distal.fields.claims import UNBOUNDED, Bounds, Bounds2
+from distal.fields.guarantees import UNBOUNDED, Bounds, Bounds2
 from distal.lang import func, max, min, vec2, vec3
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from distal.fields.claims import UNBOUNDED, Bounds, Bounds2
+from distal.fields.guarantees import UNBOUNDED, Bounds, Bounds2
 from distal.lang import Vectors, abs, func, length, mat2, mat3, max, min, select, vec2, vec3
 
 # A side beyond this is infinite.

@@ -1,7 +1,7 @@
 """From a decorated Python function to typed IR, with every mistake shown at the author's line."""
 
-from distal.frontend.assembly import Assembly
-from distal.frontend.lower import (
+from distal.frontend.lowering.assembly import Assembly
+from distal.frontend.lowering.lower import (
     SceneCode,
     has_overload,
     lower,

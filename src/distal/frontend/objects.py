@@ -12,7 +12,7 @@ from enum import Enum
 from types import FunctionType, ModuleType
 from typing import Any, Protocol
 
-from distal.frontend.annotations import struct_type, to_type
+from distal.frontend.signatures.annotations import struct_type, to_type
 from distal.frontend.values import (
     FALSE,
     LARGEST_ARRAY,

@@ -12,13 +12,13 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
-from distal.frontend.body import Body
-from distal.frontend.constructors import construct
-from distal.frontend.fitting import settle, vector_type
+from distal.frontend.lowering.body import Body
+from distal.frontend.lowering.builtin_calls import call_row
 from distal.frontend.objects import RefusedError, fit_constant, value_of
-from distal.frontend.operators import binary, unary
 from distal.frontend.problems import SceneError
-from distal.frontend.rows import call_row
+from distal.frontend.types.coercion import settle, vector_type
+from distal.frontend.types.constructors import construct
+from distal.frontend.types.operators import binary, unary
 from distal.frontend.values import Display, Static, Value
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Expr, Uniform

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import Final
 
-from distal.frontend.body import Body
+from distal.frontend.lowering.body import Body
 from distal.frontend.problems import SceneError
 
 # Syntax node -> (what the author wrote, hint).

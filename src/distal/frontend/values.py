@@ -15,7 +15,7 @@ from distal.ir.nodes import Const, Expr
 from distal.ir.types import BOOL, FLOAT, INT, UINT, Type
 
 if TYPE_CHECKING:
-    from distal.frontend.body import Body
+    from distal.frontend.lowering.body import Body
 
 LARGEST_FLOAT = 3.4028234663852886e38
 LARGEST_ARRAY = 1 << 16  # components; more belong into a Buffer

@@ -11,10 +11,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from distal.executor_hook import executor
 from distal.ir.nodes import EntryKind
 from distal.ir.types import Type
 from distal.lang.functions import Func
+from distal.lang.runtime_hook import executor
 from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-from distal.executor_hook import combined, executor
 from distal.ir.build import swizzle
 from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
+from distal.lang.runtime_hook import combined, executor
 from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:

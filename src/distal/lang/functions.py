@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
-from distal.executor_hook import executor
 from distal.lang.presentable import Presentable
+from distal.lang.runtime_hook import executor
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:

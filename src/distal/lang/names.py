@@ -9,9 +9,9 @@ import builtins
 from dataclasses import dataclass
 from typing import Any
 
-from distal.executor_hook import calculated, executor
 from distal.ir.intrinsics import Intrinsic
 from distal.lang.expressions import composed_value, is_symbolic
+from distal.lang.runtime_hook import calculated, executor
 from distal.lang.values import MatrixValue, VectorValue
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from os import PathLike
 from typing import Any
 
-from distal.executor_hook import presenter
+from distal.lang.runtime_hook import presenter
 
 
 class Presentable:

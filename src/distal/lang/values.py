@@ -11,15 +11,7 @@ import operator
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
-from distal.ir.types import (
-    FRAME,
-    UINT,
-    Kind,
-    Matrix,
-    Type,
-    Vector,
-    vector_of,
-)
+from distal.ir.types import FRAME, UINT, Kind, Matrix, Type, Vector, vector_of
 from distal.lang.expressions import Symbolic, composed_value, is_symbolic
 
 _LETTERS = {c: i for letters in ("xyzw", "rgba") for i, c in enumerate(letters)}

@@ -17,9 +17,9 @@ import traitlets
 from distal.export.page import PLAYER
 from distal.export.payload import payload
 from distal.lang.chosen_values import checked_values
+from distal.runtime.uniform_values import checked_size, checked_time
 from distal.scene.steering import Steering
-from distal.scene.viewable import Viewable, viewable
-from distal.uniform_values import checked_size, checked_time
+from distal.scene.viewing.viewable import Viewable, viewable
 
 
 class LiveView(anywidget.AnyWidget):

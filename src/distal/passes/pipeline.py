@@ -6,22 +6,16 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from distal.ir.nodes import Module
-from distal.passes import (
-    bounds,
-    decompose,
-    entry,
-    fold,
-    frequency,
-    gradient,
-    inline,
-    one_way,
-    outline,
-    predicate,
-    share,
-    specialise,
-    tables,
-)
+from distal.passes import bounds, entry, one_way, outline, predicate
 from distal.passes.context import Context
+from distal.passes.decompose import decompose
+from distal.passes.fold import fold
+from distal.passes.gradient import gradient
+from distal.passes.inline import inline
+from distal.passes.per_frame import frequency
+from distal.passes.share import share
+from distal.passes.specialise import specialise
+from distal.passes.tables import tables
 
 Pass: TypeAlias = Callable[[Module, Context], Module]
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from distal.ir.nodes import Call, Expr, Function, FunctionRef, Module
 from distal.ir.walk import expressions_in, nodes_in
-from distal.passes.per_frame_values import reads
+from distal.passes.per_frame.values import reads
 
 
 def called_in(*roots: Expr) -> set[str]:

@@ -8,19 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import Bounds
-from distal.lang import (
-    Field3,
-    dot,
-    exp,
-    func,
-    max,
-    reflect,
-    refract,
-    struct,
-    vec3,
-    vec4,
-)
+from distal.fields.guarantees import Bounds
+from distal.lang import Field3, dot, exp, func, max, reflect, refract, struct, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.heightfield_march import ENOUGH, STRIDE, Stride
 from distal.render.lights import LightSample

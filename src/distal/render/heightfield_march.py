@@ -13,7 +13,7 @@ two values how long a step may be: fewer probes, and nearer to the surface.
 
 from __future__ import annotations
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
 from distal.render.march import Hit, March, crossing

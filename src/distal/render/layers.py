@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, dot, func, gradient, vec2, vec3, vec4
 from distal.render.bounce import differences_step, just_before, place_on
 from distal.render.camera import Ray

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Field3, func, gradient, length, struct, vec2, vec3
 from distal.render.bounce import just_before, place_on
 from distal.render.camera import Ray

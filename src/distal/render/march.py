@@ -7,7 +7,7 @@ balls do not touch, the step is taken back (Keinert et al., "Enhanced Sphere Tra
 
 from __future__ import annotations
 
-from distal.fields.claims import UNBOUNDED, Bounds
+from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct, vec2
 from distal.render.camera import Ray
 

@@ -7,8 +7,8 @@ the index of the repetition it lies in, and the numbers of a pattern. What flows
 
 from __future__ import annotations
 
-from distal.fields.noise import fbm
-from distal.fields.noise_lattice import fraction, lattice_hash
+from distal.fields.noise.lattice import fraction, lattice_hash
+from distal.fields.noise.space import fbm
 from distal.lang import (
     Texture2D,
     TextureCube,

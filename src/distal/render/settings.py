@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import clamp, func, max, vec2, vec3
 from distal.render.bounce import Look
 from distal.render.heightfield_march import Stride

@@ -8,20 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import Bounds
-from distal.lang import (
-    Field3,
-    abs,
-    clamp,
-    dot,
-    exp,
-    func,
-    max,
-    min,
-    mix,
-    reflect,
-    vec3,
-)
+from distal.fields.guarantees import Bounds
+from distal.lang import Field3, abs, clamp, dot, exp, func, max, min, mix, reflect, vec3
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March, crossing

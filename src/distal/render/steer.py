@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import Bounds
-from distal.fields.place import axis_matrix
+from distal.fields.guarantees import Bounds
+from distal.fields.place.solid import axis_matrix
 from distal.lang import (
     abs,
     asin,

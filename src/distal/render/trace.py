@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Field3, func
 from distal.render.camera import Ray
 from distal.render.heightfield_march import Stride, march_heightfield

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.claims import Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import (
     Field3,
     abs,

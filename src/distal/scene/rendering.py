@@ -10,15 +10,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from distal.executor_hook import executor
-from distal.scene import doubts
-from distal.scene.layers import checked_layers, values
-from distal.scene.refusals import refuse
+from distal.lang.runtime_hook import executor
+from distal.scene.checks import warnings as doubts
+from distal.scene.lowering.layers import checked_layers, values
 from distal.scene.scene_arguments import checked_samples, slice_settings
 from distal.scene.steering import Steering
+from distal.scene.tree.errors import refuse
 
 if TYPE_CHECKING:
-    from distal.film.picture import Picture
+    from distal.images.picture import Picture
     from distal.scene.scene import Scene
 
 

@@ -11,7 +11,7 @@ import importlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
-from distal.fields.claims import Limit
+from distal.fields.guarantees import Limit
 from distal.frontend import Assembly
 from distal.ir.nodes import EntryKind, Param, Read, Return
 from distal.ir.types import FRAME, VEC4
@@ -20,12 +20,11 @@ from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
 from distal.loading import hand_on
 from distal.render import tonemap, views
-from distal.scene.backgrounds import as_background
-from distal.scene.cells import check_cells
-from distal.scene.layers import Layer
-from distal.scene.materials import as_material
-from distal.scene.picture import NORMALS, Picturing
-from distal.scene.places import author_place
+from distal.scene.lowering.cells import check_cells
+from distal.scene.lowering.layers import Layer
+from distal.scene.lowering.picture import NORMALS, Picturing
+from distal.scene.objects.backgrounds import as_background
+from distal.scene.objects.materials import as_material
 from distal.scene.scene_arguments import (
     all_lights,
     checked_camera,
@@ -37,6 +36,7 @@ from distal.scene.scene_arguments import (
     whole,
 )
 from distal.scene.steering import Steering
+from distal.scene.tree.source_places import author_place
 
 
 class Scene(Composed, Presentable):

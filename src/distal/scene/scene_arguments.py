@@ -10,16 +10,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from distal.diagnostics import Span
-from distal.fields.claims import Limit
+from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, INT, VEC3
 from distal.lang import func, vec3
-from distal.scene.cameras import BaseCamera, Camera
-from distal.scene.conversion import Asked, choice, number
-from distal.scene.field import Field
-from distal.scene.lights import DistantLight, HemisphereLight, Light
-from distal.scene.numbers import arguments
-from distal.scene.places import author_place
-from distal.scene.refusals import refuse, refuse_kind
+from distal.scene.objects.cameras import BaseCamera, Camera
+from distal.scene.objects.field import Field
+from distal.scene.objects.lights import DistantLight, HemisphereLight, Light
+from distal.scene.tree.arguments import arguments
+from distal.scene.tree.conversion import Asked, choice, number
+from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.source_places import author_place
 
 MOST_SAMPLES: Final = 65536
 _LIMITS: Final = {

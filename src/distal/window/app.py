@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError, DeviceError, LoadError, printable, printable_lines
-from distal.film.replacement import SaveError
+from distal.images.atomic_files import SaveError
 from distal.lang.number_text import shown as number_text
 from distal.loading import EXAMPLE_PREFIX
-from distal.scene import interaction
-from distal.scene.viewable import view_label
+from distal.scene.viewing import interaction
+from distal.scene.viewing.viewable import view_label
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
 from distal.window.making import Making, Order

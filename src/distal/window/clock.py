@@ -6,7 +6,7 @@ each. Reads no clock itself.
 
 from __future__ import annotations
 
-from distal.scene import interaction
+from distal.scene.viewing import interaction
 
 
 class Clock:

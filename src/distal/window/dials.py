@@ -14,7 +14,7 @@ from distal.lang.number_text import precise, shown
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter, ParameterKind
 from distal.lang.srgb import code_of, light_of
-from distal.scene import interaction
+from distal.scene.viewing import interaction
 
 _FINER: Final = 10
 _LAST_CODE: Final = 255

@@ -2,15 +2,15 @@
 
 What flows in: distances in parts of the picture's height, places in parts of the picture. What
 flows out: five numbers of a ``Steering``, or Shadertoy's four of the mouse. Knows no camera: what
-the numbers do is scene code; how far a hand moves them stands in ``scene/interaction.py``.
+the numbers do is scene code; how far a hand moves them stands in ``scene/viewing/interaction.py``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from distal.scene import interaction
 from distal.scene.steering import Steering
+from distal.scene.viewing import interaction
 
 
 def orbited(steering: Steering, right: float, down: float, elevation: float = 0.0) -> Steering:

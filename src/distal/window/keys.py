@@ -1,7 +1,7 @@
 """Which key does what in a window.
 
 What flows in: a key or a typed character. What flows out: an action's name. The table of keys is
-``scene/bindings.py``, which pages share. Does nothing itself.
+``scene/viewing/key_bindings.py``, which pages share. Does nothing itself.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import Final
 
-from distal.scene.bindings import BINDINGS
+from distal.scene.viewing.key_bindings import BINDINGS
 
 
 class Action(Enum):

@@ -18,7 +18,7 @@ from distal.window.session import Shot
 from distal.window.worker import Worker
 
 if TYPE_CHECKING:
-    from distal.scene.viewable import Viewable
+    from distal.scene.viewing.viewable import Viewable
 
 _LEAST_GAP_S: Final = 1 / 60
 _FIGURES_S: Final = 1.0  # frames are counted over the last second

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from distal.lang.parameter_values import Value
 from distal.loading import loaded_from
-from distal.scene.viewable import viewable
+from distal.scene.viewing.viewable import viewable
 from distal.window.app import Application, Origin
 from distal.window.screen import check_display, open_canvas, open_surface
 from distal.window.session import Session

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from distal.scene.bindings import HELP
+from distal.scene.viewing.key_bindings import HELP
 from distal.window import layout
 from distal.window.lettering import fixed_font, plain_font, shortened, shortened_inside, width
 from distal.window.reading import Reading, Row

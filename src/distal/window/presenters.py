@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.base import Cancelled
-from distal.executor_hook import executor
-from distal.film.png import quantise
+from distal.images.png import quantise
+from distal.lang.runtime_hook import executor
 from distal.window.session import Shot
 
 if TYPE_CHECKING:
-    from distal.film.picture import Picture
-    from distal.scene.viewable import Viewable
+    from distal.images.picture import Picture
+    from distal.scene.viewing.viewable import Viewable
 
 # Display values as they are; a surface that encodes reads them decoded (``surface``).
 TEXTURE_FORMAT: Final = "rgba8unorm"

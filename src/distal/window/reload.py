@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from distal.diagnostics import CompileError
 from distal.loading import load, loaded_from
 from distal.scene.steering import STILL
-from distal.scene.viewable import Viewable, checked_picture, viewable
+from distal.scene.viewing.viewable import Viewable, checked_picture, viewable
 from distal.window.session import Shot, valid_values
 
 if TYPE_CHECKING:

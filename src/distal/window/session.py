@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
-from distal.scene import interaction
 from distal.scene.steering import STILL, Steering
+from distal.scene.viewing import interaction
 from distal.window.clock import Clock
 from distal.window.dials import Dial, dials
 from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
@@ -23,7 +23,7 @@ from distal.window.keys import Action
 from distal.window.layout import Table, time_bar, time_track
 
 if TYPE_CHECKING:
-    from distal.scene.viewable import Viewable
+    from distal.scene.viewing.viewable import Viewable
 
 # How long after the last touch a picture counts as moving: a wheel's notches come in bursts.
 _SETTLING_S: Final = 0.25

@@ -1,4 +1,4 @@
-from distal.lang import func, vec3
+from distal.lang import (func, vec3)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import array, func
+from distal.lang import (array, func)
 
 ZEROS = [0.0] * 100000
 

@@ -1,4 +1,4 @@
-from distal.lang import func, vec3
+from distal.lang import (func, vec3)
 
 SUN = vec3(1.0, 2.0, 3.0)
 

@@ -1,4 +1,4 @@
-from distal.lang import Buffer, func
+from distal.lang import (Buffer, func)
 
 data = Buffer([1.0, 2.0, 3.0])
 

@@ -1,4 +1,4 @@
-from distal.lang import bvec3, func, vec3
+from distal.lang import (bvec3, func, vec3)
 
 
 @func

@@ -1,6 +1,6 @@
 from collections.abc import Callable
 
-from distal.lang import func, vec3
+from distal.lang import (func, vec3)
 
 
 @func

@@ -1,6 +1,6 @@
 from collections.abc import Callable
 
-from distal.lang import func, length, vec2, vec3
+from distal.lang import (func, length, vec2, vec3)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import Frame, image, vec3
+from distal.lang import (Frame, image, vec3)
 
 
 @image

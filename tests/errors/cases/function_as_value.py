@@ -1,4 +1,4 @@
-from distal.lang import func, length, vec3
+from distal.lang import (func, length, vec3)
 
 
 @func

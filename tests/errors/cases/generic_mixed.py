@@ -1,4 +1,4 @@
-from distal.lang import Floats, func, vec2, vec3
+from distal.lang import (Floats, func, vec2, vec3)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import Vectors, func
+from distal.lang import (Vectors, func)
 
 
 @func

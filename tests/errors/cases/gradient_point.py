@@ -1,4 +1,4 @@
-from distal.lang import func, gradient, ivec2, length, vec3
+from distal.lang import (func, gradient, ivec2, length, vec3)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import Frame, image
+from distal.lang import (Frame, image)
 
 
 @image

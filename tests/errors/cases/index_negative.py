@@ -1,4 +1,4 @@
-from distal.lang import Buffer, func, mat3, vec3
+from distal.lang import (Buffer, func, mat3, vec3)
 
 LAST = -1
 SIZES = [1.0, 2.0, 3.0]

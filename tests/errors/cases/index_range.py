@@ -1,4 +1,4 @@
-from distal.lang import func, mat2, vec3
+from distal.lang import (func, mat2, vec3)
 
 SIZES = [1.0, 2.0, 3.0]
 

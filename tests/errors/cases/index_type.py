@@ -1,4 +1,4 @@
-from distal.lang import func, uint, vec3
+from distal.lang import (func, uint, vec3)
 
 
 @func

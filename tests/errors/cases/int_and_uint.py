@@ -1,4 +1,4 @@
-from distal.lang import func, uint
+from distal.lang import (func, uint)
 
 
 @func

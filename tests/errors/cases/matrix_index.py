@@ -1,4 +1,4 @@
-from distal.lang import func, mat3
+from distal.lang import (func, mat3)
 
 
 @func

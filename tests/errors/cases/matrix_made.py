@@ -1,4 +1,4 @@
-from distal.lang import func, mat3, vec2
+from distal.lang import (func, mat3, vec2)
 
 
 @func

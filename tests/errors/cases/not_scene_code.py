@@ -1,6 +1,6 @@
 import random
 
-from distal.lang import func, length, vec3
+from distal.lang import (func, length, vec3)
 
 
 @func

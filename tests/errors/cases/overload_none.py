@@ -1,4 +1,4 @@
-from distal.lang import func, length, vec2, vec3, vec4
+from distal.lang import (func, length, vec2, vec3, vec4)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import func, slider
+from distal.lang import (func, slider)
 
 a = slider("Size", 0.5)
 b = slider("size", 2.0, high=4.0)

@@ -1,4 +1,4 @@
-from distal.lang import func, select
+from distal.lang import (func, select)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import func, max, vec3
+from distal.lang import (func, max, vec3)
 
 
 @func

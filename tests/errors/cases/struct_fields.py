@@ -1,4 +1,4 @@
-from distal.lang import func, struct, vec3
+from distal.lang import (func, struct, vec3)
 
 
 @struct

@@ -1,4 +1,4 @@
-from distal.lang import func, struct
+from distal.lang import (func, struct)
 
 
 @struct

@@ -1,4 +1,4 @@
-from distal.lang import func, vec2, vec4
+from distal.lang import (func, vec2, vec4)
 
 
 @func

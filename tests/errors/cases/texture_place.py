@@ -1,4 +1,4 @@
-from distal.lang import Texture2D, func, sample, texel, vec3, vec4
+from distal.lang import (Texture2D, func, sample, texel, vec3, vec4)
 
 photo = Texture2D([[0.0, 1.0], [1.0, 0.0]])
 

@@ -1,4 +1,4 @@
-from distal.lang import func, max, min
+from distal.lang import (func, max, min)
 
 
 @func

@@ -1,4 +1,4 @@
-from distal.lang import Texture2D, func, vec3
+from distal.lang import (Texture2D, func, vec3)
 
 photo = Texture2D([[0.0]])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from distal.backends.glsl_uniforms import ROOM, beyond_room
+from distal.backends.glsl.uniforms import ROOM, beyond_room
 from distal.ir.nodes import Origin, UniformDeclaration
 from distal.ir.types import FLOAT, MAT2, MAT4, VEC2, VEC3, VEC4, Type
 

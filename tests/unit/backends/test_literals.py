@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from distal.backends.literals import float_literal, int_literal
+from distal.backends.clike.literals import float_literal, int_literal
 from distal.diagnostics import CompileError
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from distal.backends.clike import place
-from distal.backends.keywords import (
+from distal.backends.clike.functions import place
+from distal.backends.clike.keywords import (
     GLSL_FUNCTIONS,
     GLSL_KEYWORDS,
     GLSL_PREFIXES,
@@ -13,7 +13,7 @@ from distal.backends.keywords import (
     WGSL_KEYWORDS,
     WGSL_PREDECLARED,
 )
-from distal.backends.names import Namer, Reserved, safe_name
+from distal.backends.clike.names import Namer, Reserved, safe_name
 from distal.diagnostics import Span
 
 GLSL = Reserved(GLSL_KEYWORDS | GLSL_FUNCTIONS, GLSL_PREFIXES)

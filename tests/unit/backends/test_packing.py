@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from distal.backends.packing import MAX_VECTORS, Packing, pack, value_text, vector_texts
+from distal.backends.clike.packing import MAX_VECTORS, Packing, pack, value_text, vector_texts
 from distal.ir.types import (
     BOOL,
     BVEC3,

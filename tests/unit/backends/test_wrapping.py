@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from distal.backends.code import Line
-from distal.backends.wrapping import WIDTH, wrapped
+from distal.backends.clike.code import Line
+from distal.backends.clike.wrapping import WIDTH, wrapped
 
 TERM = "scene(p + vec3(0.001, 0.0, 0.0), time) - here"
 

@@ -13,13 +13,13 @@ from typer.testing import CliRunner
 
 import distal
 from distal.cli.application import application
+from distal.cli.doctor import Finding, State
 from distal.diagnostics import CompileError, LoadError, Span
-from distal.doctor import Finding, State
-from distal.film.picture import Picture
+from distal.images.picture import Picture
 from distal.lang import func
 from distal.lang.parameters import slider
+from distal.scene.objects.shapes import Sphere
 from distal.scene.scene import Scene
-from distal.scene.shapes import Sphere
 
 STATS = {"compile_s": 0.1, "render_s": 0.2, "cache_hit": True, "lanes": 32, "threads": 2}
 
@@ -239,7 +239,7 @@ def test_examples_are_listed(scene, run):
 @pytest.mark.parametrize(("state", "code"), [(State.OPTIONAL, 0), (State.BROKEN, 1)])
 def test_doctor_shows_each_finding_and_its_remedy(run, monkeypatch, state, code):
     missing = Finding("packages [gpu]", "wgpu", state, "missing", "pip install 'distal[gpu]'")
-    monkeypatch.setattr("distal.doctor.examine", lambda: [missing])
+    monkeypatch.setattr("distal.cli.doctor.examine", lambda: [missing])
     result = run("doctor")
     assert result.exit_code == code
     for word in ("packages [gpu]", "wgpu", "missing", "mend: pip install 'distal[gpu]'"):

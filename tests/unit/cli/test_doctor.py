@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
-from distal import doctor
+from distal.cli import doctor
+from distal.cli.doctor import PACKAGES, State, examine
 from distal.devices import adapters
 from distal.devices.adapters import Adapter
-from distal.doctor import PACKAGES, State, examine
 
 PROJECT = tomllib.loads(Path(__file__).parents[3].joinpath("pyproject.toml").read_text())["project"]
 

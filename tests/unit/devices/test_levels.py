@@ -5,7 +5,7 @@ import pytest
 
 from distal.devices.features import FEATURES_VARIABLE, host_levels
 from distal.devices.levels import _code, levels
-from distal.film.png import defined_levels
+from distal.images.png import defined_levels
 
 BITS = (8, 16)
 ODD = (np.nan, -np.nan, np.inf, -np.inf, -0.0, 0.0, 1.0, 1.0 + 1e-7, -1e-30, 1e-40, 3e38)

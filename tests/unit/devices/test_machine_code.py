@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from distal.backends.llvm import TARGET, emit_for
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.devices.executable import Executable
 from distal.devices.features import (
     LEVELS,

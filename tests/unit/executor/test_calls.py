@@ -11,19 +11,7 @@ import pytest
 
 import distal
 from distal.frontend.freshness import Captured
-from distal.lang import (
-    Floats,
-    Frame,
-    array,
-    func,
-    image,
-    length,
-    point,
-    sin,
-    struct,
-    vec2,
-    vec3,
-)
+from distal.lang import Floats, Frame, array, func, image, length, point, sin, struct, vec2, vec3
 
 ROWS = np.arange(8.0).reshape(2, 4)
 steps = [1.0, 2.0]

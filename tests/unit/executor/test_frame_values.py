@@ -46,7 +46,7 @@ def test_mistakes_are_named(options, error, message):
 
 
 def test_kernels_of_long_ago_are_dropped(monkeypatch):
-    from distal import executor as room  # noqa: PLC0415
+    from distal.runtime import executor as room  # noqa: PLC0415
 
     monkeypatch.setattr(room, "KERNELS_KEPT", 2)
     executor = room.PythonExecutor()

@@ -9,11 +9,11 @@ import pytest
 
 import distal
 from distal.devices.cpu import CpuKernel
-from distal.executor import PythonExecutor
 from distal.frontend import lower
 from distal.ir.printer import print_identity, print_module
 from distal.lang import slider
 from distal.lang.expressions import time
+from distal.runtime.executor import PythonExecutor
 from tests.unit.executor.composing import Ball, Display, Ramp
 
 SIZE = (40, 3)

@@ -5,8 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from distal import Box, Scene, Sphere
-from distal.executor import PythonExecutor
-from distal.lowered import Lowered
+from distal.runtime.executor import PythonExecutor
+from distal.runtime.lowered import Lowered
 
 
 def test_scenes_are_lowered_by_many_threads_at_once():
@@ -30,7 +30,7 @@ def test_a_function_is_lowered_once_for_all_threads(monkeypatch):
         made.append(function)
         return _of(function, types)
 
-    monkeypatch.setattr("distal.executor.Lowered.of", staticmethod(counted))
+    monkeypatch.setattr("distal.runtime.executor.Lowered.of", staticmethod(counted))
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(lambda _: executor.render(scene, size=(4, 3)), range(8)))
     assert made.count(scene) == 1

@@ -8,15 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from distal.backends import numpy as reference
+from distal.backends.numpy import interpreter as reference
+from distal.compiler.prelude_library import PreludeLibrary
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.printer import print_module
 from distal.ir.types import BOOL, FLOAT, INT, UINT, Type
 from distal.ir.verify import verify
-from distal.passes import bounds, decompose, entry, gradient, specialise
+from distal.passes import bounds, entry
 from distal.passes.context import Context
-from distal.prelude_library import PreludeLibrary
+from distal.passes.decompose import decompose
+from distal.passes.gradient import gradient
+from distal.passes.specialise import specialise
 
 _PASSES = (entry, specialise, gradient, decompose, specialise, bounds)
 _DTYPES = {FLOAT: np.float64, INT: np.int32, UINT: np.uint32, BOOL: np.bool_}

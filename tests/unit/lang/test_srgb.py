@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from distal.film.picture import Picture
+from distal.images.picture import Picture
 from distal.lang import color, select
 from distal.lang.srgb import decode_srgb, encode_srgb, hex_of, linear_of
 from distal.render import tonemap

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from distal.backends.llvm import TARGET, Lanes, emit, emit_for
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
 from distal.frontend import lower
 from distal.ir.nodes import (

@@ -2,14 +2,17 @@
 
 import numpy as np
 
-from distal.backends import numpy as reference
+from distal.backends.numpy import interpreter as reference
+from distal.compiler.prelude_library import PreludeLibrary
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.target import Target
 from distal.ir.verify import verify
-from distal.passes import bounds, decompose, entry, gradient, specialise
+from distal.passes import bounds, entry
 from distal.passes.context import Context
-from distal.prelude_library import PreludeLibrary
+from distal.passes.decompose import decompose
+from distal.passes.gradient import gradient
+from distal.passes.specialise import specialise
 
 PASSES = (
     ("entry", entry),

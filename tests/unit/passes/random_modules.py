@@ -11,7 +11,7 @@ import random
 
 import numpy as np
 
-from distal.backends.numpy import evaluate
+from distal.backends.numpy.interpreter import evaluate
 from distal.ir import build
 from distal.ir.nodes import (
     Assign,

@@ -5,18 +5,7 @@ import pytest
 
 from distal.ir.build import add, builtin, integer, multiply, negate, read, subtract
 from distal.ir.build import index as indexed
-from distal.ir.nodes import (
-    Assign,
-    Binary,
-    BinaryOp,
-    Cast,
-    Const,
-    For,
-    Let,
-    Return,
-    Select,
-    Var,
-)
+from distal.ir.nodes import Assign, Binary, BinaryOp, Cast, Const, For, Let, Return, Select, Var
 from distal.ir.printer import print_expression, print_module
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import BOOL, FLOAT, INT, MAT3, UINT, VEC3, Array

@@ -9,7 +9,7 @@ import pytest
 
 import distal
 from distal.backends import emit, get_target, target_names
-from distal.compiler import run_passes
+from distal.compiler.driver import run_passes
 from distal.frontend import lower
 from distal.ir import build
 from distal.ir.nodes import (
@@ -28,8 +28,12 @@ from distal.ir.nodes import (
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import FLOAT, INT, VEC2, Struct
 from distal.ir.verify import verify
-from distal.passes import fold, frequency, inline, predicate, share
+from distal.passes import predicate
+from distal.passes.fold import fold
+from distal.passes.inline import inline
+from distal.passes.per_frame import frequency
 from distal.passes.reachable import callees
+from distal.passes.share import share
 from tests.unit.passes.random_modules import VALUES, Generator, check, context
 
 PLACES = {

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from distal.backends import get_target
-from distal.backends.numpy import evaluate
-from distal.compiler import compile
+from distal.backends.numpy.interpreter import evaluate
+from distal.compiler.driver import compile
+from distal.compiler.prelude_library import PreludeLibrary
 from distal.ir import build
 from distal.ir.build import builtin, number, read
 from distal.ir.nodes import EntryKind, Expr, Function, Module, Param, Return, Unary, UnaryOp
 from distal.ir.types import FLOAT
 from distal.lang import cos, exp, func, normalize, smoothstep, sqrt, vec3
-from distal.passes import decompose
 from distal.passes.context import Context
-from distal.passes.float_ranges import interval
-from distal.prelude_library import PreludeLibrary
+from distal.passes.decompose import decompose
+from distal.passes.fold.float_ranges import interval
 
 VALUES = np.float32([0.0, -0.0, 1.0, -1.0, 0.3, -2.7, 40.0, -1e4, 1e18, -1e18, 1e-30])
 ONE = ("abs", "sin", "cos", "fract", "sqrt", "exp", "tanh", "cosh")

@@ -34,7 +34,7 @@ from distal.ir.nodes import (
     While,
 )
 from distal.ir.types import BOOL, FLOAT, INT, IVEC2, UINT, VEC2, VEC3, Array, Kind, Struct
-from distal.passes.fold import fold_expression, fold_function, run
+from distal.passes.fold.fold import fold_expression, fold_function, run
 from tests.unit.passes.random_modules import Generator, check, context
 
 x = build.read("x", FLOAT)

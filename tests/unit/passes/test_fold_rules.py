@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from distal.backends.numpy import evaluate
+from distal.backends.numpy.interpreter import evaluate
 from distal.ir import build
 from distal.ir.nodes import (
     Binary,
@@ -51,7 +51,7 @@ from distal.ir.types import (
     kind_of,
     vector_of,
 )
-from distal.passes.fold import fold_expression, fold_function
+from distal.passes.fold.fold import fold_expression, fold_function
 
 ARITHMETIC = (BinaryOp.ADD, BinaryOp.SUB, BinaryOp.MUL, BinaryOp.FLOOR_DIV, BinaryOp.MOD)
 BITS = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR)

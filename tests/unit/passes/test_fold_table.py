@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from distal.backends import get_target
-from distal.backends.numpy import evaluate
+from distal.backends.numpy.interpreter import evaluate
+from distal.compiler.prelude_library import PreludeLibrary
 from distal.ir.build import builtin, compose, number, read
 from distal.ir.intrinsics import INTRINSICS, Intrinsic
 from distal.ir.nodes import (
@@ -28,10 +29,11 @@ from distal.ir.nodes import (
     Splat,
 )
 from distal.ir.types import Kind, Matrix, Scalar, Type, component_count, kind_of
-from distal.passes import bounds, decompose, fold_constants
+from distal.passes import bounds
 from distal.passes.context import Context
-from distal.passes.fold import fold_expression
-from distal.prelude_library import PreludeLibrary
+from distal.passes.decompose import decompose
+from distal.passes.fold import constants as fold_constants
+from distal.passes.fold.fold import fold_expression
 
 # What no rule folds: their results come from devices.
 LEFT = {"reflect", "refract", "faceforward", "transpose", "determinant", "inverse", "outer", "pcg"}

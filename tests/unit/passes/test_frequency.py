@@ -30,7 +30,7 @@ from distal.ir.nodes import (
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import BOOL, FLOAT, INT, VEC3, Struct, Type, component_count
 from distal.ir.verify import verify
-from distal.passes.frequency import VERTEX_ROOM, run
+from distal.passes.per_frame.frequency import VERTEX_ROOM, run
 from tests.unit.passes.random_modules import Generator, check, context, value
 
 HOST, VERTEX, PIXEL, NONE = (

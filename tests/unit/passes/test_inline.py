@@ -25,7 +25,7 @@ from distal.ir.nodes import (
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import BOOL, FLOAT, Type
 from distal.ir.walk import expressions_in
-from distal.passes.inline import run
+from distal.passes.inline.inline import run
 from tests.unit.passes.random_modules import Generator, check, context
 
 VECTORS = Target("llvm", "llvm", FramePlace.HOST, inline=True)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from distal.backends import get_target
-from distal.backends import numpy as reference
-from distal.compiler import run_passes
+from distal.backends.numpy import interpreter as reference
+from distal.compiler.driver import run_passes
 from distal.frontend import lower
 from distal.ir.nodes import Function, If, Return
 from distal.ir.verify import verify

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from distal.backends import emit, get_target
-from distal.backends.numpy import evaluate
-from distal.compiler import run_passes
+from distal.backends.numpy.interpreter import evaluate
+from distal.compiler.driver import run_passes
 from distal.frontend import lower
 from distal.ir.target import FramePlace, Target
 from distal.passes import outline

@@ -24,8 +24,8 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import BOOL, FLOAT, INT, VEC3, Kind
 from distal.ir.walk import children, nodes_in
-from distal.passes.share import run, share_function
-from distal.passes.split_deep import DEEPEST
+from distal.passes.share.share import run, share_function
+from distal.passes.share.split_deep import DEEPEST
 from tests.unit.passes.random_modules import Generator, check, context
 
 x, y = build.read("x", FLOAT), build.read("y", FLOAT)

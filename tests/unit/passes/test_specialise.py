@@ -19,7 +19,7 @@ from distal.ir.nodes import (
 from distal.ir.printer import print_module
 from distal.ir.types import FLOAT, TEXTURE_2D, VEC2, VEC3, VEC4, FunctionType
 from distal.ir.verify import verify
-from distal.passes import specialise
+from distal.passes.specialise import specialise
 from tests.unit.passes.sample_target import CONTEXT, function, program
 
 FIELD = FunctionType((VEC3,), FLOAT)

@@ -1,4 +1,4 @@
-// Made by tools/gen_player.py from src/distal/scene/bindings.py: change that, and run it.
+// Made by tools/gen_player.py from src/distal/scene/viewing/key_bindings.py: change that, and run it.
 
 export type Action = "left" | "right" | "up" | "down" | "nearer" | "farther" | "resetCamera" | "pause" | "back" | "forth" | "frameBack" | "frameForth" | "begin" | "slower" | "faster" | "nextView" | "lastView" | "parameters" | "screenshot" | "fullScreen" | "help";
 

@@ -1,4 +1,4 @@
-// Made by tools/gen_player.py from src/distal/scene/interaction.py: change that, and run it.
+// Made by tools/gen_player.py from src/distal/scene/viewing/interaction.py: change that, and run it.
 
 import { fixed, precise } from "../numbers";
 

@@ -3,20 +3,7 @@
 from __future__ import annotations
 
 from distal.ir.limits import SMALLEST_DETERMINANT
-from distal.lang import (
-    abs,
-    cross,
-    dot,
-    func,
-    mat2,
-    mat3,
-    mat4,
-    select,
-    transpose,
-    vec2,
-    vec3,
-    vec4,
-)
+from distal.lang import abs, cross, dot, func, mat2, mat3, mat4, select, transpose, vec2, vec3, vec4
 
 
 @func

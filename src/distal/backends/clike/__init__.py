@@ -1,0 +1,1 @@
+"""What GLSL and WGSL share: functions, statements, expressions and names of C-like text."""

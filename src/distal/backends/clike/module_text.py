@@ -1,0 +1,63 @@
+"""A module as text backends start on it, and the finished lines as an artifact ends with them."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import replace
+
+from distal.backends.clike.code import Line
+from distal.backends.clike.wrapping import wrapped
+from distal.ir.nodes import EntryKind, Expr, Function, Module, PerFrame, UniformDeclaration
+from distal.ir.walk import expressions_in, map_expressions, nodes_in, substitute
+
+
+def without_frame(module: Module) -> Module:
+    """A ``@func``'s module with its per-frame values back in place: a library has no frame."""
+    if module.kind is EntryKind.IMAGE or not module.frame:
+        return module
+    values: dict[Expr, Expr] = {}
+    for name, value in module.frame:
+        values[PerFrame(name, value.type)] = substitute(value, values, {})
+    memo: dict[Expr, Expr] = {}
+    functions = tuple(
+        replace(f, body=map_expressions(f.body, lambda e: substitute(e, values, memo)))
+        for f in module.functions
+    )
+    return replace(module, functions=functions, frame=())
+
+
+def per_frame_reads(functions: Iterable[Function], roots: Iterable[Expr] = ()) -> set[str]:
+    """The per-frame values that functions and expressions read themselves."""
+    found = {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
+    for function in functions:
+        found |= {e.name for e in expressions_in(function.body) if isinstance(e, PerFrame)}
+    return found
+
+
+def comment_text(text: str) -> str:
+    """Text for the end of a line: old compilers refuse other letters even there."""
+    plain = unicodedata.normalize("NFKD", text).replace("\\", "/")
+    return "".join(c for c in plain if " " <= c <= "~")
+
+
+def uniform_comment(uniform: UniformDeclaration) -> str:
+    """What a person is told of a parameter: its label and range."""
+    about = dict(uniform.interface)
+    label = comment_text(str(about.get("label") or ""))
+    if not label:
+        return ""
+    low, high = about.get("low"), about.get("high")
+    span = f", {low} to {high}" if low is not None and high is not None else ""
+    return f"  // {label}{span}"
+
+
+def joined(lines: Iterable[Line]) -> tuple[str, tuple[tuple[str, int] | None, ...]]:
+    """The text, and for each of its lines the author's file and line."""
+    kept = list(wrapped(lines))
+    while kept and not kept[0].text:
+        kept.pop(0)
+    while kept and not kept[-1].text:
+        kept.pop()
+    places = tuple((s.file, s.line) if (s := line.span) is not None else None for line in kept)
+    return "".join(f"{line.text}\n" for line in kept), places

@@ -1,0 +1,63 @@
+"""Long lines of C-like text, broken where a person would break them.
+
+In: one line. Out: the same text on as many lines as it takes, broken after a comma or before an
+operator, outside as many brackets as possible. No token changes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from distal.backends.clike.code import Line
+
+WIDTH = 100
+_INDENT = " " * 8
+# After ", " and before " + " and the like; never inside the header of a for loop.
+_BREAK = re.compile(r"(?<=, )|(?<= )(?=(?:[-+*/?:|&]|&&|\|\||==|!=|<=?|>=?) )")
+_LOOSENESS = {"?": 3, ":": 3, "|": 2, "&": 2, "+": 1, "-": 1}
+
+
+def wrapped(lines: Iterable[Line]) -> Iterator[Line]:
+    """Lines of at most ``WIDTH`` characters, where they can be broken."""
+    for line in lines:
+        if len(line.text) <= WIDTH or "//" in line.text or line.text.lstrip().startswith("for "):
+            yield line
+        else:
+            for text in _pieces(line.text):
+                yield Line(text, line.span)
+
+
+def _pieces(text: str) -> Iterator[str]:
+    indent = text[: len(text) - len(text.lstrip())]
+    while len(text) > WIDTH:
+        at = _best_break(text, len(indent) + len(_INDENT))
+        if at is None:
+            break
+        yield text[:at].rstrip()
+        text = indent + _INDENT + text[at:]
+    yield text
+
+
+def _best_break(text: str, first: int) -> int | None:
+    """In the fewest brackets, then at the operator that binds least, then the last in the width."""
+    best: tuple[int, int, int] | None = None
+    depths = _depths(text)
+    for match in _BREAK.finditer(text, first + 1, WIDTH):
+        at = match.start()
+        looseness = 4 if text[at - 2] == "," else _LOOSENESS.get(text[at], 0)
+        here = (-depths[at], looseness, at)
+        if best is None or here > best:
+            best = here
+    return None if best is None else best[2]
+
+
+def _depths(text: str) -> list[int]:
+    depths, depth = [], 0
+    for char in text:
+        if char in ")]":
+            depth -= 1
+        depths.append(depth)
+        if char in "([":
+            depth += 1
+    return [*depths, depth]

@@ -1,0 +1,219 @@
+"""ISF, the Interactive Shader Format of video tools: a shader under a comment that describes it.
+
+What flows in: a module shaped for the target. What flows out: the comment's JSON with an input for
+each parameter, what stands for these in the text, and the functions that read imported pictures.
+The host declares everything that the JSON names (https://docs.isf.video, "ISF JSON Reference" and
+"Automatically Generated Variables"). It has no input of three coordinates and none without a range:
+such a point becomes three numbers, and gets a range around its default.
+"""
+
+# ruff: noqa: D102  (documented where they are declared)
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any, Final
+
+from distal.backends.clike.code import Code
+from distal.backends.clike.keywords import isf_picture_names
+from distal.backends.clike.module_names import ModuleNames
+from distal.backends.clike.names import Namer, Reserved
+from distal.backends.glsl.writer import Glsl100Writer
+from distal.diagnostics import CompileError
+from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, UniformDeclaration
+from distal.ir.types import Texture, TextureShape
+from distal.version import __version__
+
+ISF_MOUSE: Final = "mouse"
+MOST_LISTED: Final = 64  # a menu of more whole numbers than these is no menu
+_AXES: Final = "xyz"
+
+
+@dataclass(frozen=True, slots=True)
+class IsfHeader:
+    """What stands before the shader.
+
+    Attributes:
+        lines: The comment with the JSON.
+        texts: Parameter -> what the shader reads it as.
+        resources: Texture -> its name in the JSON.
+        names: What the host will have declared.
+    """
+
+    lines: tuple[str, ...]
+    texts: dict[str, str]
+    resources: dict[str, str]
+    names: frozenset[str]
+
+    @classmethod
+    def of(cls, module: Module, reserved: Reserved) -> IsfHeader:
+        """The header of a module.
+
+        Raises:
+            CompileError: It reads what no host can give it.
+        """
+        namer = Namer(reserved)
+        inputs: list[dict[str, Any]] = []
+        texts: dict[str, str] = {}
+        for uniform in module.uniforms:
+            if uniform.origin is Origin.PARAMETER:
+                parts = tuple(map(namer.name, _names(uniform)))
+                texts[uniform.name] = _text(parts, uniform)
+                inputs += _inputs(parts, uniform)
+            elif uniform.origin is Origin.FRAME and uniform.name == "mouse":
+                inputs.append(_point(ISF_MOUSE, "Mouse", (0.0, 0.0), (0.0, 1.0)))
+        span = module.function(module.entry).span
+        file = PurePath(span.file).name if span is not None else ""
+        described: dict[str, Any] = {
+            "DESCRIPTION": f"The picture of {file or 'a scene'}, written by distal {__version__}",
+            "CREDIT": file,
+            "ISFVSN": "2",
+            "CATEGORIES": ["Generator"],
+            "INPUTS": inputs,
+        }
+        resources = {r.name: namer.name(r.name) for r in module.resources}
+        if resources:
+            paths = {resources[r.name]: {"PATH": _file_name(r)} for r in module.resources}
+            described["IMPORTED"] = paths
+        names = frozenset(i["NAME"] for i in inputs).union(
+            resources.values(), *map(isf_picture_names, resources.values())
+        )
+        return cls(_comment(described), texts, resources, names)
+
+
+def _comment(described: dict[str, Any]) -> tuple[str, ...]:
+    """The JSON as a comment, an input to a line."""
+    lines = ["/*{"]
+    for key, value in described.items():
+        comma = "," if key != next(reversed(described)) else ""
+        if key == "INPUTS" and value:
+            rows = [f"        {json.dumps(row)}," for row in value]
+            lines += [f'    "{key}": [', *rows[:-1], rows[-1].rstrip(","), f"    ]{comma}"]
+        else:
+            lines.append(f'    "{key}": {json.dumps(value)}{comma}')
+    # "*/" in a label would end the comment; JSON allows the stroke to be escaped.
+    return (*(line.replace("*/", "*\\/") for line in lines), "}*/", "")
+
+
+def _names(uniform: UniformDeclaration) -> tuple[str, ...]:
+    """The wished names of a parameter's inputs: only a point of three has more than one."""
+    is_place = dict(uniform.interface)["kind"] == "point" and len(uniform.default) == 3
+    return tuple(f"{uniform.name}_{axis}" for axis in _AXES) if is_place else (uniform.name,)
+
+
+def _text(names: tuple[str, ...], uniform: UniformDeclaration) -> str:
+    if dict(uniform.interface)["kind"] == "color":
+        return f"{names[0]}.rgb"
+    return names[0] if len(names) == 1 else f"vec3({', '.join(names)})"
+
+
+def _inputs(names: tuple[str, ...], uniform: UniformDeclaration) -> Iterable[dict[str, Any]]:
+    """The inputs of a parameter."""
+    about = dict(uniform.interface)
+    name, label, default = names[0], str(about["label"]), uniform.default
+    named = {"NAME": name, "LABEL": label}
+    match about["kind"]:
+        case "slider":
+            yield named | {"TYPE": "float", "DEFAULT": default} | _range(about)
+        case "integer":
+            numbers = list(range(about["low"], about["high"] + 1, about["step"]))
+            listed = {"VALUES": numbers, "LABELS": [str(n) for n in numbers]}
+            yield (
+                named
+                | {"TYPE": "long", "DEFAULT": default}
+                | _range(about)
+                | (listed if len(numbers) <= MOST_LISTED else {})
+            )
+        case "toggle":
+            yield named | {"TYPE": "bool", "DEFAULT": default}
+        case "choice":
+            options = [str(option) for option in about["options"]]
+            listed = {"VALUES": list(range(len(options))), "LABELS": options}
+            yield named | {"TYPE": "long", "DEFAULT": default} | listed
+        case "color":
+            # The host hands its picker's numbers on as they are; the scene reads linear light.
+            labelled = {"NAME": name, "LABEL": f"{label} (linear)"}
+            yield labelled | {"TYPE": "color", "DEFAULT": [*default, 1.0]}
+        case "point" if len(default) == 2:
+            yield _point(name, label, default, _reach(default))
+        case "point":
+            low, high = _reach(default)
+            for part, axis, value in zip(names, _AXES, default, strict=True):
+                yield {
+                    "NAME": part,
+                    "LABEL": f"{label} {axis}",
+                    "TYPE": "float",
+                    "DEFAULT": value,
+                    "MIN": low,
+                    "MAX": high,
+                }
+        case kind:
+            raise AssertionError(f"no parameter is of kind {kind}")
+
+
+def _range(about: dict[str, Any]) -> dict[str, Any]:
+    return {"MIN": about["low"], "MAX": about["high"]}
+
+
+def _reach(default: tuple[float, ...]) -> tuple[float, float]:
+    """A range around the origin that holds a point well inside."""
+    reach = max(1.0, 2.0 * max(map(abs, default)))
+    return -reach, reach
+
+
+def _point(
+    name: str, label: str, default: tuple[float, ...], span: tuple[float, float]
+) -> dict[str, Any]:
+    low, high = span
+    return {
+        "NAME": name,
+        "LABEL": label,
+        "TYPE": "point2D",
+        "DEFAULT": list(default),
+        "MIN": [low, low],
+        "MAX": [high, high],
+    }
+
+
+def _file_name(resource: ResourceDeclaration) -> str:
+    """The name of the file that a texture is in: the author puts it beside the shader."""
+    if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
+        raise CompileError.at(
+            f"ISF imports pictures only, and the scene reads '{resource.name}' ({resource.type})",
+            None,
+        )
+    data = getattr(resource.source, "data", None)
+    if not isinstance(data, str | PurePath):
+        raise CompileError.at(
+            f"ISF imports pictures from files, and the texture '{resource.name}' is made of data",
+            None,
+            "save it as a picture, and declare Texture2D of the file",
+        )
+    return PurePath(data).name
+
+
+class IsfWriter(Glsl100Writer):
+    """GLSL ES 1.00 in which pictures are read by functions of the host."""
+
+    def sample(self, resource: Resource, coord: Code) -> Code:
+        return self.call(self.names.accessors[resource.name], [coord])
+
+
+def sampler_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
+    """The function that samples a picture.
+
+    Hosts replace IMG_NORM_PIXEL by a search for the next closing bracket, so that its second
+    argument is a plain name; and they do not say what lies outside a picture.
+    """
+    name, function = names.resources[resource.name], names.accessors[resource.name]
+    coord, inside = map(names.local_namer().name, ("coord", "inside"))
+    repeats = resource.wrap == "repeat"
+    value = f"fract({coord})" if repeats else f"clamp({coord}, 0.0, 1.0)"
+    return [
+        f"vec4 {function}(vec2 {coord}) {{",
+        f"    vec2 {inside} = {value};",
+        f"    return IMG_NORM_PIXEL({name}, {inside});",
+        "}",
+    ]

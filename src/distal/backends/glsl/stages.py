@@ -1,0 +1,387 @@
+"""Complete GLSL programs: what stands around the functions in each place a text is used.
+
+In: a module shaped for a GLSL target. Out: the fragment text and, for WebGL 2 and desktop GL, the
+vertex text that computes the per-frame part. How a function looks is said in
+``distal.backends.glsl.writer``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import assert_never
+
+from distal.backends.clike.code import Code, Line
+from distal.backends.clike.expense import Expense
+from distal.backends.clike.functions import place
+from distal.backends.clike.module_names import ModuleNames, reachable, types_in
+from distal.backends.clike.module_text import per_frame_reads, uniform_comment
+from distal.backends.clike.packing import Packing, value_text, vector_texts
+from distal.backends.glsl.isf import ISF_MOUSE, IsfWriter, sampler_lines
+from distal.backends.glsl.resources import accessor_lines, resource_lines
+from distal.backends.glsl.uniforms import constant_line, constant_lines, default_text
+from distal.backends.glsl.writer import Glsl100Writer, GlslWriter
+from distal.ir.nodes import (
+    EntryKind,
+    Expr,
+    Function,
+    Module,
+    Origin,
+    Resource,
+    Texel,
+    Uniform,
+    UniformDeclaration,
+)
+from distal.ir.types import VEC2, Array, Buffer, Struct
+from distal.ir.walk import expressions_in, nodes_in
+
+
+class Declares(Enum):
+    """Where a text gets a uniform from."""
+
+    TEXT = "text"  # it declares it, and whoever draws sets it
+    PLACE = "place"  # the place has declared it already
+    NOBODY = "nobody"  # nothing there would set it: it is a constant
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """One version of GLSL in one place.
+
+    Attributes:
+        head: The lines before everything else.
+        output: What the entry assigns the color to.
+        coord: The text of the pixel's coordinate.
+        main: The line that opens the entry.
+        frame: Who declares what every picture has: time, resolution …
+        parameters: Who declares the author's parameters.
+        numbers: Who declares a scene's numbers.
+        initialised: Whether a uniform's declaration may give its default.
+        texts: Frame values that the place provides under its own names.
+    """
+
+    head: tuple[str, ...]
+    output: str
+    coord: str
+    main: str
+    frame: Declares
+    parameters: Declares
+    numbers: Declares
+    initialised: bool
+    texts: dict[str, str]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """What stands in its texts by name: no name of the author's is one of them."""
+        texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
+        return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
+
+
+_PRECISION = ("precision highp float;", "precision highp int;")
+
+_TEXT, _PLACE, _NOBODY = Declares.TEXT, Declares.PLACE, Declares.NOBODY
+_HEAD_100 = ("#ifdef GL_ES", *_PRECISION, "#endif")
+_CANVAS = {
+    "resolution": "u_resolution",
+    "time": "u_time",
+    # The place tells where the mouse is, and nothing of its buttons.
+    "mouse": "vec4(u_mouse, 0.0, 0.0)",
+    "index": "u_frame",
+}
+_TOY = {
+    "resolution": "iResolution.xy",
+    "time": "iTime",
+    "mouse": "iMouse",
+    "index": "iFrame",
+}
+_ISF = {
+    "resolution": "RENDERSIZE",
+    "time": "TIME",
+    # The place has no mouse: an input of ours says where it would be, in shares of the picture.
+    "mouse": f"vec4({ISF_MOUSE} * RENDERSIZE, 0.0, 0.0)",
+    "index": "FRAMEINDEX",
+}
+_FRAGMENT = ("fragment_color", "gl_FragCoord.xy", "void main()")
+_OLD = ("gl_FragColor", "gl_FragCoord.xy", "void main()")
+_OWN = (_TEXT, _TEXT, _TEXT)
+
+DIALECTS = {
+    "glsl-es300": Dialect(("#version 300 es", *_PRECISION), *_FRAGMENT, *_OWN, False, {}),
+    "glsl-330": Dialect(("#version 330",), *_FRAGMENT, *_OWN, True, {}),
+    "glsl-es100": Dialect(_HEAD_100, *_OLD, *_OWN, False, _CANVAS),
+    "glslcanvas": Dialect(_HEAD_100, *_OLD, _TEXT, _NOBODY, _NOBODY, False, _CANVAS),
+    "isf": Dialect(
+        _HEAD_100,
+        "gl_FragColor",
+        # Not gl_FragCoord: a host may draw into a part of its target.
+        "isf_FragNormCoord * RENDERSIZE",
+        "void main()",
+        *(_PLACE, _PLACE, _NOBODY),
+        False,
+        _ISF,
+    ),
+    "shadertoy": Dialect(
+        (),
+        "fragColor",
+        "fragCoord",
+        "void mainImage(out vec4 fragColor, in vec2 fragCoord)",
+        *(_PLACE, _NOBODY, _NOBODY),
+        False,
+        _TOY,
+    ),
+}
+OLD_TARGETS = frozenset({"glsl-es100", "glslcanvas", "isf"})  # GLSL ES 1.00
+
+_ES100_TYPES = {"resolution": "vec2 u_resolution", "time": "float u_time", "mouse": "vec2 u_mouse"}
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What the stages are written from."""
+
+    module: Module
+    names: ModuleNames
+    dialect: Dialect
+    target: str
+    fixed: dict[str, str]  # uniforms that the place provides
+    constants: frozenset[str]  # numbers that there is no room for among the uniforms
+    packing: Packing | None
+    vectors: list[str]  # the names of the packed vectors
+    header: tuple[str, ...] = ()  # comments that the place reads
+
+    def writer(self) -> GlslWriter:
+        """A writer for one stage."""
+        kind = Glsl100Writer if self.target in OLD_TARGETS else GlslWriter
+        kind = IsfWriter if self.target == "isf" else kind
+        return kind(self.names, Expense(self.module), self.fixed)
+
+
+def fragment_lines(program: Program) -> list[Line]:
+    """The fragment stage; of a ``@func`` its functions alone."""
+    module = program.module
+    entry = module.function(module.entry)
+    is_image = module.kind is EntryKind.IMAGE
+    writer = program.writer()
+    writer.leaves_choice = True
+    roots: list[Expr] = list(expressions_in(entry.body))
+    here = program.packing is None  # the per-frame part is computed in this stage
+    frame = [value for _, value in module.frame] if here else []
+    functions = reachable(module, [*roots, *frame])
+    _write_functions(writer, functions if is_image else (*functions, entry))
+    in_functions = per_frame_reads(functions)
+    if is_image:
+        _write_main(program, writer, entry, in_functions)
+    body = writer.lines
+    used = (*functions, entry)
+    lines = [Line(text) for text in program.dialect.head]
+    lines += _uniform_lines(program, used, frame)
+    lines += _frame_lines(program, in_functions)
+    if is_image and program.dialect.output == "fragment_color":
+        lines += [Line(""), Line("out vec4 fragment_color;")]
+    lines += _type_lines(program, writer, used)
+    lines += _table_lines(writer)
+    return [*lines, Line(""), *body]
+
+
+def vertex_lines(program: Program) -> list[Line]:
+    """The vertex stage: one triangle over the whole picture, and the per-frame part.
+
+    Three vertices cost nothing, and nobody measures the driver's functions in this stage: the
+    careful ones always stand here.
+    """
+    module = program.module
+    writer = program.writer()
+    frame = [value for _, value in module.frame]
+    functions = reachable(module, frame)
+    _write_functions(writer, functions)
+    in_functions = per_frame_reads(functions)
+    writer.span = None
+    writer.line("void main() {")
+    writer.depth = 1
+    writer.local_namer = program.names.local_namer()
+    corner = writer.temporary(
+        "corner",
+        Code("vec2(float(gl_VertexID % 2), float(gl_VertexID / 2))"),
+        VEC2,
+    )
+    writer.line(f"gl_Position = vec4(4.0 * {corner.text} - 1.0, 0.0, 1.0);")
+    _write_frame(program, writer, in_functions)
+    if program.packing is not None:
+        texts = vector_texts(program.packing, program.names.frame)
+        for vector, text in zip(program.vectors, texts, strict=True):
+            writer.line(f"{vector} = {text};")
+    writer.depth = 0
+    writer.line("}")
+    lines = [Line(text) for text in program.dialect.head]
+    lines += _uniform_lines(program, functions, frame)
+    if program.packing is not None and program.vectors:
+        lines += [Line(""), Line("// The per-frame part, handed to the fragment stage.")]
+        lines += [Line(text) for text in _vector_declarations(program, "out")]
+    lines += _globals(program, [n for n, _ in module.frame if n in in_functions])
+    lines += _type_lines(program, writer, functions)
+    lines += _table_lines(writer)
+    return [*lines, Line(""), *writer.lines]
+
+
+def _write_functions(writer: GlslWriter, functions: Sequence[Function]) -> None:
+    for function in functions:
+        writer.function(function)
+        writer.span = None
+        writer.line("")
+
+
+def _write_main(
+    program: Program, writer: GlslWriter, entry: Function, in_functions: set[str]
+) -> None:
+    writer.span = entry.span
+    if entry.span is not None:
+        writer.line(f"// {place(entry.span)}")
+    dialect = program.dialect
+    writer.line(f"{dialect.main} {{")
+    writer.name_locals(entry, program.names.local_namer())
+    writer.depth = 1
+    coord = entry.params[0]
+    if dialect.coord.isidentifier():
+        writer.locals[coord.name] = dialect.coord
+    elif any(getattr(e, "name", None) == coord.name for e in expressions_in(entry.body)):
+        writer.line(f"vec2 {writer.locals[coord.name]} = {dialect.coord};")
+    if program.packing is None:
+        if program.module.frame:
+            writer.line(
+                "// Per frame: the same in every pixel, but there is no earlier stage here."
+            )
+        _write_frame(program, writer, in_functions)
+    else:
+        _unpack(program, writer, entry, in_functions)
+    writer.output = dialect.output
+    writer.block(entry.body, tail=True)
+    writer.output = None
+    writer.depth = 0
+    writer.span = None
+    writer.line("}")
+
+
+def _write_frame(program: Program, writer: GlslWriter, in_functions: set[str]) -> None:
+    """Compute the per-frame values; those that functions read are globals, the rest locals."""
+    for name, value in program.module.frame:
+        spelled = program.names.frame[name]
+        code = writer.expression(value)
+        if name in in_functions:
+            writer.line(f"{spelled} = {code.text};")
+        else:
+            writer.line(writer.declaration(spelled, code, value.type, mutable=False))
+
+
+def _unpack(program: Program, writer: GlslWriter, entry: Function, in_functions: set[str]) -> None:
+    assert program.packing is not None
+    wanted = per_frame_reads((entry,)) | in_functions
+    for name, type in program.packing.values:
+        if name not in wanted:
+            continue
+        spelled = program.names.frame[name]
+        code = Code(value_text(program.packing, name, type, program.vectors))
+        if name in in_functions:
+            writer.line(f"{spelled} = {code.text};")
+        else:
+            writer.line(writer.declaration(spelled, code, type, mutable=False))
+
+
+def _uniform_lines(
+    program: Program, functions: Iterable[Function], roots: Iterable[Expr]
+) -> list[Line]:
+    used = [*nodes_in(*roots)]
+    for function in functions:
+        used += expressions_in(function.body)
+    names = {e.name for e in used if isinstance(e, Uniform)}
+    resources = {e.name for e in used if isinstance(e, Resource)}
+    fetched = {e.texture for e in used if isinstance(e, Texel)}
+    fetched |= {e for e in used if isinstance(e, Resource) and isinstance(e.type, Buffer)}
+    fetched_names = {e.name for e in fetched if isinstance(e, Resource)}
+    lines: list[str] = []
+    accessors: list[str] = []
+    uniforms = [u for u in program.module.uniforms if u.name in names]
+    for uniform in uniforms:
+        if uniform.name not in program.constants:
+            lines += _uniform_line(program, uniform)
+    constant = (u for u in uniforms if u.name in program.constants)
+    lines += constant_lines((u, program.names.uniforms[u.name]) for u in constant)
+    for resource in program.module.resources:
+        if resource.name in resources:
+            lines += resource_lines(resource, program.names, program.target)
+        if program.target == "isf" and resource.name in resources:
+            accessors += ["", *sampler_lines(resource, program.names)]
+        elif resource.name in fetched_names:
+            accessors += ["", *accessor_lines(resource, program.names)]
+    return [Line(""), *map(Line, lines), *map(Line, accessors)] if lines else []
+
+
+def _uniform_line(program: Program, uniform: UniformDeclaration) -> list[str]:
+    spelled = program.names.uniforms[uniform.name]
+    dialect = program.dialect
+    comment = uniform_comment(uniform)
+    declares = _declares(dialect, uniform)
+    if declares is Declares.PLACE:
+        return []
+    if declares is Declares.NOBODY:
+        return [constant_line(uniform, spelled)]
+    if uniform.origin is Origin.FRAME and uniform.name in dialect.texts:
+        return [f"uniform {_ES100_TYPES.get(uniform.name, 'int u_frame')};"]
+    if dialect.initialised and uniform.origin is not Origin.FRAME:
+        return [f"uniform {uniform.type} {spelled} = {default_text(uniform)};{comment}"]
+    return [f"uniform {uniform.type} {spelled};{comment}"]
+
+
+def _declares(dialect: Dialect, uniform: UniformDeclaration) -> Declares:
+    match uniform.origin:
+        case Origin.FRAME:
+            known = dialect.frame is Declares.TEXT or uniform.name in dialect.texts
+            return dialect.frame if known else Declares.NOBODY
+        case Origin.PARAMETER:
+            return dialect.parameters
+        case Origin.NUMBER:
+            return dialect.numbers
+        case _:
+            assert_never(uniform.origin)
+
+
+def _frame_lines(program: Program, in_functions: set[str]) -> list[Line]:
+    lines: list[Line] = []
+    if program.packing is not None and program.vectors:
+        lines += [Line(""), Line("// Computed once a frame, by the vertex stage.")]
+        lines += [Line(text) for text in _vector_declarations(program, "in")]
+    return lines + _globals(program, [n for n, _ in program.module.frame if n in in_functions])
+
+
+def _vector_declarations(program: Program, direction: str) -> list[str]:
+    assert program.packing is not None
+    return [
+        f"flat {direction} {'vec4' if i < program.packing.float_vectors else 'ivec4'} {name};"
+        for i, name in enumerate(program.vectors)
+    ]
+
+
+def _globals(program: Program, wanted: list[str]) -> list[Line]:
+    types = {name: value.type for name, value in program.module.frame}
+    lines = [Line(f"{types[name]} {program.names.frame[name]};") for name in wanted]
+    return [Line(""), Line("// Per-frame values that functions read."), *lines] if lines else []
+
+
+def _type_lines(program: Program, writer: GlslWriter, functions: Iterable[Function]) -> list[Line]:
+    types = list(types_in(program.module, functions))
+    held = {t.element for t in types if isinstance(t, Array)}
+    lines: list[Line] = []
+    for type in types:
+        if isinstance(type, Struct | Array):
+            text = writer.struct_lines(type, type in held)
+            lines += [Line(""), *map(Line, text)] if text else []
+    return lines
+
+
+def _table_lines(writer: GlslWriter) -> list[Line]:
+    lines = []
+    for table, name in writer.tables.items():
+        code = writer.array_text(table)
+        lines.append(Line(f"const {writer.type_name(table.type)} {name} = {code.text};"))
+    return [Line(""), *lines] if lines else []

@@ -1,0 +1,1 @@
+"""The reference backend: interprets the IR on NumPy arrays."""

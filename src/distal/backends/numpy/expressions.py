@@ -1,0 +1,247 @@
+"""The reference's expressions: what each node gives, in all lanes of a scope at once.
+
+What flows in: an expression and the scope of the lanes that want it. What flows out: its value, in
+the layouts of ``numpy_operations``. How a called function runs is told by the heir.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from distal.backends.numpy import operations
+from distal.backends.numpy.operations import Leaf, Value
+from distal.backends.numpy.scopes import Frame, Scope
+from distal.ir.intrinsics import INTRINSICS
+from distal.ir.nodes import (
+    Apply,
+    Binary,
+    Builtin,
+    Call,
+    Cast,
+    Compare,
+    Compose,
+    Const,
+    Construct,
+    Expr,
+    Field,
+    FunctionRef,
+    Gradient,
+    Index,
+    Logical,
+    LogicalOp,
+    MatMul,
+    Module,
+    PerFrame,
+    Read,
+    Resource,
+    Sample,
+    Select,
+    Size,
+    Splat,
+    Swizzle,
+    Texel,
+    Unary,
+    Uniform,
+)
+from distal.ir.types import Buffer, Kind, Struct, Texture, TextureShape, kind_of
+from distal.ir.walk import children
+
+Memo = dict[Expr, Value]
+
+
+class Expressions:
+    """Computes expressions of one module with one set of uniforms and resources.
+
+    Args:
+        module: What to run.
+        uniforms: A value for every uniform, by name.
+        resources: An array for every texture (texels in the order of their indices: (height,
+            width, 4), depth or face first) and buffer, by name.
+        precision: Bits of a float.
+        poll: Called in every round of a loop; raises to end the work.
+    """
+
+    def __init__(
+        self,
+        module: Module,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        precision: int = 32,
+        poll: Callable[[], None] | None = None,
+    ) -> None:
+        self._functions = {f.name: f for f in module.functions}
+        self.precision = precision
+        self._poll = poll or (lambda: None)
+        self._resources = {r.name: self._array(resources[r.name], r.type) for r in module.resources}
+        self._uniforms = {
+            u.name: operations.as_value(uniforms[u.name], u.type, precision)
+            for u in module.uniforms
+        }
+        self._calls: dict[Expr, bool] = {}
+        self._constants: Memo = {}
+        self._per_frame: dict[str, Value] = {}
+        nowhere = Scope(Frame(1), 1)
+        with np.errstate(all="ignore"):
+            for name, value in module.frame:
+                self._per_frame[name] = self._evaluate(value, nowhere, {})
+
+    def _array(self, data: Any, type: Any) -> Leaf:
+        kind = Kind.FLOAT if isinstance(type, Texture) else kind_of(type.element)
+        assert kind is not None
+        return np.asarray(data).astype(operations.dtype_of(kind, self.precision))
+
+    def _call(self, name: str, args: Sequence[Value]) -> Value:
+        """The value of a function; who runs statements knows how."""
+        raise NotImplementedError
+
+    # Expressions. The memo holds what a statement's shared parts have given.
+
+    def _leaf(self, e: Expr, scope: Scope, memo: Memo) -> Leaf:
+        value = self._evaluate(e, scope, memo)
+        assert isinstance(value, np.ndarray)
+        return value
+
+    def _evaluate(self, e: Expr, scope: Scope, memo: Memo) -> Value:
+        value = memo.get(e)
+        if value is None:
+            value = memo[e] = self._compute(e, scope, memo)
+        return value
+
+    def _compute(self, e: Expr, scope: Scope, memo: Memo) -> Value:
+        match e:
+            case Const(value, type):
+                known = self._constants.get(e)
+                if known is None:
+                    known = self._constants[e] = operations.as_value(value, type, self.precision)
+                return known
+            case Read(name):
+                return scope.read(name)
+            case Uniform(name):
+                return self._uniforms[name]
+            case PerFrame(name):
+                return self._per_frame[name]
+            case Logical(op, lhs, rhs):
+                return self._logical(op, lhs, rhs, scope, memo)
+            case Select(condition, yes, no):
+                return self._select(self._leaf(condition, scope, memo), yes, no, scope, memo)
+            case Construct(parts):
+                return tuple(self._evaluate(part, scope, memo) for part in parts)
+            case Field(base, name):
+                fields = self._evaluate(base, scope, memo)
+                assert isinstance(base.type, Struct)
+                return fields[[n for n, _ in base.type.fields].index(name)]
+            case Index(base, index):
+                return self._index(base, self._leaf(index, scope, memo), scope, memo)
+            case Call(name, args):
+                return self._call(name, [self._evaluate(a, scope, memo) for a in args])
+            case Texel(Resource(name, Texture(shape)), index):
+                return self._texel(self._resources[name], shape, self._leaf(index, scope, memo))
+            case Size(Resource(name, type)):
+                return self._size(self._resources[name], type)
+            case Resource() | FunctionRef() | Apply() | Gradient() | Sample() | Texel() | Size():
+                raise AssertionError(f"passes leave no such expression: {e}")
+            case _:
+                return self._componentwise(e, [self._leaf(c, scope, memo) for c in children(e)])
+
+    def _componentwise(self, e: Expr, operands: list[Leaf]) -> Leaf:
+        """What needs nothing but the values of its operands."""
+        match e:
+            case Unary(op):
+                return operations.unary(op, *operands)
+            case Binary(op):
+                return operations.binary(op, *operands)
+            case Compare(op):
+                return operations.compare(op, *operands)
+            case MatMul():
+                return operations.matrix_product(*operands)
+            case Splat(_, type):
+                return operations.splat(operands[0], type)
+            case Compose(_, type):
+                return operations.compose(operands, type)
+            case Swizzle(_, lanes):
+                positions = ["xyzw".index(lane) for lane in lanes]
+                return operands[0][positions if len(positions) > 1 else positions[0]]
+            case Cast(_, type):
+                kind = kind_of(type)
+                assert kind is not None
+                return operations.convert(operands[0], kind, self.precision)
+            case Builtin(name):
+                return self._builtin(name, operands)
+            case _:
+                raise AssertionError(f"not an expression of components: {e}")
+
+    def _builtin(self, name: str, operands: list[Leaf]) -> Leaf:
+        meaning = INTRINSICS[name].meaning
+        assert meaning is not None, f"decompose leaves no {name} here"
+        # Bits are those of a 32 bit float in either precision.
+        if name.startswith("float_bits"):
+            operands = [a.astype(np.float32) for a in operands]
+        result: Leaf = meaning(np, *operands)
+        if result.dtype.kind == "f":
+            return result.astype(operations.dtype_of(Kind.FLOAT, self.precision), copy=False)
+        return result
+
+    def _logical(self, op: LogicalOp, lhs: Expr, rhs: Expr, scope: Scope, memo: Memo) -> Value:
+        first = self._leaf(lhs, scope, memo)
+        settled = first if op is LogicalOp.OR else ~first
+        if settled.all():
+            return first
+        if not self._has_call(rhs):
+            second = self._leaf(rhs, scope, memo)
+            return first | second if op is LogicalOp.OR else first & second
+        return self._select(settled, lhs, rhs, scope, memo)
+
+    def _select(self, condition: Leaf, yes: Expr, no: Expr, scope: Scope, memo: Memo) -> Value:
+        if condition.ndim == 1:
+            if condition.all():
+                return self._evaluate(yes, scope, memo)
+            if not condition.any():
+                return self._evaluate(no, scope, memo)
+            if self._has_call(yes) or self._has_call(no):
+                return self._select_lanes(condition, yes, no, scope)
+        picked = (self._evaluate(e, scope, memo) for e in (yes, no))
+        return operations.choose(condition, *picked)
+
+    def _select_lanes(self, condition: Leaf, yes: Expr, no: Expr, scope: Scope) -> Value:
+        """Each side in its own lanes: a loop in it may not end in others."""
+        result: Value | None = None
+        for e, taken in ((yes, condition), (no, ~condition)):
+            lanes = np.flatnonzero(taken)
+            value = self._evaluate(e, scope.narrowed(lanes), {})
+            base = operations.blank(value) if result is None else result
+            result = operations.scatter(base, lanes, value, scope.lanes)
+        assert result is not None
+        return result
+
+    def _has_call(self, e: Expr) -> bool:
+        known = self._calls.get(e)
+        if known is None:
+            known = isinstance(e, Call) or any(self._has_call(c) for c in children(e))
+            self._calls[e] = known
+        return known
+
+    def _index(self, base: Expr, index: Leaf, scope: Scope, memo: Memo) -> Value:
+        if isinstance(base, Resource):
+            data = self._resources[base.name]
+            elements: Leaf = data[np.clip(index, 0, len(data) - 1)]
+            return np.moveaxis(elements, 0, -1)
+        return operations.pick(self._evaluate(base, scope, memo), index)
+
+    @staticmethod
+    def _texel(data: Leaf, shape: TextureShape, index: Leaf) -> Leaf:
+        extents = data.shape[:-1][::-1]
+        held = [np.clip(i, 0, extent - 1) for i, extent in zip(index, extents, strict=True)]
+        assert len(held) == (2 if shape is TextureShape.FLAT else 3)
+        return np.moveaxis(data[tuple(reversed(held))], -1, 0)
+
+    @staticmethod
+    def _size(data: Leaf, type: Any) -> Leaf:
+        if isinstance(type, Buffer):
+            return np.array([len(data)], np.int32)
+        extents = data.shape[:-1][::-1]
+        if type.shape is TextureShape.CUBE:
+            extents = extents[:2]
+        return np.array(extents, np.int32)[:, None]

@@ -1,0 +1,101 @@
+"""Lanes on their several ways: a call's frame, and the locals of a part of its lanes.
+
+What flows in: values bound and assigned by the reference's walk. What flows out: the same values
+as some lanes see them. It knows nothing of nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.backends.numpy import operations
+from distal.backends.numpy.operations import Value
+
+
+class Way(IntEnum):
+    """How a lane goes on after a statement."""
+
+    ON = 0
+    BREAK = 1
+    CONTINUE = 2
+    RETURN = 3
+
+
+@dataclass
+class Frame:
+    """One call of a function: its lanes and what it has returned so far."""
+
+    lanes: int
+    result: Value | None = None
+
+    def give(self, value: Value, lanes: NDArray[np.intp] | None) -> None:
+        """Return ``value`` in some lanes of the call (None: all)."""
+        if lanes is None or self.result is None:
+            # Lanes that have not returned yet will overwrite what stands there for them.
+            if lanes is None:
+                self.result = value
+                return
+            self.result = operations.blank(value)
+        self.result = operations.scatter(self.result, lanes, value, self.lanes)
+
+
+@dataclass
+class Scope:
+    """The locals of some lanes of a call.
+
+    A narrower scope reads its parent's locals in its own lanes, keeps what it changes, and hands
+    that back by ``close``.
+
+    Attributes:
+        frame: The call.
+        lanes: How many lanes.
+        parent: The scope this one is a part of, or None.
+        within: The positions of the lanes among the parent's.
+        absolute: Their positions among the call's lanes, or None for all of them.
+        values: Locals bound or read here.
+        changed: Names of the parent's locals that were assigned here.
+    """
+
+    frame: Frame
+    lanes: int
+    parent: Scope | None = None
+    within: NDArray[np.intp] | None = None
+    absolute: NDArray[np.intp] | None = None
+    values: dict[str, Value] = field(default_factory=dict)
+    bound: set[str] = field(default_factory=set)
+    changed: set[str] = field(default_factory=set)
+
+    def narrowed(self, within: NDArray[np.intp]) -> Scope:
+        """A scope of some of the lanes."""
+        absolute = within if self.absolute is None else self.absolute[within]
+        return Scope(self.frame, len(within), self, within, absolute)
+
+    def bind(self, name: str, value: Value) -> None:
+        """Make a local of this scope."""
+        self.values[name] = value
+        self.bound.add(name)
+
+    def read(self, name: str) -> Value:
+        """The value of a local in this scope's lanes."""
+        if name not in self.values:
+            assert self.parent is not None and self.within is not None, f"no local {name}"
+            self.values[name] = operations.gather(self.parent.read(name), self.within)
+        return self.values[name]
+
+    def assign(self, name: str, value: Value) -> None:
+        """Change a local."""
+        self.values[name] = value
+        if name not in self.bound:
+            self.changed.add(name)
+
+    def close(self) -> None:
+        """Hand the changed locals back to the parent."""
+        assert self.parent is not None and self.within is not None
+        for name in sorted(self.changed):
+            before = self.parent.read(name)
+            after = operations.scatter(before, self.within, self.values[name], self.parent.lanes)
+            self.parent.assign(name, after)

@@ -1,0 +1,1 @@
+"""WGSL for WebGPU: vertex and fragment stages, or a compute program."""

@@ -1,0 +1,116 @@
+"""How textures and buffers stand in WGSL: bindings, and functions that read single elements.
+
+In: a resource's declaration and its number. Out: lines of WGSL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from distal.backends.clike.module_names import ModuleNames
+from distal.ir.nodes import Expr, Index, Resource, ResourceDeclaration, Texel
+from distal.ir.types import Buffer, Kind, Scalar, Texture, TextureShape, Type, kind_of
+
+_TEXTURES = {
+    TextureShape.FLAT: "texture_2d<f32>",
+    TextureShape.CUBE: "texture_cube<f32>",
+    TextureShape.VOLUME: "texture_3d<f32>",
+}
+_SCALARS = {Kind.FLOAT: "f32", Kind.INT: "i32", Kind.UINT: "u32", Kind.BOOL: "bool"}
+_SHARED = {**_SCALARS, Kind.BOOL: "u32"}
+_LETTERS = {Kind.FLOAT: "f", Kind.INT: "i", Kind.UINT: "u"}
+
+
+def texture_binding(number: int) -> int:
+    """The binding of the texture or buffer with that number; a texture's sampler comes next."""
+    return 2 * number
+
+
+def fetched_resources(nodes: Iterable[Expr]) -> set[str]:
+    """The resources whose single texels or elements are read."""
+    found = set()
+    for e in nodes:
+        if isinstance(e, Texel) and isinstance(e.texture, Resource):
+            found.add(e.texture.name)
+        elif isinstance(e, Index) and isinstance(e.base, Resource):
+            found.add(e.base.name)
+    return found
+
+
+def _element_name(type: Type, *, shared: bool) -> str:
+    kind = kind_of(type)
+    assert kind is not None
+    if isinstance(type, Scalar):
+        return (_SHARED if shared else _SCALARS)[kind]
+    return f"{str(type).lstrip('iu')}{_LETTERS[kind]}"
+
+
+def binding_lines(resource: ResourceDeclaration, names: ModuleNames, number: int) -> list[str]:
+    """The declarations of a resource."""
+    name = names.resources[resource.name]
+    here = f"@group(1) @binding({texture_binding(number)})"
+    if isinstance(resource.type, Buffer):
+        element = _element_name(resource.type.element, shared=True)
+        return [f"{here} var<storage, read> {name}: array<{element}>;"]
+    assert isinstance(resource.type, Texture)
+    beside = f"@group(1) @binding({texture_binding(number) + 1})"
+    return [
+        f"{here} var {name}: {_TEXTURES[resource.type.shape]};",
+        f"{beside} var {names.samplers[resource.name]}: sampler;",
+    ]
+
+
+def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
+    """The function that reads one texel or element, the index clamped."""
+    name, function = names.resources[resource.name], names.accessors[resource.name]
+    local = names.local_namer().name
+    index = local("index")
+    if isinstance(resource.type, Buffer):
+        element = _element_name(resource.type.element, shared=False)
+        read = f"{name}[max(min({index}, i32(arrayLength(&{name})) - 1), 0)]"
+        read = f"{read} != 0u" if element == "bool" else read
+        return [f"fn {function}({index}: i32) -> {element} {{", f"    return {read};", "}"]
+    assert isinstance(resource.type, Texture)
+    if resource.type.shape is TextureShape.CUBE:
+        return _cube_accessor(resource, names)
+    rank = "vec2i" if resource.type.shape is TextureShape.FLAT else "vec3i"
+    last = local("last")
+    return [
+        f"fn {function}({index}: {rank}) -> vec4f {{",
+        f"    let {last} = {rank}(textureDimensions({name})) - 1;",
+        f"    return textureLoad({name}, clamp({index}, {rank}(0), {last}), 0);",
+        "}",
+    ]
+
+
+def _cube_accessor(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
+    """A cube's texel: sampled at its very centre, since WGSL loads none from a cube.
+
+    The direction through a face's centre and axes is that of OpenGL and Vulkan alike.
+    """
+    name, function = names.resources[resource.name], names.accessors[resource.name]
+    sampler = names.samplers[resource.name]
+    local = names.local_namer().name
+    index, size, at, s, direction = map(local, ("index", "size", "at", "s", "direction"))
+    faces = (
+        (f"{index}.z <= 0", f"1.0, -{s}.y, -{s}.x"),
+        (f"{index}.z == 1", f"-1.0, -{s}.y, {s}.x"),
+        (f"{index}.z == 2", f"{s}.x, 1.0, {s}.y"),
+        (f"{index}.z == 3", f"{s}.x, -1.0, -{s}.y"),
+        (f"{index}.z == 4", f"{s}.x, -{s}.y, 1.0"),
+    )
+    chain = []
+    for i, (test, axis) in enumerate(faces):
+        chain.append(f"    {'} else if' if i else 'if'} ({test}) {{")
+        chain.append(f"        {direction} = vec3f({axis});")
+    return [
+        f"fn {function}({index}: vec3i) -> vec4f {{",
+        f"    let {size} = i32(textureDimensions({name}).x);",
+        f"    let {at} = vec2f(clamp({index}.xy, vec2i(0), vec2i({size} - 1)));",
+        f"    let {s} = (2.0 * {at} + 1.0) / f32({size}) - 1.0;",
+        f"    var {direction} = vec3f(-{s}.x, -{s}.y, -1.0);",
+        *chain,
+        "    }",
+        f"    return textureSampleLevel({name}, {sampler}, {direction}, 0.0);",
+        "}",
+    ]

@@ -1,0 +1,37 @@
+"""How ``distal doctor`` looks.
+
+What flows in: findings. What flows out: a table on stdout. Knows no machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import groupby
+from typing import Final
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from distal.cli.doctor import Finding, State
+
+_MARKS: Final = {
+    State.READY: Text("ok", "green"),
+    State.OPTIONAL: Text("--", "yellow"),
+    State.BROKEN: Text("!!", "red"),
+}
+
+
+def show(findings: Iterable[Finding]) -> None:
+    """Print one table: a heading for each area, a remedy under what is missing."""
+    table = Table(box=None, show_header=False, pad_edge=False)
+    for _ in range(3):
+        table.add_column(overflow="fold")
+    for area, rows in groupby(findings, key=lambda finding: finding.area):
+        table.add_row("", Text(area, "bold"), "")
+        for row in rows:
+            # Text, not markup: "distal[gpu]" is no style.
+            table.add_row(_MARKS[row.state], Text(row.subject), Text(row.detail))
+            if row.remedy:
+                table.add_row("", "", Text(f"mend: {row.remedy}", "cyan"))
+    Console().print(table)

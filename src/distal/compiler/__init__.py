@@ -1,0 +1,1 @@
+"""The compiler: the driver, the linked prelude library, and the evaluation of constants."""

@@ -1,0 +1,41 @@
+"""Built-ins of plain values, computed without a device: ``SUN = normalize(vec3(1, 2, 3))``.
+
+What flows in: a row of the table and Python numbers or vectors. What flows out: the value in 64
+bits, by the same rules that fold constants in scene code; None where those leave it to a device.
+A scene's module may thus compute its constants where nothing but the standard library is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from distal.frontend.lowering.builtin_calls import call_with_constants
+from distal.frontend.objects import RefusedError
+from distal.ir.intrinsics import Intrinsic
+from distal.ir.nodes import Compose, Const, Expr, Splat
+from distal.ir.types import UINT, component_count
+from distal.lang.values import VALUE_CLASSES, uint
+from distal.passes.fold.fold import fold_expression
+
+
+def compute(row: Intrinsic, args: Sequence[Any]) -> Any | None:
+    """``row(*args)``, or None where it is not known here."""
+    try:
+        call = call_with_constants(row, args)
+    except RefusedError:  # NaN and the like
+        return None
+    return None if call is None else _python_value(fold_expression(call, 64))
+
+
+def _python_value(value: Expr) -> Any | None:
+    match value:
+        case Const(number, type):
+            return uint(number) if type is UINT else number
+        case Splat(inner, type):
+            parts = [_python_value(inner)] * component_count(type)
+        case Compose(inner_parts, type):
+            parts = [_python_value(p) for p in inner_parts]
+        case _:
+            return None
+    return None if any(p is None for p in parts) else VALUE_CLASSES[type](*parts)

@@ -1,0 +1,102 @@
+"""The whole pipeline on one screen: scene code in, a target's text out.
+
+``lower`` makes IR of the author's function, the passes shape it for a target, a backend writes it.
+Needs the standard library only.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+from distal.backends import emit, get_target, target_names
+from distal.backends.base import Artifact
+from distal.compiler.prelude_library import PreludeLibrary
+from distal.diagnostics import CompileError
+from distal.frontend import lower
+from distal.ir.nodes import Module
+from distal.ir.printer import print_module
+from distal.ir.target import Target
+from distal.ir.verify import verify
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.passes.call_order import in_call_order
+from distal.passes.context import Context
+from distal.passes.pipeline import PASS_NAMES, PIPELINE
+
+# The tests set this: every pass's output is then held against the IR's rules.
+VERIFY = os.environ.get("DISTAL_VERIFY", "") == "1"
+
+IR_TARGET = "ir"  # the IR as the CPU's passes leave it, printed
+
+
+def run_passes(
+    module: Module, target: Target, precision: int = 32, after: str | None = None
+) -> Module:
+    """Shape a lowered module for a target, up to and including the pass ``after``.
+
+    Raises:
+        CompileError: The scene code says what the target cannot do.
+    """
+    try:
+        return _run_passes(module, target, precision, after)
+    except RecursionError:
+        # A ladder of hundreds of elif is as many blocks inside one another.
+        entry = module.function(module.entry)
+        hint = "put parts of it into functions of their own"
+        message = f"'{entry.source_name}' or what it calls is too deeply nested"
+        raise CompileError.at(message, entry.span, hint) from None
+
+
+def _run_passes(module: Module, target: Target, precision: int, after: str | None) -> Module:
+    context = Context(target, PreludeLibrary(), precision)
+    # The passes rely on callees before callers; each keeps it, which ``verify`` checks.
+    module = replace(module, functions=in_call_order(module.functions, module.entry))
+    if VERIFY:
+        verify(module)
+    for name, run in PIPELINE:
+        module = run(module, context)
+        if VERIFY:
+            verify(module, name)
+        if name == after:
+            break
+    return module
+
+
+def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None = None) -> Artifact:
+    """Compile a scene, an ``@image`` or a ``@func`` to the text of a target.
+
+    Args:
+        obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point
+            (``wgsl-compute``: one that calls it for many points).
+        target: One of ``ir llvm shadertoy glslcanvas isf glsl-es300 glsl-330 glsl-es100 wgsl
+            wgsl-compute``.
+        after: For ``ir``: the pass after which to stop; ``"lower"`` for none at all.
+
+    Raises:
+        CompileError: The scene code has mistakes, or says what the target cannot do.
+        ValueError: There is no such target or pass.
+        TypeError: It is neither.
+    """
+    if not isinstance(obj, Func | Composed):
+        kind = type(obj).__name__
+        raise TypeError(f"only a scene, an @image or a @func can be compiled, not {kind}")
+    if isinstance(obj, Composed):
+        obj = obj.text()
+    if after is not None and after not in ("lower", *PASS_NAMES):
+        raise ValueError(f"there is no pass '{after}'; passes: lower, {', '.join(PASS_NAMES)}")
+    if after is not None and target != IR_TARGET:
+        raise ValueError("only the target 'ir' can stop after a pass")
+    if target == IR_TARGET:
+        module = lower(obj)
+        if after != "lower":
+            module = run_passes(module, get_target("llvm"), after=after)
+        return Artifact(print_module(module), {})
+    names = [name for name in target_names() if name != "numpy"]
+    if target not in names:
+        raise ValueError(f"there is no target '{target}'; targets: {', '.join(['ir', *names])}")
+    description = get_target(target)
+    return emit(run_passes(lower(obj), description), description)
+
+
+__all__ = ["Artifact", "CompileError", "compile", "run_passes"]

@@ -1,0 +1,1 @@
+"""Operators of two shapes: unions, intersections, differences, blends, transitions."""

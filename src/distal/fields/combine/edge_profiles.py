@@ -1,0 +1,144 @@
+"""Shaped edges: what stands where two shapes meet, and what is cut along their seam.
+
+What flows in: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. What
+flows out: the distance of the union (``edges`` makes the intersections and differences of it),
+or of the one shape that pipes, engraving, grooves and tongues give. Knows no points.
+
+The sizes are true where the surfaces meet at a right angle. Worked out in the plane whose axes are
+the two distances: a union's corner is its origin, the outside the quarter where both are positive,
+and ``u`` and ``v`` are the distance from the corner along the diagonal and across it.
+
+Source: the operators of the hg_sdf library by Mercury (https://mercury.sexy/hg_sdf/); the formulas
+are worked out anew from their geometry. Where a piece uses both distances at once the slope is that
+of a length in this plane, sqrt(slope_a^2 + slope_b^2), reached where the gradients are parallel.
+"""
+
+from __future__ import annotations
+
+from distal.fields.combine.smooth import SHARP, nearness, quadratic, quadratic_mix, share_of_second
+from distal.lang import abs, clamp, func, length, max, min, round, vec2
+
+SQRT_HALF = 0.7071067811865476
+SQRT_2 = 1.4142135623730951
+
+
+@func
+def edge_mix(a: float, b: float, k: float) -> float:
+    """The share of ``b`` across an edge of size ``k``: even in the middle, none at its ends."""
+    return share_of_second(a, b, 0.5 * nearness(a, b, max(k, SHARP)))
+
+
+@func
+def counted_edge_mix(a: float, b: float, k: float, count: int) -> float:
+    """``edge_mix`` for the edges made of ``count`` parts."""
+    return edge_mix(a, b, k)
+
+
+@func
+def no_deeper(shaped: float, a: float, b: float, k: float) -> float:
+    """Inside, an edge's pieces are steeper than the shapes; the surface is above this floor.
+
+    With ``k = 0`` the union is the hard one.
+    """
+    return max(shaped, min(a, b) - k)
+
+
+@func
+def chamfer(a: float, b: float, k: float) -> float:
+    """A flat face across the corner, ``k`` along both surfaces."""
+    return no_deeper(min(min(a, b), (a + b - k) * SQRT_HALF), a, b, k)
+
+
+@func
+def soft(a: float, b: float, k: float) -> float:
+    """``quadratic``, measured by how near the two must be for it to act: |a - b| < k."""
+    return quadratic(a, b, 0.25 * k)
+
+
+@func
+def soft_mix(a: float, b: float, k: float) -> float:
+    """The share of ``b`` in ``soft``."""
+    return quadratic_mix(a, b, 0.25 * k)
+
+
+@func
+def row_of_circles(u: float, v: float, radius: float, count: int) -> float:
+    """The distance to ``count`` circles side by side on the line u = 0, centred."""
+    middle = 0.5 * (float(count) - 1.0)
+    diameter = 2.0 * radius
+    index = clamp(round(v / max(diameter, SHARP) + middle), 0.0, float(count) - 1.0)
+    return length(vec2(u, v - (index - middle) * diameter)) - radius
+
+
+@func
+def columns(a: float, b: float, k: float, count: int) -> float:
+    """A row of ``count`` round columns in the corner; the outer ones stand half in the surfaces."""
+    u = (a + b) * SQRT_HALF
+    v = (b - a) * SQRT_HALF
+    radius = k * SQRT_HALF / (float(count) - 1.0 + SQRT_HALF)
+    wall = u - radius * (float(count) - 1.0 - SQRT_HALF)
+    pieces = min(wall, row_of_circles(wall, v, radius, count))
+    return no_deeper(min(min(a, b), pieces), a, b, k)
+
+
+@func
+def columns_intersection(a: float, b: float, k: float, count: int) -> float:
+    """The edge cut flat and ``count`` round columns left standing, the outer ones at the faces."""
+    u = (a + b) * SQRT_HALF
+    v = (b - a) * SQRT_HALF
+    radius = k * SQRT_HALF / (float(count) - 1.0 + SQRT_2)
+    wall = u + k * SQRT_HALF
+    hard = max(a, b)
+    pieces = min(wall, row_of_circles(wall, v, radius, count))
+    return min(max(hard, pieces), hard + k)
+
+
+@func
+def stairs(a: float, b: float, k: float, count: int) -> float:
+    """``count`` steps down from one surface to the other.
+
+    A triangle wave turned by 45 degrees is a staircase: each piece is one distance alone, so the
+    slope does not grow.
+    """
+    step = max(k / float(count), SHARP)
+    across = (b - k) - a + step
+    wave = abs(across % (2.0 * step) - step)
+    return min(min(a, b), 0.5 * ((b - k) + a + wave))
+
+
+@func
+def pipe(a: float, b: float, k: float) -> float:
+    """A tube of radius ``k`` along the line where the two surfaces cross; nothing else is left."""
+    return length(vec2(a, b)) - k
+
+
+@func
+def engrave(a: float, b: float, k: float) -> float:
+    """A V-shaped cut, ``k`` deep, in the first shape along the second one's surface."""
+    return max(a, (a + k - abs(b)) * SQRT_HALF)
+
+
+@func
+def groove(a: float, b: float, depth: float, width: float) -> float:
+    """A rectangular cut in the first shape along the second one's surface.
+
+    Args:
+        a: The shape that is cut.
+        b: The shape whose surface is followed.
+        depth: How deep it is cut.
+        width: Half the width of the cut: how far from the second surface it reaches.
+    """
+    return max(a, min(a + depth, width - abs(b)))
+
+
+@func
+def tongue(a: float, b: float, depth: float, width: float) -> float:
+    """A rectangular ridge on the first shape along the second one's surface; fits ``groove``.
+
+    Args:
+        a: The shape that carries the ridge.
+        b: The shape whose surface is followed.
+        depth: How high the ridge stands.
+        width: Half the width of the ridge.
+    """
+    return min(a, max(a - depth, abs(b) - width))

@@ -1,0 +1,1 @@
+"""Operators that change a shape: bending, folding, offsets, shells."""

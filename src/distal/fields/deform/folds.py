@@ -1,0 +1,263 @@
+"""Space folded and curled: around a cylinder, into a sphere, into ever larger copies, by noise.
+
+What flows in: a point, the numbers of the fold, the child's box. What flows out: the point to ask
+the child at, a value without jumps, the slope, the box. As in ``deform``, the slope is the child's
+times the largest stretch of the map, and a folded shape answers at least the distance to its box.
+"""
+
+from __future__ import annotations
+
+from distal.fields.combine.joins import INSIDE_AND_BOUND
+from distal.fields.extents import ENDLESS, box_distance, reach
+from distal.fields.guarantees import UNBOUNDED, Bounds, Growth, Limit, Site, operator
+from distal.fields.noise.space import GRADIENT_SLOPE, gradient_noise
+from distal.fields.repeat.cells import ROOM
+from distal.lang import (
+    abs,
+    atan2,
+    clamp,
+    dot,
+    exp2,
+    floor,
+    func,
+    length,
+    log2,
+    max,
+    min,
+    select,
+    sin,
+    sqrt,
+    vec3,
+)
+
+PI = 3.141592653589793
+
+# Wrapped around the y axis
+
+
+@func
+def wrapped(p: vec3, radius: float) -> vec3:
+    """The place before x was laid around a cylinder about the y axis, and z out of it.
+
+    The middle of the shape stays where z is ``radius``; an x of pi times the radius is behind.
+    """
+    return vec3(atan2(p.x, p.z) * radius, p.y, length(p.xz) - radius)
+
+
+@func
+def wrapped_inner(bounds: Bounds, radius: float) -> float:
+    """How near the wrapped shape comes to the axis."""
+    return radius + bounds.low.z
+
+
+@func
+def wrapped_half(bounds: Bounds, radius: float) -> float:
+    """How far around it goes on either side, as an angle."""
+    return reach(bounds).x / radius
+
+
+@func
+def wrapped_value(d: float, p: vec3, radius: float, bounds: Bounds) -> float:
+    """The value, without the jump behind and the endless stretch at the axis.
+
+    The shape lies in a sector of an annulus. At the half-plane behind and near the axis the value
+    is held to the distance to that, from both sides; away from there it is let go by as much.
+    """
+    rho = length(p.xz)
+    inner = wrapped_inner(bounds, radius)
+    half = wrapped_half(bounds, radius)
+    turn = clamp(abs(atan2(p.x, p.z)) - half, -0.5 * PI, 0.5 * PI)
+    sector = max(inner - rho, rho * sin(turn))
+    behind = select(p.z > 0.0, rho, abs(p.x))
+    free = min(behind, max(rho - 0.75 * inner, 0.0))
+    held = min(max(d, sector), sector + free)
+    return max(held, box_distance(p, wrapped_bounds(bounds, radius)))
+
+
+@func
+def wrapped_slope(slope: float, bounds: Bounds, radius: float) -> float:
+    """The radius over the least distance from the axis at which the child is asked."""
+    inner = wrapped_inner(bounds, radius)
+    crowded = inner <= 1e-3 * radius or wrapped_half(bounds, radius) > 0.98 * PI
+    stretch = radius / max(0.75 * inner, 1e-12)
+    return select(crowded, UNBOUNDED, max(slope * max(stretch, 1.0), 2.0))
+
+
+@func
+def wrapped_bounds(bounds: Bounds, radius: float) -> Bounds:
+    """As far around as the shape reaches."""
+    r = radius + bounds.high.z
+    return Bounds(vec3(-r, bounds.low.y, -r), vec3(r, bounds.high.y, r))
+
+
+# Folded into a sphere
+
+
+@func
+def sphere_folded(p: vec3, inner: float, outer: float) -> vec3:
+    """The place before space within ``outer`` was turned inside out, and within ``inner`` enlarged.
+
+    Source: the sphere fold of the Mandelbox (Tom Lowe, 2010).
+    """
+    square = clamp(dot(p, p), inner * inner, outer * outer)
+    return p * (outer * outer / square)
+
+
+@func
+def sphere_folded_bounds(bounds: Bounds, outer: float) -> Bounds:
+    """The box and the sphere, into which everything outside is mapped too."""
+    return Bounds(min(bounds.low, vec3(-outer)), max(bounds.high, vec3(outer)))
+
+
+@func
+def sphere_folded_value(d: float, p: vec3, outer: float, bounds: Bounds) -> float:
+    """At least the distance to the box."""
+    return max(d, box_distance(p, sphere_folded_bounds(bounds, outer)))
+
+
+@func
+def sphere_folded_slope(slope: float, inner: float, outer: float) -> float:
+    """Conformal; the most it enlarges is in the middle."""
+    return max(slope * (outer * outer) / (inner * inner), 1.0)
+
+
+# Ever larger, ever smaller
+
+
+@func
+def nearest_of(bounds: Bounds) -> float:
+    """How near a box comes to the origin."""
+    return length(max(max(bounds.low, -bounds.high), vec3(0.0)))
+
+
+@func
+def farthest_of(bounds: Bounds) -> float:
+    """How far from the origin a box goes."""
+    r = reach(bounds)
+    return select(max(max(r.x, r.y), r.z) > ENDLESS, UNBOUNDED, length(r))
+
+
+@func
+def scale_index(p: vec3, ratio: float, bounds: Bounds) -> float:
+    """Which of the copies is asked: the borders are halfway between their annuli."""
+    border = 0.5 * (nearest_of(bounds) + farthest_of(bounds) / ratio)
+    return floor(log2(max(length(p), 1e-12) / border) / log2(ratio))
+
+
+@func
+def rescaled(p: vec3, ratio: float, bounds: Bounds) -> Site:
+    """The place in the copy of its size: each is ``ratio`` times as large as the one before.
+
+    This repeats the logarithm of the distance from the origin (log-polar space).
+    """
+    index = scale_index(p, ratio, bounds)
+    return Site(p * exp2(-index * log2(ratio)), vec3(index, 0.0, 0.0))
+
+
+@func
+def rescaled_value(d: float, p: vec3, ratio: float, bounds: Bounds) -> float:
+    """The value, safe for the copies inside and outside: annuli stand in for them (``repeat``)."""
+    scale = exp2(scale_index(p, ratio, bounds) * log2(ratio))
+    rho = length(p) / scale
+    near, far = nearest_of(bounds), farthest_of(bounds)
+    own = max(near - rho, rho - far)
+    others = min(rho - far / ratio, near * ratio - rho)
+    return scale * min(max(d, own), others)
+
+
+@func
+def rescaled_slope(slope: float, bounds: Bounds, ratio: float) -> float:
+    """The child's, where its annulus leaves room for the next."""
+    near, far = nearest_of(bounds), farthest_of(bounds)
+    crowded = far * (1.0 + 2.0 * ROOM) >= near * ratio
+    return select(crowded, UNBOUNDED, max(slope, 1.0))
+
+
+@func
+def rescaled_bounds(bounds: Bounds) -> Bounds:
+    """Without end."""
+    return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED))
+
+
+# Shaken by noise
+
+
+@func
+def warped(p: vec3, amount: float, frequency: float, seed: int = 0) -> vec3:
+    """The place before each coordinate was moved by up to ``amount``, by gradient noise."""
+    q = p * frequency
+    x = gradient_noise(q, 3 * seed)
+    y = gradient_noise(q, 3 * seed + 1)
+    z = gradient_noise(q, 3 * seed + 2)
+    return p - amount * vec3(x, y, z)
+
+
+@func
+def warped_bounds(bounds: Bounds, amount: float) -> Bounds:
+    """The box, larger by the amount."""
+    return Bounds(bounds.low - abs(amount), bounds.high + abs(amount))
+
+
+@func
+def warped_value(d: float, p: vec3, amount: float, bounds: Bounds) -> float:
+    """At least the distance to the box."""
+    return max(d, box_distance(p, warped_bounds(bounds, amount)))
+
+
+@func
+def warped_slope(slope: float, amount: float, frequency: float) -> float:
+    """1 and what three noises of their slope can add at once."""
+    return max(slope, 1.0) * (1.0 + sqrt(3.0) * GRADIENT_SLOPE * abs(amount * frequency))
+
+
+def fold_requirement(inner: float, outer: float) -> str | None:
+    """Why there is nothing between two radii, or None."""
+    return None if inner < outer else "outer must be above inner"
+
+
+def ratio_requirement(ratio: float) -> str | None:
+    """Why copies would not grow, or None."""
+    return None if ratio > 1.0 else "ratio must be above 1"
+
+
+WRAP = operator(
+    "wrap",
+    point=wrapped,
+    finish=wrapped_value,
+    slope=wrapped_slope,
+    bounds=wrapped_bounds,
+    limits={"radius": Limit.POSITIVE},
+    needs="a shape that ends along x before it meets itself behind, and along z before the axis",
+    growth=Growth.HELD,
+)
+SPHERE_FOLD = operator(
+    "sphere fold",
+    point=sphere_folded,
+    finish=sphere_folded_value,
+    slope=sphere_folded_slope,
+    bounds=sphere_folded_bounds,
+    limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE},
+    requires=fold_requirement,
+    growth=Growth.HELD,
+)
+REPEAT_SCALED = operator(
+    "repeat scaled",
+    point=rescaled,
+    finish=rescaled_value,
+    keeps=INSIDE_AND_BOUND,
+    slope=rescaled_slope,
+    bounds=rescaled_bounds,
+    limits={"ratio": Limit.POSITIVE},
+    requires=ratio_requirement,
+    needs="a shape beside the origin whose farthest point is less than ratio times as far as its "
+    "nearest",
+    growth=Growth.HELD,
+)
+WARP = operator(
+    "warp",
+    point=warped,
+    finish=warped_value,
+    slope=warped_slope,
+    bounds=warped_bounds,
+    growth=Growth.HELD,
+)

@@ -1,0 +1,170 @@
+"""A shape changed by its value alone, and cut by a plane: rounding, offsets, shells.
+
+What flows in: a distance. What flows out: the distance of the new surface, its box, its claims.
+Knows no second shape.
+
+A surface that is moved out by r is where the old field is r. The box grows by r times the growth
+(``claims``), as a field may be far below the distance there.
+A lower bound is not kept by moving the surface: it says nothing of the levels inside and near it.
+"""
+
+from __future__ import annotations
+
+from distal.fields.extents import Boxes, at_least_one, moved_out
+from distal.fields.guarantees import EXACT_OUTSIDE, Claim, Growth, Limit, operator
+from distal.lang import abs, dot, func, max, vec2, vec3
+
+INSIDE_AND_BOUND = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
+INSIDE_ALONE = frozenset({Claim.EXACT_INSIDE})
+OUTSIDE_ALONE = frozenset({Claim.EXACT_OUTSIDE})
+
+
+@func
+def rounded(d: float, radius: float) -> float:
+    """The shape grown by ``radius``: every edge becomes round, and it is larger by that."""
+    return d - radius
+
+
+@func
+def rounded_bounds(bounds: Boxes, radius: float, side_growth: float) -> Boxes:
+    """The box moved out by the radius."""
+    return moved_out(bounds, radius, side_growth)
+
+
+@func
+def offset_value(d: float, distance: float) -> float:
+    """The surface moved by ``distance``, outward where it is above 0."""
+    return d - distance
+
+
+@func
+def offset_bounds(bounds: Boxes, distance: float, side_growth: float) -> Boxes:
+    """The box moved out as the surface is; it is not made smaller."""
+    return moved_out(bounds, max(distance, 0.0), side_growth)
+
+
+@func
+def eroded(d: float, distance: float) -> float:
+    """The shape without everything within ``distance`` of its surface."""
+    return d + distance
+
+
+@func
+def shell_inner(d: float, thickness: float) -> float:
+    """A hollow shape; its wall lies inside the surface."""
+    return max(d, -d - thickness)
+
+
+@func
+def shell_centre(d: float, thickness: float) -> float:
+    """A hollow shape; the surface is the middle of its wall."""
+    return abs(d) - 0.5 * thickness
+
+
+@func
+def shell_outer(d: float, thickness: float) -> float:
+    """A hollow shape; its wall lies outside the surface."""
+    return max(d - thickness, -d)
+
+
+@func
+def shell_centre_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
+    """The box moved out by half the wall."""
+    return moved_out(bounds, 0.5 * thickness, side_growth)
+
+
+@func
+def shell_outer_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
+    """The box moved out by the wall."""
+    return moved_out(bounds, thickness, side_growth)
+
+
+@func
+def kept_below(d: float, p: vec3, normal: vec3, offset: float) -> float:
+    """What lies behind a plane: the half that its normal points away from."""
+    return max(d, dot(p, normal) - offset)
+
+
+@func
+def kept_above(d: float, p: vec3, normal: vec3, offset: float) -> float:
+    """What lies before a plane: the half that its normal points into."""
+    return max(d, offset - dot(p, normal))
+
+
+@func
+def kept_below_flat(d: float, p: vec2, normal: vec2, offset: float) -> float:
+    """What lies behind a line: the half that its normal points away from."""
+    return max(d, dot(p, normal) - offset)
+
+
+@func
+def kept_above_flat(d: float, p: vec2, normal: vec2, offset: float) -> float:
+    """What lies before a line: the half that its normal points into."""
+    return max(d, offset - dot(p, normal))
+
+
+ROUND = operator(
+    "round",
+    finish=rounded,
+    keeps=OUTSIDE_ALONE,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=rounded_bounds,
+    limits={"radius": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
+)
+OFFSET = operator(
+    "offset",
+    finish=offset_value,
+    bounds=offset_bounds,
+    growth=Growth.KEPT,
+)
+DILATE = operator(
+    "dilate",
+    finish=offset_value,
+    keeps=OUTSIDE_ALONE,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=offset_bounds,
+    limits={"distance": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
+)
+ERODE = operator(
+    "erode",
+    finish=eroded,
+    keeps=INSIDE_ALONE,
+    limits={"distance": Limit.NOT_NEGATIVE},
+    growth=Growth.KEPT,
+)
+THICK = {"thickness": Limit.POSITIVE}
+SHELL_INNER = operator(
+    "shell inner",
+    finish=shell_inner,
+    keeps_exact=EXACT_OUTSIDE,
+    limits=THICK,
+    growth=Growth.KEPT,
+)
+SHELL_CENTRE = operator(
+    "shell centre",
+    finish=shell_centre,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=shell_centre_bounds,
+    limits=THICK,
+    growth=Growth.KEPT,
+)
+SHELL_OUTER = operator(
+    "shell outer",
+    finish=shell_outer,
+    keeps_exact=EXACT_OUTSIDE,
+    bounds=shell_outer_bounds,
+    limits=THICK,
+    growth=Growth.KEPT,
+)
+CUT = {
+    "keeps": INSIDE_AND_BOUND,
+    "growth": Growth.KEPT,
+    "slope": at_least_one,
+    "limits": {"normal": Limit.UNIT},
+}
+SPLIT_BELOW = operator("split below", finish=kept_below, **CUT)
+SPLIT_ABOVE = operator("split above", finish=kept_above, **CUT)
+SPLIT_BELOW_FLAT = operator("flat split below", finish=kept_below_flat, **CUT)
+SPLIT_ABOVE_FLAT = operator("flat split above", finish=kept_above_flat, **CUT)

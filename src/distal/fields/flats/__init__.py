@@ -1,0 +1,1 @@
+"""Flat shapes: fields of a point in the plane."""

@@ -1,0 +1,275 @@
+"""Flat shapes bounded by ellipses, parabolas and hyperbolas.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside.
+
+The nearest point of a conic is the root of a polynomial; here an equation with the same root is
+chosen that Newton's method solves from one side, so that a fixed number of steps is enough. How
+many is measured: the error then is below 2e-6 of the shape's size, also beside the evolute.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.flats.edges import HALF_ROOT, TINY, centred_bounds, disc_bounds, nearer
+from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.lang import abs, dot, func, length, max, min, pow, select, sqrt, vec2
+
+WIDE: Final = vec2(0.7, 0.4)
+# The largest root of t^3 = t + 1: bounds that of t^3 + a t = b by the larger of its two terms.
+PLASTIC: Final = 1.3247179572447460
+# The root of c^2 + c^3 = 1, a little less.
+BELOW_BOTH: Final = 0.7548
+CUBIC_STEPS: Final = 5
+ELLIPSE_STEPS: Final = 4
+HYPERBOLA_STEPS: Final = 9
+
+
+@func
+def largest_root(a: float, b: float) -> float:
+    """The largest root of t^3 + a t = b for b >= 0.
+
+    The cubic rises and is convex beyond its root, so Newton's method comes down to it from any
+    larger number; the start is at most half as large again.
+    """
+    by_b = pow(max(b, TINY), 1.0 / 3.0)
+    start = select(a > 0.0, min(by_b, b / max(a, TINY)), PLASTIC * max(by_b, sqrt(max(-a, 0.0))))
+    t = start
+    for _ in range(CUBIC_STEPS):
+        t = (2.0 * t * t * t + b) / max(3.0 * t * t + a, TINY)
+    return t
+
+
+@func
+def parabola_foot(q: vec2, curvature: float) -> float:
+    """The x of the point nearest to ``q`` on y = curvature x^2, for q.x >= 0 and curvature > 0."""
+    double = 2.0 * curvature
+    return largest_root((1.0 / double - q.y) / curvature, q.x / (double * curvature))
+
+
+@primitive("Parabola", EXACT, limits={"curvature": Limit.POSITIVE})
+@func
+def parabola(p: vec2, curvature: float = 1.0) -> float:
+    """All that lies above the parabola y = curvature x^2.
+
+    Args:
+        p: Point.
+        curvature: Half of the curvature at the lowest point.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
+
+    Measured:
+        parabola((0.0, -3.0), 1.0) = 3.0
+        parabola((0.0, 1.25), 1.0) = -1.0
+        parabola((3.0, 0.0), 1.0) = 2.23606797749979
+    """
+    q = vec2(abs(p.x), p.y)
+    x = parabola_foot(q, curvature)
+    d = length(q - vec2(x, curvature * x * x))
+    return select(q.y > curvature * q.x * q.x, -d, d)
+
+
+@func
+def parabola_segment_bounds(width: float, height: float) -> Bounds2:
+    """From the base to the top."""
+    return Bounds2(vec2(-0.5 * width, 0.0), vec2(0.5 * width, height))
+
+
+@primitive(
+    "ParabolaSegment",
+    EXACT,
+    bounds=parabola_segment_bounds,
+    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
+)
+@func
+def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
+    """What a parabola cuts off above the x axis.
+
+    Args:
+        p: Point.
+        width: Of the base, along the x axis.
+        height: Of the top above it.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
+
+    Measured:
+        parabola_segment((0.0, 5.0), 2.0, 1.0) = 4.0
+        parabola_segment((0.5, -3.0), 2.0, 1.0) = 3.0
+        parabola_segment((0.0, 0.25), 2.0, 1.0) = -0.25
+    """
+    half = 0.5 * width
+    curvature = height / (half * half)
+    # Seen downwards from the top.
+    q = vec2(abs(p.x), height - p.y)
+    x = min(parabola_foot(q, curvature), half)
+    from_curve = q - vec2(x, curvature * x * x)
+    from_base = vec2(max(q.x - half, 0.0), p.y)
+    d = length(nearer(from_base, from_curve))
+    inside = p.y > 0.0 and q.y > curvature * q.x * q.x
+    return select(inside, -d, d)
+
+
+@primitive("QuadraticCircle", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
+    """Nearly a circle, of four parabolas: each joins two axes and leaves them at right angles.
+
+    Args:
+        p: Point.
+        radius: Along the axes; along the diagonals it is 6 per cent more.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
+
+    Measured:
+        quadratic_circle((0.0, 5.0), 2.0) = 3.0
+        quadratic_circle((0.75, 0.75), 1.0) = 0.0
+        quadratic_circle((0.0, 0.0), 2.0) = -2.0
+    """
+    q = abs(p)
+    # Across the diagonal, and down from the parabola's top on it.
+    top = 1.5 * HALF_ROOT * radius
+    seen = vec2(HALF_ROOT * abs(q.x - q.y), top - HALF_ROOT * (q.x + q.y))
+    curvature = HALF_ROOT / radius
+    x = min(parabola_foot(seen, curvature), HALF_ROOT * radius)
+    d = length(seen - vec2(x, curvature * x * x))
+    return select(seen.y > curvature * seen.x * seen.x, -d, d)
+
+
+def _points_stay(radius: float, depth: float) -> str | None:
+    if depth > 0.5 * HALF_ROOT * radius:
+        return "depth may be at most 0.353 radius: there neighbouring sides touch at the points"
+    return None
+
+
+@primitive(
+    "BlobbyCross",
+    EXACT,
+    bounds=disc_bounds,
+    limits={"radius": Limit.POSITIVE, "depth": Limit.POSITIVE},
+    requires=_points_stay,
+)
+@func
+def blobby_cross(p: vec2, radius: float = 0.6, depth: float = 0.15) -> float:
+    """Four points on the axes, joined by parabolas that are drawn in toward the middle.
+
+    Args:
+        p: Point.
+        radius: From the middle to a point.
+        depth: How far a side is drawn in from the straight line between two points.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
+
+    Measured:
+        blobby_cross((0.0, -5.0), 2.0, 1.0) = 3.0
+        blobby_cross((4.0, 4.0), 1.0, 0.25) = 5.0
+        blobby_cross((0.75, 0.75), 2.0, 0.35355339059327373) = 0.0
+    """
+    q = abs(p)
+    # Across the diagonal, and inwards from where the parabola is drawn in deepest.
+    half = HALF_ROOT * radius
+    seen = vec2(HALF_ROOT * abs(q.x - q.y), depth - half + HALF_ROOT * (q.x + q.y))
+    curvature = depth / (half * half)
+    x = min(parabola_foot(seen, curvature), half)
+    from_curve = seen - vec2(x, curvature * x * x)
+    d = length(from_curve)
+    return select(from_curve.y < 0.0, -d, d)
+
+
+@func
+def ellipse_bounds(radii: vec2) -> Bounds2:
+    """The rectangle around it."""
+    return centred_bounds(radii)
+
+
+@func
+def ellipse_start(scaled: vec2, gap: float) -> float:
+    """A number below the root u of (scaled.x / (u + gap))^2 + (scaled.y / u)^2 = 1, close to it.
+
+    From 1 / (1 + x)^2 >= 1 - 2 x the root is above that of u^2 (A + B u) = 1; it matters beside
+    the evolute's points on the long axis, where other bounds are far too low.
+    """
+    squares = scaled * scaled
+    rest = max(gap * gap - squares.x, TINY * TINY)
+    flat = scaled.y * gap / sqrt(rest)
+    steep = pow(squares.y * gap * gap * gap / (2.0 * squares.x), 1.0 / 3.0)
+    return BELOW_BOTH * min(flat, steep)
+
+
+@primitive("Ellipse", EXACT, bounds=ellipse_bounds, limits={"radii": Limit.POSITIVE})
+@func
+def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
+    """Ellipse with its axes along x and y.
+
+    Args:
+        p: Point.
+        radii: Half of the width and of the height.
+
+    Source: David Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid"
+    (https://www.geometrictools.com/Documentation/DistancePointEllipseEllipsoid.pdf), for the
+    equation; its root by Newton's method on the reciprocal of the length, which is nearly straight:
+    J. J. Moré and D. C. Sorensen, "Computing a Trust Region Step" (1983).
+
+    Measured:
+        ellipse((0.0, 0.0), (3.0, 2.0)) = -2.0
+        ellipse((5.0, 0.0), (3.0, 2.0)) = 2.0
+        ellipse((0.0, -2.0), (3.0, 2.0)) = 0.0
+    """
+    wide = radii.x > radii.y
+    r = select(wide, radii, radii.yx)
+    q = max(abs(select(wide, p, p.yx)), TINY * r.y)
+    # The nearest point is r^2 q / (t + r^2); u = t + r.y^2 counts from the pole, where it is
+    # found to its last digit however close to the long axis the point lies.
+    scaled = r * q
+    gap = r.x * r.x - r.y * r.y
+    offset = vec2(gap, 0.0)
+    u = max(scaled.y, scaled.x - gap, ellipse_start(scaled, gap))
+    for _ in range(ELLIPSE_STEPS):
+        ratio = scaled / (u + offset)
+        square = dot(ratio, ratio)
+        u += (sqrt(square) - 1.0) * square / dot(ratio * ratio, 1.0 / (u + offset))
+    ratio = scaled / (u + offset)
+    foot = r * ratio / length(ratio)
+    d = length(q - foot)
+    unit = q / r
+    return select(dot(unit, unit) < 1.0, -d, d)
+
+
+@primitive("Hyperbola", EXACT, limits={"radius": Limit.POSITIVE, "steepness": Limit.POSITIVE})
+@func
+def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
+    """All that lies beyond the two branches of a hyperbola, to the left and to the right.
+
+    Args:
+        p: Point.
+        radius: From the middle to each branch, along x.
+        steepness: How far the lines that the branches approach rise for each step along x.
+
+    Source: the nearest point as the root of an equation that rises and is concave, from below, by
+    Newton's method.
+
+    Measured:
+        hyperbola((0.0, 0.0), 2.0, 1.0) = 2.0
+        hyperbola((3.0, 0.0), 2.0, 1.0) = -1.0
+        hyperbola((-1.0, 0.0), 2.0, 0.5) = 1.0
+    """
+    other = radius * steepness
+    q = max(abs(p), TINY * radius)
+    # With w = other^2 - t the nearest point is (radius^2 q.x / (radius^2 + t), other^2 q.y / w).
+    # It lies on the branch where m w / sqrt(w^2 + c^2) + w = total.
+    total = radius * radius + other * other
+    m = radius * q.x
+    c = other * q.y
+    w = max(total - m, total * c / (c + m))
+    for _ in range(HYPERBOLA_STEPS):
+        inverse = 1.0 / length(vec2(w, c))
+        value = m * w * inverse + w - total
+        w = max(w - value / (m * c * c * inverse * inverse * inverse + 1.0), TINY * c)
+    y = c / w
+    foot = vec2(radius * sqrt(1.0 + y * y), other * y)
+    d = length(q - foot)
+    unit = q / vec2(radius, other)
+    return select(unit.x * unit.x - unit.y * unit.y > 1.0, -d, d)

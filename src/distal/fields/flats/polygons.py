@@ -1,0 +1,325 @@
+"""Triangles, regular polygons and stars.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside.
+Regular shapes have a corner straight up, at ``radius``; mirrors bring all their edges onto one.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.flats.edges import (
+    PI,
+    disc_bounds,
+    fold_past,
+    fold_sectors,
+    from_segment,
+    nearer,
+    turned_from,
+)
+from distal.fields.flats.slanted import isosceles_trapezoid, trapezoid_bounds
+from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.lang import abs, cos, func, length, max, min, select, sin, vec2
+
+LEFT_CORNER: Final = vec2(-0.5, -0.4)
+RIGHT_CORNER: Final = vec2(0.5, -0.3)
+TOP_CORNER: Final = vec2(0.1, 0.5)
+ROOT_3: Final = 1.7320508075688772
+# Where the edges of a five-pointed star cross, as a share of its radius: (3 - sqrt(5)) / 2.
+PENTAGRAM_INNER: Final = 0.3819660112501051
+
+
+def _not_in_line(
+    first: tuple[float, ...], second: tuple[float, ...], third: tuple[float, ...]
+) -> str | None:
+    along = (second[0] - first[0], second[1] - first[1])
+    if along[0] * (third[1] - first[1]) == along[1] * (third[0] - first[0]):
+        return "the corners must not lie on one line"
+    return None
+
+
+def _three_corners(radius: float, count: int) -> str | None:
+    return "count must be 3 or more" if count < 3 else None
+
+
+def _is_a_star(radius: float, inner: float, count: int) -> str | None:
+    if count < 2:
+        return "count must be 2 or more"
+    return "inner must be less than radius" if inner >= radius else None
+
+
+@func
+def past_corner(q: vec2, radius: float, angle: float) -> float:
+    """Distance to the edge that leaves the corner (0, radius), for points folded beside it.
+
+    Args:
+        q: Point, folded to between the y axis and ``angle`` clockwise.
+        radius: Where the corner is.
+        angle: To the middle of the edge.
+    """
+    c = cos(angle)
+    s = sin(angle)
+    from_corner = vec2(q.x, q.y - radius)
+    beyond = from_corner.x * c < from_corner.y * s
+    return select(beyond, length(from_corner), from_corner.x * s + from_corner.y * c)
+
+
+@func
+def triangle_bounds(size: float) -> Bounds2:
+    """From the base to the tip."""
+    return Bounds2(vec2(-0.5 * size, -size / (2.0 * ROOT_3)), vec2(0.5 * size, size / ROOT_3))
+
+
+@primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds, limits={"size": Limit.POSITIVE})
+@func
+def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
+    """Triangle with equal sides, a corner up, its middle at the origin.
+
+    Args:
+        p: Point.
+        size: Length of a side.
+
+    Source: mirrored to the edge beside the upper corner.
+
+    Measured:
+        equilateral_triangle((0.0, 0.0), 3.4641016151377544) = -1.0
+        equilateral_triangle((0.0, 5.0), 3.4641016151377544) = 3.0
+        equilateral_triangle((0.5, -4.0), 3.4641016151377544) = 3.0
+    """
+    q = fold_past(fold_past(vec2(abs(p.x), p.y), 2.0 * PI / 3.0), PI / 3.0)
+    return past_corner(q, size / ROOT_3, PI / 3.0)
+
+
+@func
+def isosceles_triangle_bounds(width: float, height: float) -> Bounds2:
+    """From the base to the tip."""
+    return trapezoid_bounds(width, 0.0, height)
+
+
+@primitive(
+    "IsoscelesTriangle",
+    EXACT,
+    bounds=isosceles_triangle_bounds,
+    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
+)
+@func
+def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> float:
+    """Triangle with its tip up, halfway up at y = 0.
+
+    Args:
+        p: Point.
+        width: Length of the base.
+        height: From the base to the tip.
+
+    Source: a trapezoid without an upper side.
+
+    Measured:
+        isosceles_triangle((0.0, 5.0), 6.0, 4.0) = 3.0
+        isosceles_triangle((0.0, -4.5), 6.0, 4.0) = 2.5
+        isosceles_triangle((7.0, -5.0), 6.0, 4.0) = 5.0
+    """
+    return isosceles_trapezoid(p, width, 0.0, height)
+
+
+@func
+def triangle2_bounds(first: vec2, second: vec2, third: vec2) -> Bounds2:
+    """The rectangle around the corners."""
+    return Bounds2(min(first, second, third), max(first, second, third))
+
+
+@primitive("Triangle2", EXACT, bounds=triangle2_bounds, requires=_not_in_line)
+@func
+def triangle2(
+    p: vec2,
+    first: vec2 = LEFT_CORNER,
+    second: vec2 = RIGHT_CORNER,
+    third: vec2 = TOP_CORNER,
+) -> float:
+    """Triangle between three points of the plane.
+
+    Args:
+        p: Point.
+        first: A corner.
+        second: The next.
+        third: The last.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/).
+
+    Measured:
+        triangle2((1.0, 1.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = -1.0
+        triangle2((-3.0, -4.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = 5.0
+        triangle2((2.0, -2.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = 2.0
+    """
+    from_edges = nearer(from_segment(p, first, second), from_segment(p, second, third))
+    from_edges = nearer(from_edges, from_segment(p, third, first))
+    turns = select(turned_from(second - first, third - first) < 0.0, -1.0, 1.0)
+    inside = min(
+        turns * turned_from(second - first, p - first),
+        turns * turned_from(third - second, p - second),
+        turns * turned_from(first - third, p - third),
+    )
+    d = length(from_edges)
+    return select(inside > 0.0, -d, d)
+
+
+@primitive("Pentagon", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def pentagon(p: vec2, radius: float = 0.5) -> float:
+    """Regular polygon with five corners, one of them up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a corner.
+
+    Source: mirrored to the edge beside the upper corner.
+
+    Measured:
+        pentagon((0.0, 5.0), 2.0) = 3.0
+        pentagon((0.0, 0.0), 2.0) = -1.618033988749895
+        pentagon((0.0, -4.0), 2.0) = 2.381966011250105
+    """
+    q = fold_past(fold_past(fold_past(vec2(abs(p.x), p.y), 0.8 * PI), 0.4 * PI), 0.2 * PI)
+    return past_corner(q, radius, PI / 5.0)
+
+
+@primitive("Hexagon", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def hexagon(p: vec2, radius: float = 0.5) -> float:
+    """Regular polygon with six corners, one of them up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a corner.
+
+    Source: mirrored to the edge beside the upper corner.
+
+    Measured:
+        hexagon((0.0, -5.0), 2.0) = 3.0
+        hexagon((0.0, 0.0), 2.0) = -1.7320508075688772
+        hexagon((3.7320508075688772, 0.5), 2.0) = 2.0
+    """
+    q = fold_past(fold_past(abs(p), PI / 3.0), PI / 6.0)
+    return past_corner(q, radius, PI / 6.0)
+
+
+@primitive("Octagon", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def octagon(p: vec2, radius: float = 0.5) -> float:
+    """Regular polygon with eight corners, one of them up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a corner.
+
+    Source: mirrored to the edge beside the upper corner.
+
+    Measured:
+        octagon((4.0, 0.0), 1.0) = 3.0
+        octagon((0.0, 0.0), 1.0) = -0.9238795325112867
+        octagon((0.0, -3.5), 1.0) = 2.5
+    """
+    q = fold_past(fold_past(abs(p), PI / 4.0), PI / 8.0)
+    return past_corner(q, radius, PI / 8.0)
+
+
+@primitive(
+    "RegularPolygon",
+    EXACT,
+    bounds=disc_bounds,
+    limits={"radius": Limit.POSITIVE},
+    requires=_three_corners,
+)
+@func
+def regular_polygon(p: vec2, radius: float = 0.5, count: int = 7) -> float:
+    """Polygon with equal sides and angles, a corner up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a corner.
+        count: How many corners, 3 or more.
+
+    Source: turned to the sector of the nearest corner, mirrored to the edge beside it.
+
+    Measured:
+        regular_polygon((0.0, 5.0), 2.0, 7) = 3.0
+        regular_polygon((0.0, 0.0), 2.0, 6) = -1.7320508075688772
+        regular_polygon((0.0, -4.0), 2.0, 5) = 2.381966011250105
+    """
+    return past_corner(fold_sectors(p, count), radius, PI / float(count))
+
+
+@func
+def past_point_of_star(q: vec2, radius: float, inner: float, angle: float) -> float:
+    """Distance to the edge from (0, radius) to the inner corner, for points folded beside it."""
+    point = vec2(0.0, radius)
+    notch = inner * vec2(sin(angle), cos(angle))
+    d = length(from_segment(q, point, notch))
+    return select(turned_from(notch - point, q - point) < 0.0, -d, d)
+
+
+@primitive("Hexagram", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def hexagram(p: vec2, radius: float = 0.5) -> float:
+    """Star of two triangles, six points, one of them up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a point.
+
+    Source: mirrored to the edge beside the upper point.
+
+    Measured:
+        hexagram((0.0, 5.0), 2.0) = 3.0
+        hexagram((1.1547005383792515, 0.0), 2.0) = 0.0
+        hexagram((0.0, 0.0), 3.0) = -1.7320508075688772
+    """
+    q = fold_past(fold_past(abs(p), PI / 3.0), PI / 6.0)
+    return past_point_of_star(q, radius, radius / ROOT_3, PI / 6.0)
+
+
+@primitive("Pentagram", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def pentagram(p: vec2, radius: float = 0.5) -> float:
+    """Star drawn by the diagonals of a pentagon, five points, one of them up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a point.
+
+    Source: mirrored to the edge beside the upper point.
+
+    Measured:
+        pentagram((0.0, 5.0), 2.0) = 3.0
+        pentagram((0.0, -0.38196601125010515), 1.0) = 0.0
+        pentagram((0.0, 0.0), 1.0) = -0.38196601125010515
+    """
+    q = fold_past(fold_past(fold_past(vec2(abs(p.x), p.y), 0.8 * PI), 0.4 * PI), 0.2 * PI)
+    return past_point_of_star(q, radius, PENTAGRAM_INNER * radius, 0.2 * PI)
+
+
+@primitive(
+    "RegularStar",
+    EXACT,
+    bounds=disc_bounds,
+    limits={"radius": Limit.POSITIVE, "inner": Limit.POSITIVE},
+    requires=_is_a_star,
+)
+@func
+def regular_star(p: vec2, radius: float = 0.5, inner: float = 0.25, count: int = 7) -> float:
+    """Star with equal points, one of them up.
+
+    Args:
+        p: Point.
+        radius: From the middle to a point.
+        inner: From the middle to a corner between two points, less than the radius.
+        count: How many points, 2 or more.
+
+    Source: turned to the sector of the nearest point, mirrored to the edge beside it.
+
+    Measured:
+        regular_star((0.0, 5.0), 2.0, 1.0, 7) = 3.0
+        regular_star((0.0, -0.5), 1.0, 0.5, 5) = 0.0
+        regular_star((0.0, 0.0), 3.0, 1.7320508075688772, 6) = -1.7320508075688772
+    """
+    return past_point_of_star(fold_sectors(p, count), radius, inner, PI / float(count))

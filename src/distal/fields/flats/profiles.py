@@ -1,0 +1,262 @@
+"""Profiles of machine parts, and distances stored in an image.
+
+What flows in: a point, and the numbers or the image of a shape. What flows out: the distance,
+negative inside.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from distal.fields.flats.boxes import UNIT_SQUARE, rectangle_bounds
+from distal.fields.flats.curved import egg, egg_bounds, uneven_capsule, uneven_capsule_bounds
+from distal.fields.flats.edges import PI, disc_bounds, fold_sectors, from_segment
+from distal.fields.flats.round import from_arc
+from distal.fields.guarantees import EXACT, NOTHING, Bounds2, Limit, primitive
+from distal.lang import (
+    Texture2D,
+    abs,
+    atan,
+    atan2,
+    clamp,
+    cos,
+    floor,
+    func,
+    ivec2,
+    length,
+    max,
+    min,
+    mix,
+    select,
+    sin,
+    sqrt,
+    tan,
+    texel,
+    vec2,
+)
+from distal.lang import size as size_of
+
+# How far teeth stand out of the pitch circle, and go below it, in modules (ISO 53).
+ADDENDUM: Final = 1.0
+DEDENDUM: Final = 1.25
+# Bilinear interpolation between texels that differ by at most their distance.
+IMAGE_SLOPE: Final = 1.4142135623730951
+
+
+def _teeth_are_whole(radius: float, pressure_angle: float, count: int) -> str | None:
+    if count < 4:
+        return "count must be 4 or more"
+    if not 0.0 < pressure_angle < 0.25 * math.pi:
+        return "pressure_angle must lie between 0 and pi / 4"
+    tip = (1.0 + 2.0 * ADDENDUM / count) / math.cos(pressure_angle)
+    roll = math.sqrt(tip * tip - 1.0)
+    half = 0.5 * math.pi / count + math.tan(pressure_angle) - pressure_angle
+    if half >= math.pi / count:
+        return "the teeth have no gaps: take fewer teeth or a smaller pressure_angle"
+    if half <= roll - math.atan(roll):
+        return "the teeth come to points below their tips: take more teeth or less pressure_angle"
+    return None
+
+
+def _nose_stands_out(base: float, nose: float, lift: float) -> str | None:
+    if base + lift - nose <= math.fabs(base - nose):
+        return "nose must be small enough to stand out of the base circle"
+    return None
+
+
+def _arc_nose_stands_out(base: float, nose: float, lift: float, bulge: float) -> str | None:
+    if bulge == 0.0:
+        return "bulge must be above 0 (TangentCam has straight flanks)"
+    return _nose_stands_out(base, nose, lift)
+
+
+@func
+def gear_bounds(radius: float, count: int) -> Bounds2:
+    """The square around the teeth's tips."""
+    return disc_bounds(radius * (1.0 + 2.0 * ADDENDUM / float(count)))
+
+
+@primitive(
+    "GearProfile",
+    EXACT,
+    bounds=gear_bounds,
+    limits={"radius": Limit.POSITIVE, "pressure_angle": Limit.POSITIVE},
+    requires=_teeth_are_whole,
+)
+@func
+def gear_profile(
+    p: vec2, radius: float = 0.5, pressure_angle: float = 0.3490658503988659, count: int = 12
+) -> float:
+    """A gear with involute teeth, one of them up; gears of one tooth size mesh.
+
+    Two gears mesh when radius / count and the pressure angle agree; their centres are then as far
+    apart as both radii together. Below the circle that the involutes start from, flanks go straight
+    to the middle; the corners at their feet are sharp.
+
+    Args:
+        p: Point.
+        radius: Of the pitch circle, where the gears roll on each other.
+        pressure_angle: Between the flanks' normals and the direction of motion there.
+        count: How many teeth.
+
+    Source: an involute's normals touch its base circle, so that involutes of one circle are
+    parallel curves (Leonhard Euler, 1765); proportions of ISO 53.
+
+    Measured:
+        gear_profile((0.0, 5.0), 1.2, 0.3490658503988659, 12) = 3.6
+        gear_profile((0.0, 0.0), 1.2, 0.3490658503988659, 12) = -0.95
+        gear_profile((0.13052619222005, 0.99144486137381), 1.0, 0.34906585039887, 12) = 0.0
+    """
+    module = 2.0 * radius / float(count)
+    tip = radius + ADDENDUM * module
+    root = radius - DEDENDUM * module
+    base = radius * cos(pressure_angle)
+    # Angles from the tooth's middle: where its involute leaves the base circle, and at its ends.
+    middle = 0.5 * PI / float(count) + tan(pressure_angle) - pressure_angle
+    roll_tip = sqrt(max(tip * tip - base * base, 0.0)) / base
+    roll_foot = sqrt(max(root * root - base * base, 0.0)) / base
+    at_tip = middle - roll_tip + atan(roll_tip)
+    at_foot = middle - roll_foot + atan(roll_foot)
+    foot = vec2(sin(at_foot), cos(at_foot))
+
+    q = fold_sectors(p, count)
+    from_middle = length(q)
+    angle = atan2(q.x, q.y)
+    # The tangent to the base circle through q meets the flank at a right angle.
+    roll = sqrt(max(from_middle * from_middle - base * base, 0.0)) / base
+    turned = angle + roll - atan(roll) - middle
+    met = roll - turned
+    on_flank = from_middle > base and met > roll_foot and met < roll_tip
+
+    d = length(from_segment(q, root * foot, max(root, base) * foot))
+    d = min(d, from_arc(q, tip, at_tip))
+    d = select(on_flank, min(d, abs(base * turned)), d)
+    d = select(angle > at_foot, min(d, abs(from_middle - root)), d)
+    inside = from_middle < root or (from_middle < tip and turned < 0.0)
+    return select(inside, -d, d)
+
+
+@func
+def tangent_cam_bounds(base: float, nose: float, lift: float) -> Bounds2:
+    """Around both circles."""
+    return uneven_capsule_bounds(base, nose, base + lift - nose)
+
+
+@primitive(
+    "TangentCam",
+    EXACT,
+    bounds=tangent_cam_bounds,
+    limits={"base": Limit.POSITIVE, "nose": Limit.POSITIVE, "lift": Limit.POSITIVE},
+    requires=_nose_stands_out,
+)
+@func
+def tangent_cam(p: vec2, base: float = 0.4, nose: float = 0.15, lift: float = 0.3) -> float:
+    """A cam with straight flanks that turns about the origin, its nose up.
+
+    Args:
+        p: Point.
+        base: Radius of the base circle.
+        nose: Radius of the nose.
+        lift: How far the nose stands out of the base circle.
+
+    Source: two circles and their common tangents.
+
+    Measured:
+        tangent_cam((0.0, 6.0), 2.0, 1.0, 1.0) = 3.0
+        tangent_cam((0.0, -6.0), 2.0, 1.0, 1.5) = 4.0
+        tangent_cam((3.0, 0.5), 1.0, 1.0, 4.0) = 2.0
+    """
+    return uneven_capsule(p, base, nose, base + lift - nose)
+
+
+@func
+def arc_cam_bounds(base: float, nose: float, lift: float, bulge: float) -> Bounds2:
+    """Around both circles and the flanks."""
+    return egg_bounds(base, nose, base + lift - nose, bulge)
+
+
+@primitive(
+    "ArcCam",
+    EXACT,
+    bounds=arc_cam_bounds,
+    limits={
+        "base": Limit.POSITIVE,
+        "nose": Limit.POSITIVE,
+        "lift": Limit.POSITIVE,
+        "bulge": Limit.FRACTION,
+    },
+    requires=_arc_nose_stands_out,
+)
+@func
+def arc_cam(
+    p: vec2, base: float = 0.4, nose: float = 0.15, lift: float = 0.3, bulge: float = 0.4
+) -> float:
+    """A cam with round flanks that turns about the origin, its nose up.
+
+    Args:
+        p: Point.
+        base: Radius of the base circle.
+        nose: Radius of the nose.
+        lift: How far the nose stands out of the base circle.
+        bulge: 1 for flanks as round as the whole cam is high, toward 0 for straight ones.
+
+    Source: the egg of two circles.
+
+    Measured:
+        arc_cam((0.0, 6.0), 2.0, 1.0, 1.0, 0.5) = 3.0
+        arc_cam((0.0, -6.0), 2.0, 1.0, 1.5, 0.25) = 4.0
+        arc_cam((3.0, 5.0), 1.0, 1.0, 2.0, 1.0) = 3.0
+    """
+    return egg(p, base, nose, base + lift - nose, bulge)
+
+
+@func
+def interpolated(image: Texture2D, place: vec2) -> float:
+    """The first channel between texels, bilinearly; unlike ``sample`` it has a gradient.
+
+    Args:
+        image: What is looked up.
+        place: Counted in texels from the middle of the lower left one.
+    """
+    corner = floor(place)
+    share = place - corner
+    at = ivec2(corner)
+    low = mix(texel(image, at).x, texel(image, at + ivec2(1, 0)).x, share.x)
+    high = mix(texel(image, at + ivec2(0, 1)).x, texel(image, at + ivec2(1, 1)).x, share.x)
+    return mix(low, high, share.y)
+
+
+@primitive(
+    "ImageField",
+    NOTHING,
+    slope=IMAGE_SLOPE,
+    bounds=rectangle_bounds,
+    limits={"size": Limit.POSITIVE},
+    growth=1.0,
+)
+@func
+def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: float = 1.0) -> float:
+    """A shape whose distances are the texels of an image, in their first channel.
+
+    Neighbouring texels must differ by at most the distance between their middles, and the outermost
+    be outside the shape, as the texels of any image of distances do.
+
+    Args:
+        p: Point.
+        image: The distances, negative inside.
+        size: Width and height that the image covers, its middle at the origin.
+        scale: The distance that a texel of value 1 stands for.
+
+    Source: bilinear interpolation; outside the image the way to it is added.
+
+    Measured:
+        image_field((3.0, 0.0), Texture2D([[0.5, 0.5], [0.5, 0.5]]), (2.0, 2.0)) = 3.0
+        image_field((0.0, 0.0), Texture2D([[0.0, 1.0], [0.0, 1.0]]), (2.0, 2.0)) = 0.5
+        image_field((0.0, 0.5), Texture2D([[1.0, 1.0], [0.0, 0.0]]), (2.0, 2.0), 3.0) = 3.0
+    """
+    texels = vec2(size_of(image))
+    # The middles of the outermost texels bound what is interpolated.
+    reach = 0.5 * size * (1.0 - 1.0 / texels)
+    inside = clamp(p, -reach, reach)
+    return scale * interpolated(image, (inside / size + 0.5) * texels - 0.5) + length(p - inside)

@@ -1,0 +1,320 @@
+"""Discs, rings and their parts.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside. An
+``angle`` is measured from the y axis to either side.
+"""
+
+from __future__ import annotations
+
+import math
+
+from distal.fields.flats.edges import PI, disc_bounds, turned_from
+from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2
+
+
+def _hole_is_left(radius: float, thickness: float) -> str | None:
+    return "thickness may be at most twice the radius" if thickness > 2.0 * radius else None
+
+
+def _less_than_a_turn(angle: float) -> str | None:
+    return "angle must be below pi" if angle >= math.pi else None
+
+
+def _ends_are_apart(radius: float, angle: float, thickness: float) -> str | None:
+    if angle > 0.5 * math.pi and (angle >= math.pi or 2.0 * radius * math.sin(angle) < thickness):
+        return "the round ends must not meet: take a smaller angle, or Annulus"
+    return _hole_is_left(radius, thickness)
+
+
+def _ring_is_open(radius: float, angle: float, thickness: float) -> str | None:
+    return _less_than_a_turn(angle) or _hole_is_left(radius, thickness)
+
+
+def _legs_are_apart(radius: float, angle: float, legs: float, thickness: float) -> str | None:
+    inner = (radius - 0.5 * thickness) * math.sin(angle)
+    if angle > 0.5 * math.pi and inner + legs * math.cos(angle) < 0.0:
+        return "the legs must not meet: take a smaller angle or shorter legs"
+    return _ring_is_open(radius, angle, thickness)
+
+
+def _cuts_the_disc(radius: float, height: float) -> str | None:
+    if not -radius < height < radius:
+        return "height must lie between -radius and radius"
+    return None
+
+
+@primitive("Circle", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def circle(p: vec2, radius: float = 1.0) -> float:
+    """Disc around the origin.
+
+    Args:
+        p: Point.
+        radius: Radius.
+
+    Source: the definition of a circle.
+
+    Measured:
+        circle((3.0, 4.0), 1.0) = 4.0
+        circle((0.0, 0.0), 2.0) = -2.0
+        circle((0.0, -2.5), 2.5) = 0.0
+    """
+    return length(p) - radius
+
+
+@func
+def annulus_bounds(radius: float, thickness: float) -> Bounds2:
+    """The square around the outer circle."""
+    return disc_bounds(radius + 0.5 * thickness)
+
+
+@primitive(
+    "Annulus",
+    EXACT,
+    bounds=annulus_bounds,
+    limits={"radius": Limit.POSITIVE, "thickness": Limit.POSITIVE},
+    requires=_hole_is_left,
+)
+@func
+def annulus(p: vec2, radius: float = 0.75, thickness: float = 0.25) -> float:
+    """Ring all around.
+
+    Args:
+        p: Point.
+        radius: Radius of the middle line.
+        thickness: From the inner to the outer circle.
+
+    Source: two circles about one centre.
+
+    Measured:
+        annulus((0.0, 0.0), 2.0, 1.0) = 1.5
+        annulus((0.0, 2.0), 2.0, 1.0) = -0.5
+        annulus((3.0, 4.0), 2.0, 1.0) = 2.5
+    """
+    return abs(length(p) - radius) - 0.5 * thickness
+
+
+@func
+def pie_bounds(radius: float, angle: float) -> Bounds2:
+    """The origin, the two ends of the arc, its top, and its sides where it reaches them."""
+    end = radius * vec2(sin(angle), cos(angle))
+    reach = select(angle > 0.5 * PI, radius, end.x)
+    return Bounds2(vec2(-reach, min(end.y, 0.0)), vec2(reach, radius))
+
+
+@primitive(
+    "Pie",
+    EXACT,
+    bounds=pie_bounds,
+    limits={"radius": Limit.POSITIVE, "angle": Limit.POSITIVE},
+    requires=_less_than_a_turn,
+)
+@func
+def pie(p: vec2, radius: float = 1.0, angle: float = 0.7) -> float:
+    """Sector of a disc around the y axis.
+
+    Args:
+        p: Point.
+        radius: Radius of the disc.
+        angle: From the y axis to either side, below pi.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/).
+
+    Measured:
+        pie((0.0, 3.0), 2.0, 1.0) = 1.0
+        pie((0.0, -1.0), 2.0, 0.75) = 1.0
+        pie((0.0, 0.5), 2.0, 0.5235987755982988) = -0.25
+    """
+    side = vec2(sin(angle), cos(angle))
+    q = vec2(abs(p.x), p.y)
+    past_circle = length(q) - radius
+    past_side = length(q - side * clamp(dot(q, side), 0.0, radius))
+    return max(past_circle, select(turned_from(q, side) > 0.0, past_side, -past_side))
+
+
+@func
+def cut_disk_bounds(radius: float, height: float) -> Bounds2:
+    """From the cut to the top."""
+    reach = select(height > 0.0, sqrt(max(radius * radius - height * height, 0.0)), radius)
+    return Bounds2(vec2(-reach, height), vec2(reach, radius))
+
+
+@primitive(
+    "CutDisk",
+    EXACT,
+    bounds=cut_disk_bounds,
+    limits={"radius": Limit.POSITIVE},
+    requires=_cuts_the_disc,
+)
+@func
+def cut_disk(p: vec2, radius: float = 1.0, height: float = -0.3) -> float:
+    """What a level line leaves of a disc, above it.
+
+    Args:
+        p: Point.
+        radius: Radius of the disc.
+        height: Height of the cut, from -radius to radius.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/).
+
+    Measured:
+        cut_disk((0.0, -7.0), 5.0, -3.0) = 4.0
+        cut_disk((7.0, -7.0), 5.0, -3.0) = 5.0
+        cut_disk((6.0, 8.0), 5.0, -3.0) = 5.0
+    """
+    corner = vec2(sqrt(max(radius * radius - height * height, 0.0)), height)
+    q = vec2(abs(p.x), p.y)
+    past_circle = length(q) - radius
+    inside = max(past_circle, height - q.y)
+    below = select(q.x < corner.x, height - q.y, length(q - corner))
+    above = past_circle > 0.0 and turned_from(corner, q) > 0.0
+    outside = select(above, past_circle, below)
+    return select(inside > 0.0, outside, inside)
+
+
+@func
+def from_arc(q: vec2, radius: float, angle: float) -> float:
+    """Distance to the line of an arc around the y axis, for q.x >= 0."""
+    side = vec2(sin(angle), cos(angle))
+    from_end = length(q - radius * side)
+    return select(turned_from(q, side) > 0.0, from_end, abs(length(q) - radius))
+
+
+@func
+def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
+    """Around the middle line, wider by half of the thickness."""
+    reach = select(angle > 0.5 * PI, radius, radius * sin(angle))
+    wide = 0.5 * thickness
+    low = radius * cos(angle)
+    return Bounds2(vec2(-reach, low) - wide, vec2(reach, radius) + wide)
+
+
+@primitive(
+    "Arc",
+    EXACT,
+    bounds=arc_bounds,
+    limits={"radius": Limit.POSITIVE, "angle": Limit.NOT_NEGATIVE, "thickness": Limit.POSITIVE},
+    requires=_ends_are_apart,
+)
+@func
+def arc(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.2) -> float:
+    """Part of a ring with round ends, around the y axis.
+
+    Args:
+        p: Point.
+        radius: Radius of the middle line.
+        angle: From the y axis to the middle of either end.
+        thickness: From the inner to the outer side.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/).
+
+    Measured:
+        arc((0.0, 4.0), 2.0, 1.0, 1.0) = 1.5
+        arc((0.0, 0.0), 2.0, 3.0, 1.0) = 1.5
+        arc((5.0, -4.0), 2.0, 1.5707963267948966, 1.0) = 4.5
+    """
+    return from_arc(vec2(abs(p.x), p.y), radius, angle) - 0.5 * thickness
+
+
+@func
+def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
+    """Around both ends and the outer circle between them."""
+    outer = radius + 0.5 * thickness
+    inner = radius - 0.5 * thickness
+    reach = select(angle > 0.5 * PI, outer, outer * sin(angle))
+    low = min(inner * cos(angle), outer * cos(angle))
+    return Bounds2(vec2(-reach, low), vec2(reach, outer))
+
+
+@primitive(
+    "Ring",
+    EXACT,
+    bounds=ring_bounds,
+    limits={"radius": Limit.POSITIVE, "angle": Limit.POSITIVE, "thickness": Limit.POSITIVE},
+    requires=_ring_is_open,
+)
+@func
+def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.25) -> float:
+    """Part of a ring with straight ends, around the y axis.
+
+    Args:
+        p: Point.
+        radius: Radius of the middle line.
+        angle: From the y axis to either side, below pi.
+        thickness: From the inner to the outer side.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/).
+
+    Measured:
+        ring((0.0, 4.0), 2.0, 1.0, 1.0) = 1.5
+        ring((5.5, -4.0), 2.0, 1.5707963267948966, 1.0) = 5.0
+        ring((1.75, 0.125), 2.0, 1.5707963267948966, 1.0) = -0.125
+    """
+    side = vec2(sin(angle), cos(angle))
+    q = vec2(abs(p.x), p.y)
+    wide = 0.5 * thickness
+    past_side = turned_from(q, side)
+    from_end = length(vec2(past_side, max(abs(dot(q, side) - radius) - wide, 0.0)))
+    past_circles = abs(length(q) - radius) - wide
+    return max(past_circles, select(past_side > 0.0, from_end, -from_end))
+
+
+@func
+def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float) -> Bounds2:
+    """Around the ring and the corners of the legs' ends."""
+    side = vec2(sin(angle), cos(angle))
+    ahead = legs * vec2(side.y, -side.x)
+    box = ring_bounds(radius, angle, thickness)
+    inner = (radius - 0.5 * thickness) * side + ahead
+    outer = (radius + 0.5 * thickness) * side + ahead
+    reach = max(box.high.x, max(inner.x, outer.x))
+    low = min(box.low.y, min(inner.y, outer.y))
+    return Bounds2(vec2(-reach, low), vec2(reach, box.high.y))
+
+
+@primitive(
+    "Horseshoe",
+    EXACT,
+    bounds=horseshoe_bounds,
+    limits={
+        "radius": Limit.POSITIVE,
+        "angle": Limit.POSITIVE,
+        "legs": Limit.NOT_NEGATIVE,
+        "thickness": Limit.POSITIVE,
+    },
+    requires=_legs_are_apart,
+)
+@func
+def horseshoe(
+    p: vec2, radius: float = 0.5, angle: float = 1.9, legs: float = 0.4, thickness: float = 0.25
+) -> float:
+    """Part of a ring around the y axis, prolonged straight at both ends.
+
+    Args:
+        p: Point.
+        radius: Radius of the ring's middle line.
+        angle: From the y axis to either end of the ring.
+        legs: Length of the straight parts.
+        thickness: From the inner to the outer side.
+
+    Source: Inigo Quilez, "2D distance functions"
+    (https://iquilezles.org/articles/distfunctions2d/).
+
+    Measured:
+        horseshoe((0.0, 4.0), 2.0, 3.0, 1.0, 1.0) = 1.5
+        horseshoe((2.0, -5.0), 2.0, 1.5707963267948966, 3.0, 1.0) = 2.0
+        horseshoe((2.25, -1.0), 2.0, 1.5707963267948966, 3.0, 1.0) = -0.25
+    """
+    side = vec2(sin(angle), cos(angle))
+    q = vec2(abs(p.x), p.y)
+    # Seen from the ring's end: how far ahead along the leg, and how far from the ring's centre.
+    ahead = -turned_from(side, q)
+    from_centre = select(ahead < 0.0, length(q), dot(q, side))
+    past_side = abs(from_centre - radius) - 0.5 * thickness
+    past_end = ahead - legs
+    return length(max(vec2(past_side, past_end), 0.0)) + min(max(past_side, past_end), 0.0)

@@ -1,0 +1,15 @@
+"""The whole field library, loaded: importing a module of it declares its shapes and operators."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+
+import distal.fields
+from distal.fields.guarantees import OPERATORS, PRIMITIVES
+
+for _module in pkgutil.walk_packages(distal.fields.__path__, "distal.fields."):
+    if _module.name != __name__:
+        importlib.import_module(_module.name)
+
+__all__ = ["OPERATORS", "PRIMITIVES"]

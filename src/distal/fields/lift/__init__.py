@@ -1,0 +1,1 @@
+"""Operators between the plane and space: extrusion, revolution, sweeps, slices, projections."""

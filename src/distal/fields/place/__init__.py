@@ -1,0 +1,1 @@
+"""Operators that move, turn, scale, shear and mirror a shape."""

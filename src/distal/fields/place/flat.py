@@ -1,0 +1,267 @@
+"""Where a flat shape lies: moved, turned, scaled, sheared and mirrored in the plane.
+
+What flows in: a point of the plane, and the numbers of the placement. What flows out: the point to
+ask the shape at, and the rectangle of the placed shape. As ``place`` and ``mirrors`` do for solids.
+"""
+
+from __future__ import annotations
+
+from distal.fields.extents import at_least_one, hull_of, rectangle_distance, turned_flat
+from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds2, Growth, Limit, operator
+from distal.fields.place.mirrors import count_requirement, folded
+from distal.fields.place.solid import scaled_value
+from distal.lang import abs, cos, dot, func, length, mat2, max, min, sin, sqrt, vec2
+
+
+@func
+def translated_flat(p: vec2, offset: vec2) -> vec2:
+    """The place before a shift by ``offset``."""
+    return p - offset
+
+
+@func
+def translated_flat_bounds(bounds: Bounds2, offset: vec2) -> Bounds2:
+    """The rectangle, shifted."""
+    return Bounds2(bounds.low + offset, bounds.high + offset)
+
+
+@func
+def turn_matrix(angle: float) -> mat2:
+    """A turn counterclockwise."""
+    c, s = cos(angle), sin(angle)
+    return mat2(vec2(c, s), vec2(-s, c))
+
+
+@func
+def rotated_flat(p: vec2, angle: float) -> vec2:
+    """The place before a turn about the origin, counterclockwise."""
+    m = turn_matrix(angle)
+    return vec2(dot(m[0], p), dot(m[1], p))
+
+
+@func
+def rotated_flat_bounds(bounds: Bounds2, angle: float) -> Bounds2:
+    """The rectangle around the turned one."""
+    return turned_flat(bounds, turn_matrix(angle))
+
+
+@func
+def scaled_flat(p: vec2, factor: float) -> vec2:
+    """The place before scaling about the origin."""
+    return p / factor
+
+
+@func
+def scaled_flat_bounds(bounds: Bounds2, factor: float) -> Bounds2:
+    """The rectangle, scaled."""
+    return Bounds2(bounds.low * factor, bounds.high * factor)
+
+
+@func
+def stretched_flat(p: vec2, factors: vec2) -> vec2:
+    """The place before scaling each axis by its own factor."""
+    return p / factors
+
+
+@func
+def stretched_flat_bounds(bounds: Bounds2, factors: vec2) -> Bounds2:
+    """The rectangle, scaled."""
+    return Bounds2(bounds.low * factors, bounds.high * factors)
+
+
+@func
+def stretched_flat_value(d: float, p: vec2, factors: vec2, bounds: Bounds2) -> float:
+    """The distance after the smaller factor; at least the distance to the rectangle."""
+    around = stretched_flat_bounds(bounds, factors)
+    return max(d * min(factors.x, factors.y), rectangle_distance(p, around))
+
+
+@func
+def sheared_flat(p: vec2, xy: float) -> vec2:
+    """The place before a shear that moves x by ``xy`` for each y."""
+    return vec2(p.x - xy * p.y, p.y)
+
+
+@func
+def sheared_flat_bounds(bounds: Bounds2, xy: float) -> Bounds2:
+    """The rectangle around the sheared one."""
+    return turned_flat(bounds, mat2(vec2(1.0, 0.0), vec2(xy, 1.0)))
+
+
+@func
+def sheared_flat_value(d: float, p: vec2, xy: float, bounds: Bounds2) -> float:
+    """At least the distance to the rectangle."""
+    return max(d, rectangle_distance(p, sheared_flat_bounds(bounds, xy)))
+
+
+@func
+def sheared_flat_slope(slope: float, xy: float) -> float:
+    """The largest singular value of a shear is (|xy| + sqrt(xy^2 + 4)) / 2."""
+    return max(slope * 0.5 * (abs(xy) + sqrt(xy * xy + 4.0)), 1.0)
+
+
+@func
+def mirrored_flat(p: vec2, normal: vec2, offset: float) -> vec2:
+    """The half of the plane that ``normal`` points into, seen in the other half too."""
+    return p - normal * (2.0 * min(dot(p, normal) - offset, 0.0))
+
+
+@func
+def mirrored_flat_bounds(bounds: Bounds2, normal: vec2, offset: float) -> Bounds2:
+    """The rectangle and its mirror image."""
+    image = mat2(
+        vec2(1.0, 0.0) - 2.0 * normal.x * normal,
+        vec2(0.0, 1.0) - 2.0 * normal.y * normal,
+    )
+    there = turned_flat(bounds, image)
+    shift = normal * (2.0 * offset)
+    return hull_of(bounds, Bounds2(there.low + shift, there.high + shift))
+
+
+@func
+def symmetric_flat(p: vec2, x: bool, y: bool) -> vec2:
+    """The positive side of the chosen axes, seen on both."""
+    q = p
+    if x:
+        q.x = abs(q.x)
+    if y:
+        q.y = abs(q.y)
+    return q
+
+
+@func
+def symmetric_flat_bounds(bounds: Bounds2, x: bool, y: bool) -> Bounds2:
+    """The positive part of the rectangle, on both sides."""
+    both = max(bounds.high, vec2(0.0))
+    low, high = bounds.low, bounds.high
+    if x:
+        low.x, high.x = -both.x, both.x
+    if y:
+        low.y, high.y = -both.y, both.y
+    return Bounds2(low, high)
+
+
+@func
+def diagonal_flat(p: vec2) -> vec2:
+    """The side of the line x = y where x is larger, seen on both."""
+    return vec2(max(p.x, p.y), min(p.x, p.y))
+
+
+@func
+def diagonal_flat_bounds(bounds: Bounds2) -> Bounds2:
+    """The rectangle and its mirror image."""
+    return hull_of(bounds, Bounds2(bounds.low.yx, bounds.high.yx))
+
+
+@func
+def octant_flat(p: vec2) -> vec2:
+    """An eighth of the turn, from the x axis to the diagonal, seen in all."""
+    q = abs(p)
+    return vec2(max(q.x, q.y), min(q.x, q.y))
+
+
+@func
+def octant_flat_bounds(bounds: Bounds2) -> Bounds2:
+    """What the rectangle shows of the eighth, on all sides."""
+    side = max(bounds.high.x, 0.0)
+    return Bounds2(vec2(-side), vec2(side))
+
+
+@func
+def kaleidoscope_flat(p: vec2, count: int) -> vec2:
+    """``count`` mirrors through the origin show what is between the x axis and half a sector."""
+    return folded(p, count)
+
+
+@func
+def kaleidoscope_flat_bounds(bounds: Bounds2) -> Bounds2:
+    """As far out as the rectangle goes, all around."""
+    side = length(max(abs(bounds.low), abs(bounds.high)))
+    return Bounds2(vec2(-side), vec2(side))
+
+
+def symmetry_flat_requirement(x: bool, y: bool) -> str | None:
+    """Why nothing would be mirrored, or None."""
+    return None if x or y else "name at least one axis"
+
+
+TRANSLATE_FLAT = operator(
+    "flat translate",
+    point=translated_flat,
+    keeps=EXACT,
+    bounds=translated_flat_bounds,
+    growth=Growth.KEPT,
+)
+ROTATE_FLAT = operator(
+    "flat rotate",
+    point=rotated_flat,
+    keeps=EXACT,
+    bounds=rotated_flat_bounds,
+    growth=Growth.TURNED,
+)
+SCALE_FLAT = operator(
+    "flat scale",
+    point=scaled_flat,
+    finish=scaled_value,
+    keeps=EXACT,
+    bounds=scaled_flat_bounds,
+    limits={"factor": Limit.POSITIVE},
+    growth=Growth.KEPT,
+)
+STRETCH_FLAT = operator(
+    "flat scale axes",
+    point=stretched_flat,
+    finish=stretched_flat_value,
+    keeps=LOWER_BOUND,
+    slope=at_least_one,
+    bounds=stretched_flat_bounds,
+    limits={"factors": Limit.POSITIVE},
+    growth=Growth.HELD,
+)
+SHEAR_FLAT = operator(
+    "flat shear",
+    point=sheared_flat,
+    finish=sheared_flat_value,
+    keeps=NOTHING,
+    slope=sheared_flat_slope,
+    bounds=sheared_flat_bounds,
+    growth=Growth.HELD,
+)
+MIRROR_FLAT = operator(
+    "flat mirror",
+    point=mirrored_flat,
+    keeps=LOWER_BOUND,
+    bounds=mirrored_flat_bounds,
+    limits={"normal": Limit.UNIT},
+    growth=Growth.TURNED,
+)
+SYMMETRY_FLAT = operator(
+    "flat symmetry",
+    point=symmetric_flat,
+    keeps=LOWER_BOUND,
+    bounds=symmetric_flat_bounds,
+    requires=symmetry_flat_requirement,
+    growth=Growth.KEPT,
+)
+MIRROR_DIAGONAL_FLAT = operator(
+    "flat mirror diagonal",
+    point=diagonal_flat,
+    keeps=LOWER_BOUND,
+    bounds=diagonal_flat_bounds,
+    growth=Growth.KEPT,
+)
+MIRROR_OCTANT_FLAT = operator(
+    "flat mirror octant",
+    point=octant_flat,
+    keeps=LOWER_BOUND,
+    bounds=octant_flat_bounds,
+    growth=Growth.CORNERED,
+)
+KALEIDOSCOPE_FLAT = operator(
+    "flat kaleidoscope",
+    point=kaleidoscope_flat,
+    keeps=LOWER_BOUND,
+    bounds=kaleidoscope_flat_bounds,
+    requires=count_requirement,
+    growth=Growth.TURNED,
+)

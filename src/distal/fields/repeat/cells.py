@@ -1,0 +1,397 @@
+"""A solid again and again on a grid: infinite, limited, in an interval, in half of space, mirrored.
+
+What flows in: a point, the spacing (0 along an axis: not repeated there), the child's box. What
+flows out: the point in a copy's own space, the cell's index, and a value that is safe to march.
+
+The rule that keeps a repetition safe. The point is asked in one cell only (``neighbours=0``) or in
+a few. Plain modulo jumps at a cell's border wherever the child is not symmetric, and its value says
+nothing of the copy next door: a step may pass through it. So the box of each copy stands in for the
+copies that are not asked: the value is never more than the distance to the nearest of their boxes,
+and a copy that is asked never answers less than the distance to its own box. Where the set of asked
+copies changes, the box that leaves is as far away as the box that enters, so both sides give that
+distance: the result has no jump, whatever the child. Its slope is the child's, or 1 (of the boxes).
+
+The boxes must leave room, or their faces would look like surfaces: a child that does not fit has
+no slope (``UNBOUNDED``) and is refused. Cells lie around the middle of the child's box, so it may
+stand anywhere. A child that is symmetric in its cell needs none of this: ``repeat mirrored``.
+
+Source: the cells, and the need to ask neighbours: Inigo Quilez, "Domain repetition"
+(https://iquilezles.org/articles/sdfrepetition/); names of the kinds: hg_sdf
+(https://mercury.sexy/hg_sdf/). The bound by boxes is derived here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.extents import ENDLESS, largest, smallest
+from distal.fields.guarantees import UNBOUNDED, Bounds, Site
+from distal.lang import (
+    Vectors,
+    abs,
+    all,
+    clamp,
+    dot,
+    func,
+    length,
+    max,
+    min,
+    round,
+    select,
+    sqrt,
+    struct,
+    vec3,
+)
+
+# The share of the spacing that must be free on each side of a copy's box.
+ROOM = 0.01
+# The same where copies may overlap: how much nearer the asked ones must be than the others.
+LEAD = 0.1
+
+
+@struct
+class Copies:
+    """The copies of a repetition: at ``origin + index * spacing``, index from first to last."""
+
+    spacing: vec3
+    origin: vec3
+    first: vec3
+    last: vec3
+
+
+@struct
+class Nearest:
+    """The nearest of the copies that were asked: its distance, and where it was asked."""
+
+    distance: float
+    site: Site
+
+
+@func
+def repeated_axes(spacing: Vectors) -> Vectors:
+    """1 along the axes that are repeated, 0 along the others."""
+    return select(spacing == 0.0, spacing * 0.0, spacing * 0.0 + 1.0)
+
+
+@func
+def endless(spacing: vec3) -> Copies:
+    """Copies without end on both sides."""
+    far = vec3(UNBOUNDED)
+    return Copies(spacing, vec3(0.0), -far, far)
+
+
+@func
+def counted(spacing: vec3, count_x: int, count_y: int, count_z: int) -> Copies:
+    """A block of copies around the origin; indices start at 0."""
+    last = vec3(float(count_x), float(count_y), float(count_z)) - 1.0
+    return Copies(spacing, -0.5 * last * spacing, vec3(0.0), last)
+
+
+@func
+def middle_of(bounds: Bounds) -> vec3:
+    """The middle of a box; 0 along an axis without ends."""
+    return 0.5 * bounds.low + 0.5 * bounds.high
+
+
+@func
+def nearest_index(p: vec3, copies: Copies, bounds: Bounds) -> vec3:
+    """The copy whose box's middle is nearest."""
+    axes = repeated_axes(copies.spacing)
+    steps = (p - copies.origin - middle_of(bounds)) / (copies.spacing + 1.0 - axes)
+    return clamp(round(steps), copies.first, copies.last) * axes
+
+
+@func
+def beside(p: vec3, copies: Copies, index: vec3) -> vec3:
+    """The point in a copy's own space."""
+    return p - copies.origin - index * copies.spacing
+
+
+@func
+def at_end(away: vec3, copies: Copies, index: vec3) -> vec3:
+    """1 along the axes where nothing follows on the side that the point lies on."""
+    beyond_high = select(index >= copies.last, vec3(1.0), vec3(0.0))
+    beyond_low = select(index <= copies.first, vec3(1.0), vec3(0.0))
+    return select(away < 0.0, beyond_low, beyond_high)
+
+
+@func
+def to_others(
+    away: vec3, half: vec3, copies: Copies, index: vec3, neighbours: int, limited: bool
+) -> vec3:
+    """Along each axis, how far the box of the nearest copy is that is not asked.
+
+    Args:
+        away: The point from the middle of the nearest copy's box.
+        half: Half of the box.
+        copies: All copies.
+        index: The nearest copy.
+        neighbours: 0: only it is asked; 1: also the next toward the point; 2: on both sides.
+        limited: Whether there are ends.
+    """
+    distance = abs(away)
+    side = distance if neighbours == 1 else -distance
+    if limited:
+        side = select(at_end(away, copies, index) > 0.5, distance, side)
+    steps = 2.0 if neighbours == 2 else 1.0
+    gap = steps * copies.spacing + side - half
+    alone = select(copies.first == copies.last, vec3(UNBOUNDED), gap)
+    return select(copies.spacing == 0.0, vec3(UNBOUNDED), alone)
+
+
+@func
+def distance_to_box(away: vec3, half: vec3) -> float:
+    """The distance to a box around the origin, negative inside."""
+    beyond = abs(away) - half
+    return length(max(beyond, vec3(0.0))) + min(largest(beyond), 0.0)
+
+
+@func
+def distance_to_others(away: vec3, half: vec3, gap: vec3) -> float:
+    """The distance to the boxes of the copies that are not asked.
+
+    Such a copy is ``gap`` away along at least one axis; along the others it may stand as near as
+    the asked ones.
+    """
+    beside = max(abs(away) - half, vec3(0.0))
+    across = max(gap, beside)
+    return sqrt(dot(beside, beside) + smallest(across * across - beside * beside))
+
+
+@func
+def half_of(bounds: Bounds) -> vec3:
+    """Half of a box's size."""
+    return 0.5 * bounds.high - 0.5 * bounds.low
+
+
+# One cell
+
+
+@func
+def site_in(p: vec3, copies: Copies, bounds: Bounds) -> Site:
+    """The point in the nearest copy's space, and that copy's index."""
+    index = nearest_index(p, copies, bounds)
+    return Site(beside(p, copies, index), index)
+
+
+@func
+def value_in(d: float, p: vec3, copies: Copies, bounds: Bounds, limited: bool) -> float:
+    """The value of the nearest copy, made safe for the others."""
+    index = nearest_index(p, copies, bounds)
+    away = beside(p, copies, index) - middle_of(bounds)
+    half = half_of(bounds)
+    gap = to_others(away, half, copies, index, 0, limited)
+    return min(max(d, distance_to_box(away, half)), distance_to_others(away, half, gap))
+
+
+@func
+def slope_in(slope: float, bounds: Bounds, copies: Copies, neighbours: int) -> float:
+    """The child's slope, or 1; none where the boxes leave no room."""
+    half = half_of(bounds)
+    room = 0.5 * copies.spacing - half
+    share = ROOM
+    if neighbours > 0:
+        room = (0.5 * float(neighbours) + 0.5) * copies.spacing - half
+        share = LEAD
+    alone = copies.first == copies.last
+    fits = select(alone, vec3(0.0), share * copies.spacing - room)
+    fits = select(copies.spacing == 0.0, vec3(0.0), fits)
+    return select(largest(fits) > 0.0, UNBOUNDED, max(slope, 1.0))
+
+
+@func
+def bounds_in(bounds: Bounds, copies: Copies) -> Bounds:
+    """The box around all copies."""
+    low = bounds.low + copies.origin + copies.first * copies.spacing
+    high = bounds.high + copies.origin + copies.last * copies.spacing
+    far = vec3(UNBOUNDED)
+    onward = copies.spacing > 0.0
+    low = select(copies.first < -ENDLESS, select(onward, -far, bounds.low), low)
+    high = select(copies.last > ENDLESS, select(onward, far, bounds.high), high)
+    return Bounds(low, high)
+
+
+# Several cells
+
+
+@func
+def nearest_copy(
+    field: Callable[[vec3], float],
+    p: vec3,
+    copies: Copies,
+    bounds: Bounds,
+    neighbours: int,
+    limited: bool,
+) -> Nearest:
+    """The nearest of the copies around the point; safe for those that are not asked."""
+    index = nearest_index(p, copies, bounds)
+    middle = middle_of(bounds)
+    q = beside(p, copies, index)
+    away = q - middle
+    half = half_of(bounds)
+    toward = select(away < 0.0, vec3(-1.0), vec3(1.0))
+    gap = to_others(away, half, copies, index, neighbours, limited)
+    distance = distance_to_others(away, half, gap)
+    nearest = UNBOUNDED
+    site = Site(q, index)
+    start = 0 if neighbours == 1 else -1
+    for z in range(start, 2):
+        if z != 0 and copies.spacing.z == 0.0:
+            continue
+        for y in range(start, 2):
+            if y != 0 and copies.spacing.y == 0.0:
+                continue
+            for x in range(start, 2):
+                if x != 0 and copies.spacing.x == 0.0:
+                    continue
+                step = vec3(float(x), float(y), float(z)) * toward
+                place = q - step * copies.spacing
+                there = index + step
+                if limited and not all(clamp(there, copies.first, copies.last) == there):
+                    continue
+                d = max(field(place), distance_to_box(place - middle, half))
+                if d < nearest:
+                    nearest = d
+                    site = Site(place, there)
+    return Nearest(min(nearest, distance), site)
+
+
+# Infinite
+
+
+@func
+def repeated(p: vec3, spacing: vec3, bounds: Bounds) -> Site:
+    """The place in the nearest cell."""
+    return site_in(p, endless(spacing), bounds)
+
+
+@func
+def repeated_value(d: float, p: vec3, spacing: vec3, bounds: Bounds) -> float:
+    """The value, safe for the other cells."""
+    return value_in(d, p, endless(spacing), bounds, False)
+
+
+@func
+def repeated_slope(slope: float, bounds: Bounds, spacing: vec3) -> float:
+    """The child's, where it fits in its cell."""
+    return slope_in(slope, bounds, endless(spacing), 0)
+
+
+@func
+def repeated_bounds(bounds: Bounds, spacing: vec3) -> Bounds:
+    """Without end along the repeated axes."""
+    return bounds_in(bounds, endless(spacing))
+
+
+@func
+def repeated_around(
+    field: Callable[[vec3], float], p: vec3, spacing: vec3, bounds: Bounds, neighbours: int
+) -> float:
+    """The nearest of the copies around the point."""
+    return nearest_copy(field, p, endless(spacing), bounds, neighbours, False).distance
+
+
+@func
+def repeated_site(
+    field: Callable[[vec3], float], p: vec3, spacing: vec3, bounds: Bounds, neighbours: int
+) -> Site:
+    """The place in the cell of the nearest copy."""
+    return nearest_copy(field, p, endless(spacing), bounds, neighbours, False).site
+
+
+@func
+def repeated_around_slope(slope: float, bounds: Bounds, spacing: vec3, neighbours: int) -> float:
+    """The child's, where the asked copies are nearer than the others."""
+    return slope_in(slope, bounds, endless(spacing), neighbours)
+
+
+# Limited by a count
+
+
+@func
+def limited(
+    p: vec3, spacing: vec3, bounds: Bounds, count_x: int = 1, count_y: int = 1, count_z: int = 1
+) -> Site:
+    """The place in the nearest cell of a block."""
+    return site_in(p, counted(spacing, count_x, count_y, count_z), bounds)
+
+
+@func
+def limited_value(
+    d: float,
+    p: vec3,
+    spacing: vec3,
+    bounds: Bounds,
+    count_x: int = 1,
+    count_y: int = 1,
+    count_z: int = 1,
+) -> float:
+    """The value, safe for the other cells."""
+    return value_in(d, p, counted(spacing, count_x, count_y, count_z), bounds, True)
+
+
+@func
+def limited_slope(
+    slope: float,
+    bounds: Bounds,
+    spacing: vec3,
+    count_x: int = 1,
+    count_y: int = 1,
+    count_z: int = 1,
+) -> float:
+    """The child's, where it fits in its cell."""
+    return slope_in(slope, bounds, counted(spacing, count_x, count_y, count_z), 0)
+
+
+@func
+def limited_bounds(
+    bounds: Bounds, spacing: vec3, count_x: int = 1, count_y: int = 1, count_z: int = 1
+) -> Bounds:
+    """The box around the block."""
+    return bounds_in(bounds, counted(spacing, count_x, count_y, count_z))
+
+
+@func
+def limited_around(
+    field: Callable[[vec3], float],
+    p: vec3,
+    spacing: vec3,
+    bounds: Bounds,
+    neighbours: int,
+    count_x: int = 1,
+    count_y: int = 1,
+    count_z: int = 1,
+) -> float:
+    """The nearest of the copies around the point."""
+    copies = counted(spacing, count_x, count_y, count_z)
+    return nearest_copy(field, p, copies, bounds, neighbours, True).distance
+
+
+@func
+def limited_site(
+    field: Callable[[vec3], float],
+    p: vec3,
+    spacing: vec3,
+    bounds: Bounds,
+    neighbours: int,
+    count_x: int = 1,
+    count_y: int = 1,
+    count_z: int = 1,
+) -> Site:
+    """The place in the cell of the nearest copy."""
+    copies = counted(spacing, count_x, count_y, count_z)
+    return nearest_copy(field, p, copies, bounds, neighbours, True).site
+
+
+@func
+def limited_around_slope(
+    slope: float,
+    bounds: Bounds,
+    spacing: vec3,
+    neighbours: int,
+    count_x: int = 1,
+    count_y: int = 1,
+    count_z: int = 1,
+) -> float:
+    """The child's, where the asked copies are nearer than the others."""
+    return slope_in(slope, bounds, counted(spacing, count_x, count_y, count_z), neighbours)

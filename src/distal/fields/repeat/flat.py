@@ -1,0 +1,427 @@
+"""A flat shape again and again: on a grid, mirrored, around the origin, at given places.
+
+What flows in: a point of the plane. What flows out: as ``repeat`` and ``repeat_polar`` give for
+solids, which these call: the plane is a slice of space, without repetition across it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.combine.joins import INSIDE_AND_BOUND
+from distal.fields.guarantees import (
+    EXACT_OUTSIDE,
+    LOWER_BOUND,
+    UNBOUNDED,
+    Bounds,
+    Bounds2,
+    Growth,
+    Site,
+    Site2,
+    operator,
+)
+from distal.fields.place.flat import kaleidoscope_flat_bounds
+from distal.fields.repeat.cells import (
+    bounds_in,
+    counted,
+    endless,
+    nearest_copy,
+    site_in,
+    slope_in,
+    value_in,
+)
+from distal.fields.repeat.grid import (
+    FITTING,
+    SMALLER,
+    SPACING,
+    neighbours_requirement,
+    repeated_mirrored,
+)
+from distal.fields.repeat.polar import (
+    POLAR_FITTING,
+    POLAR_SMALLER,
+    nearest_polar,
+    polar_around_requirement,
+    polar_requirement,
+    repeated_polar,
+    repeated_polar_around_slope,
+    repeated_polar_slope,
+    repeated_polar_value,
+)
+from distal.lang import Buffer, func, max, min, size, vec2, vec3
+
+
+@func
+def in_space(p: vec2) -> vec3:
+    """A point of the plane in the plane z = 0."""
+    return vec3(p, 0.0)
+
+
+@func
+def slab(bounds: Bounds2) -> Bounds:
+    """A rectangle as a box without end across the plane."""
+    return Bounds(vec3(bounds.low, -UNBOUNDED), vec3(bounds.high, UNBOUNDED))
+
+
+@func
+def flat_site(site: Site) -> Site2:
+    """A place in the plane."""
+    return Site2(site.p.xy, site.cell)
+
+
+@func
+def flat_bounds(bounds: Bounds) -> Bounds2:
+    """What a box shows in the plane."""
+    return Bounds2(bounds.low.xy, bounds.high.xy)
+
+
+# On a grid
+
+
+@func
+def repeated_flat(p: vec2, spacing: vec2, bounds: Bounds2) -> Site2:
+    """The place in the nearest cell."""
+    return flat_site(site_in(in_space(p), endless(in_space(spacing)), slab(bounds)))
+
+
+@func
+def repeated_flat_value(d: float, p: vec2, spacing: vec2, bounds: Bounds2) -> float:
+    """The value, safe for the other cells."""
+    return value_in(d, in_space(p), endless(in_space(spacing)), slab(bounds), False)
+
+
+@func
+def repeated_flat_slope(slope: float, bounds: Bounds2, spacing: vec2) -> float:
+    """The child's, where it fits in its cell."""
+    return slope_in(slope, slab(bounds), endless(in_space(spacing)), 0)
+
+
+@func
+def repeated_flat_bounds(bounds: Bounds2, spacing: vec2) -> Bounds2:
+    """Without end along the repeated axes."""
+    return flat_bounds(bounds_in(slab(bounds), endless(in_space(spacing))))
+
+
+@func
+def repeated_flat_around(
+    field: Callable[[vec2], float], p: vec2, spacing: vec2, bounds: Bounds2, neighbours: int
+) -> float:
+    """The nearest of the copies around the point."""
+    copies = endless(in_space(spacing))
+    found = nearest_copy(
+        lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, False
+    )
+    return found.distance
+
+
+@func
+def repeated_flat_site(
+    field: Callable[[vec2], float], p: vec2, spacing: vec2, bounds: Bounds2, neighbours: int
+) -> Site2:
+    """The place in the cell of the nearest copy."""
+    copies = endless(in_space(spacing))
+    found = nearest_copy(
+        lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, False
+    )
+    return flat_site(found.site)
+
+
+@func
+def repeated_flat_around_slope(
+    slope: float, bounds: Bounds2, spacing: vec2, neighbours: int
+) -> float:
+    """The child's, where the asked copies are nearer than the others."""
+    return slope_in(slope, slab(bounds), endless(in_space(spacing)), neighbours)
+
+
+@func
+def limited_flat(
+    p: vec2, spacing: vec2, bounds: Bounds2, count_x: int = 1, count_y: int = 1
+) -> Site2:
+    """The place in the nearest cell of a block."""
+    copies = counted(in_space(spacing), count_x, count_y, 1)
+    return flat_site(site_in(in_space(p), copies, slab(bounds)))
+
+
+@func
+def limited_flat_value(
+    d: float, p: vec2, spacing: vec2, bounds: Bounds2, count_x: int = 1, count_y: int = 1
+) -> float:
+    """The value, safe for the other cells."""
+    copies = counted(in_space(spacing), count_x, count_y, 1)
+    return value_in(d, in_space(p), copies, slab(bounds), True)
+
+
+@func
+def limited_flat_slope(
+    slope: float, bounds: Bounds2, spacing: vec2, count_x: int = 1, count_y: int = 1
+) -> float:
+    """The child's, where it fits in its cell."""
+    return slope_in(slope, slab(bounds), counted(in_space(spacing), count_x, count_y, 1), 0)
+
+
+@func
+def limited_flat_bounds(
+    bounds: Bounds2, spacing: vec2, count_x: int = 1, count_y: int = 1
+) -> Bounds2:
+    """The rectangle around the block."""
+    return flat_bounds(bounds_in(slab(bounds), counted(in_space(spacing), count_x, count_y, 1)))
+
+
+@func
+def limited_flat_around(
+    field: Callable[[vec2], float],
+    p: vec2,
+    spacing: vec2,
+    bounds: Bounds2,
+    neighbours: int,
+    count_x: int = 1,
+    count_y: int = 1,
+) -> float:
+    """The nearest of the copies around the point."""
+    copies = counted(in_space(spacing), count_x, count_y, 1)
+    found = nearest_copy(lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, True)
+    return found.distance
+
+
+@func
+def limited_flat_site(
+    field: Callable[[vec2], float],
+    p: vec2,
+    spacing: vec2,
+    bounds: Bounds2,
+    neighbours: int,
+    count_x: int = 1,
+    count_y: int = 1,
+) -> Site2:
+    """The place in the cell of the nearest copy."""
+    copies = counted(in_space(spacing), count_x, count_y, 1)
+    found = nearest_copy(lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, True)
+    return flat_site(found.site)
+
+
+@func
+def limited_flat_around_slope(
+    slope: float,
+    bounds: Bounds2,
+    spacing: vec2,
+    neighbours: int,
+    count_x: int = 1,
+    count_y: int = 1,
+) -> float:
+    """The child's, where the asked copies are nearer than the others."""
+    copies = counted(in_space(spacing), count_x, count_y, 1)
+    return slope_in(slope, slab(bounds), copies, neighbours)
+
+
+@func
+def mirrored_cells(p: vec2, spacing: vec2) -> Site2:
+    """The place in its cell, every other one mirrored."""
+    return flat_site(repeated_mirrored(in_space(p), in_space(spacing)))
+
+
+# Around the origin: the plane stands for the ground, where y points away from z
+
+
+@func
+def on_ground(p: vec2) -> vec3:
+    """A point of the plane on the ground, so that turns keep their sense."""
+    return vec3(p.x, 0.0, -p.y)
+
+
+@func
+def column(bounds: Bounds2) -> Bounds:
+    """A rectangle as a box on the ground, without end upward and downward."""
+    low, high = bounds.low, bounds.high
+    return Bounds(vec3(low.x, -UNBOUNDED, -high.y), vec3(high.x, UNBOUNDED, -low.y))
+
+
+@func
+def off_ground(p: vec3) -> vec2:
+    """A point on the ground back in the plane."""
+    return vec2(p.x, -p.z)
+
+
+@func
+def repeated_polar_flat(p: vec2, count: int, bounds: Bounds2) -> Site2:
+    """The place in the nearest sector."""
+    site = repeated_polar(on_ground(p), count, column(bounds))
+    return Site2(off_ground(site.p), site.cell)
+
+
+@func
+def repeated_polar_flat_value(d: float, p: vec2, count: int, bounds: Bounds2) -> float:
+    """The value, safe for the other sectors."""
+    return repeated_polar_value(d, on_ground(p), count, column(bounds))
+
+
+@func
+def repeated_polar_flat_slope(slope: float, bounds: Bounds2, count: int) -> float:
+    """The child's, where it fits between the lines around it."""
+    return repeated_polar_slope(slope, column(bounds), count)
+
+
+@func
+def repeated_polar_flat_around(
+    field: Callable[[vec2], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
+) -> float:
+    """The nearest of the copies next to the point."""
+    found = nearest_polar(
+        lambda q: field(off_ground(q)), on_ground(p), count, column(bounds), neighbours
+    )
+    return found.distance
+
+
+@func
+def repeated_polar_flat_site(
+    field: Callable[[vec2], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
+) -> Site2:
+    """The place in the nearest copy."""
+    found = nearest_polar(
+        lambda q: field(off_ground(q)), on_ground(p), count, column(bounds), neighbours
+    )
+    return Site2(off_ground(found.site.p), found.site.cell)
+
+
+@func
+def repeated_polar_flat_around_slope(
+    slope: float, bounds: Bounds2, count: int, neighbours: int
+) -> float:
+    """The child's, where the asked copies are nearer than the others."""
+    return repeated_polar_around_slope(slope, column(bounds), count, neighbours)
+
+
+# At given places
+
+
+@func
+def at_positions_flat(field: Callable[[vec2], float], p: vec2, positions: Buffer[vec2]) -> float:
+    """A copy at each of the positions."""
+    nearest = UNBOUNDED
+    for i in range(size(positions)):
+        nearest = min(nearest, field(p - positions[i]))
+    return nearest
+
+
+@func
+def at_positions_flat_site(
+    field: Callable[[vec2], float], p: vec2, positions: Buffer[vec2]
+) -> Site2:
+    """The place in the nearest copy; its index is that of the position."""
+    nearest = UNBOUNDED
+    site = Site2(p, vec3(0.0))
+    for i in range(size(positions)):
+        q = p - positions[i]
+        d = field(q)
+        if d < nearest:
+            nearest = d
+            site = Site2(q, vec3(float(i), 0.0, 0.0))
+    return site
+
+
+@func
+def at_positions_flat_bounds(bounds: Bounds2, positions: Buffer[vec2]) -> Bounds2:
+    """The rectangle around all copies."""
+    low = positions[0]
+    high = positions[0]
+    for i in range(1, size(positions)):
+        low = min(low, positions[i])
+        high = max(high, positions[i])
+    return Bounds2(bounds.low + low, bounds.high + high)
+
+
+def count_requirement(count_x: int = 1, count_y: int = 1) -> str | None:
+    """Why there would be no copies, or None."""
+    return None if count_x >= 1 and count_y >= 1 else "each count must be 1 or more"
+
+
+def limited_requirement(neighbours: int, count_x: int = 1, count_y: int = 1) -> str | None:
+    """Why a block with neighbours cannot be, or None."""
+    return neighbours_requirement(neighbours) or count_requirement(count_x, count_y)
+
+
+REPEAT_FLAT = operator(
+    "flat repeat",
+    point=repeated_flat,
+    finish=repeated_flat_value,
+    keeps=INSIDE_AND_BOUND,
+    slope=repeated_flat_slope,
+    bounds=repeated_flat_bounds,
+    limits=SPACING,
+    needs=FITTING,
+    growth=Growth.HELD,
+)
+REPEAT_NEIGHBOURS_FLAT = operator(
+    "flat repeat neighbours",
+    around=repeated_flat_around,
+    site=repeated_flat_site,
+    keeps=LOWER_BOUND,
+    slope=repeated_flat_around_slope,
+    bounds=repeated_flat_bounds,
+    limits=SPACING,
+    requires=neighbours_requirement,
+    needs=SMALLER,
+    growth=Growth.HELD,
+)
+REPEAT_LIMITED_FLAT = operator(
+    "flat repeat limited",
+    point=limited_flat,
+    finish=limited_flat_value,
+    keeps=INSIDE_AND_BOUND,
+    slope=limited_flat_slope,
+    bounds=limited_flat_bounds,
+    limits=SPACING,
+    requires=count_requirement,
+    needs=FITTING,
+    growth=Growth.HELD,
+)
+REPEAT_LIMITED_NEIGHBOURS_FLAT = operator(
+    "flat repeat limited neighbours",
+    around=limited_flat_around,
+    site=limited_flat_site,
+    keeps=LOWER_BOUND,
+    slope=limited_flat_around_slope,
+    bounds=limited_flat_bounds,
+    limits=SPACING,
+    requires=limited_requirement,
+    needs=SMALLER,
+    growth=Growth.HELD,
+)
+REPEAT_MIRRORED_FLAT = operator(
+    "flat repeat mirrored",
+    point=mirrored_cells,
+    keeps=LOWER_BOUND,
+    bounds=repeated_flat_bounds,
+    limits=SPACING,
+    growth=Growth.KEPT,
+)
+REPEAT_POLAR_FLAT = operator(
+    "flat repeat polar",
+    point=repeated_polar_flat,
+    finish=repeated_polar_flat_value,
+    keeps=INSIDE_AND_BOUND,
+    slope=repeated_polar_flat_slope,
+    bounds=kaleidoscope_flat_bounds,
+    requires=polar_requirement,
+    needs=POLAR_FITTING.replace("the y axis", "the origin"),
+    growth=Growth.HELD,
+)
+REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
+    "flat repeat polar neighbours",
+    around=repeated_polar_flat_around,
+    site=repeated_polar_flat_site,
+    keeps=LOWER_BOUND,
+    slope=repeated_polar_flat_around_slope,
+    bounds=kaleidoscope_flat_bounds,
+    requires=polar_around_requirement,
+    needs=POLAR_SMALLER.replace("the y axis", "the origin"),
+    growth=Growth.HELD,
+)
+REPEAT_AT_FLAT = operator(
+    "flat repeat at",
+    around=at_positions_flat,
+    site=at_positions_flat_site,
+    keeps=EXACT_OUTSIDE,
+    bounds=at_positions_flat_bounds,
+    growth=Growth.KEPT,
+)

@@ -1,0 +1,266 @@
+"""A solid again and again around the y axis.
+
+What flows in: a point, how many copies, the child's box. What flows out: the point in a copy's own
+space, the copy's index, and a value that is safe to march. The first copy is the child itself,
+wherever it stands; the others follow counterclockwise as seen from above.
+
+Safe by the rule of ``repeat``, with sectors of an annulus for boxes: a copy's box lies within an
+angle of the direction to its middle and no nearer to the axis than some radius. Both distances, to
+the sector's flat side and to its inner radius, rise by 1 per unit, and where the set of asked
+copies changes the one that leaves is as far as the one that enters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.combine.joins import INSIDE_AND_BOUND
+from distal.fields.extents import ENDLESS, drum_distance
+from distal.fields.guarantees import LOWER_BOUND, UNBOUNDED, Bounds, Growth, Site, operator
+from distal.fields.place.mirrors import kaleidoscope_bounds, outer_radius
+from distal.fields.place.solid import rotated_y
+from distal.fields.repeat.cells import LEAD, ROOM, Nearest
+from distal.lang import (
+    abs,
+    atan2,
+    cos,
+    dot,
+    floor,
+    func,
+    length,
+    max,
+    min,
+    round,
+    select,
+    sin,
+    struct,
+    vec2,
+    vec3,
+)
+
+PI = 3.141592653589793
+
+
+@struct
+class Sector:
+    """Where a copy lies: ``x`` and ``z`` of its direction, its half angle, its inner radius."""
+
+    direction: vec2
+    half: float
+    inner: float
+
+
+@func
+def corner_angle(direction: vec2, corner: vec2) -> float:
+    """The angle between a direction and a corner."""
+    across = direction.x * corner.y - direction.y * corner.x
+    return abs(atan2(across, dot(direction, corner)))
+
+
+@func
+def sector_of(bounds: Bounds) -> Sector:
+    """The sector of the child's box; half a turn and more where the axis goes through it."""
+    low, high = bounds.low.xz, bounds.high.xz
+    middle = 0.5 * low + 0.5 * high
+    size = length(middle)
+    direction = select(size > 0.0, middle / max(size, 1e-12), vec2(1.0, 0.0))
+    near = max(corner_angle(direction, low), corner_angle(direction, high))
+    far = max(
+        corner_angle(direction, vec2(low.x, high.y)), corner_angle(direction, vec2(high.x, low.y))
+    )
+    inner = length(max(max(low, -high), vec2(0.0)))
+    return Sector(direction, select(inner > 0.0, max(near, far), PI), inner)
+
+
+@func
+def in_sector(q: vec3, sector: Sector) -> vec2:
+    """A point seen from a copy's middle line: along it, and across it on either side."""
+    u = sector.direction
+    return vec2(q.x * u.x + q.z * u.y, abs(q.z * u.x - q.x * u.y))
+
+
+@func
+def to_side(at: vec2, angle: float) -> float:
+    """The distance to a half-plane from the axis at an angle, positive before it is reached."""
+    c, s = cos(angle), sin(angle)
+    return select(at.x * c + at.y * s < 0.0, length(at), at.x * s - at.y * c)
+
+
+@func
+def to_own(at: vec2, sector: Sector) -> float:
+    """The distance to a copy's sector, negative inside."""
+    c, s = cos(sector.half), sin(sector.half)
+    radius = length(at)
+    side = select(at.x * c + at.y * s < 0.0, radius, at.y * c - at.x * s)
+    return max(side, sector.inner - radius)
+
+
+@func
+def to_next(at: vec2, angle: float, sector: Sector) -> float:
+    """The distance to a copy whose sector starts at an angle from the middle line."""
+    return max(to_side(at, angle), sector.inner - length(at))
+
+
+@func
+def to_drum(p: vec3, bounds: Bounds) -> float:
+    """The distance to the drum that holds all copies: sectors end neither outward nor upward."""
+    return drum_distance(length(p.xz), p.y, outer_radius(bounds), bounds.low.y, bounds.high.y)
+
+
+@func
+def polar_index(p: vec3, count: int, sector: Sector) -> float:
+    """The copy whose middle is nearest by angle: from minus to plus half the count."""
+    u = sector.direction
+    angle = atan2(p.x * u.y - p.z * u.x, p.x * u.x + p.z * u.y)
+    return round(angle * (float(count) / (2.0 * PI)))
+
+
+@func
+def turned_by(p: vec3, index: float, count: int) -> vec3:
+    """The point in a copy's own space."""
+    return rotated_y(p, index * (2.0 * PI / float(count)))
+
+
+@func
+def polar_site(p: vec3, index: float, count: int) -> Site:
+    """The place in a copy, whose index counts from 0 to below ``count``."""
+    n = float(count)
+    return Site(turned_by(p, index, count), vec3(index - n * floor(index / n), 0.0, 0.0))
+
+
+# One sector
+
+
+@func
+def repeated_polar(p: vec3, count: int, bounds: Bounds) -> Site:
+    """The place in the nearest sector."""
+    return polar_site(p, polar_index(p, count, sector_of(bounds)), count)
+
+
+@func
+def repeated_polar_value(d: float, p: vec3, count: int, bounds: Bounds) -> float:
+    """The value, safe for the other sectors; at least the distance to the drum."""
+    if count < 2:
+        return max(d, to_drum(p, bounds))
+    sector = sector_of(bounds)
+    at = in_sector(turned_by(p, polar_index(p, count, sector), count), sector)
+    others = to_next(at, 2.0 * PI / float(count) - sector.half, sector)
+    return max(min(max(d, to_own(at, sector)), others), to_drum(p, bounds))
+
+
+@func
+def sector_slope(slope: float, bounds: Bounds, free: float) -> float:
+    """The child's slope, or 1; none where its sector is larger than ``free``."""
+    sector = sector_of(bounds)
+    outer = outer_radius(bounds)
+    crowded = sector.half > free or sector.inner <= 1e-3 * outer or outer > ENDLESS
+    return select(crowded, UNBOUNDED, max(slope, 1.0))
+
+
+@func
+def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
+    """The child's, where it fits between the half-planes around it."""
+    if count < 2:
+        return max(slope, 1.0)
+    return sector_slope(slope, bounds, PI / float(count) * (1.0 - 2.0 * ROOM))
+
+
+# Several sectors
+
+
+@func
+def nearest_polar(
+    field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+) -> Nearest:
+    """The nearest of the copies next to the point; safe for those that are not asked."""
+    sector = sector_of(bounds)
+    index = polar_index(p, count, sector)
+    own = turned_by(p, index, count)
+    u = sector.direction
+    # the next sector on the point's side is turned the same way
+    toward = select(own.x * u.y - own.z * u.x < 0.0, -1.0, 1.0)
+    nearest = UNBOUNDED
+    chosen = index
+    for i in range(0 if neighbours == 1 else -1, 2):
+        there = index + float(i) * toward
+        q = turned_by(p, there, count)
+        d = max(field(q), to_own(in_sector(q, sector), sector))
+        if d < nearest:
+            nearest = d
+            chosen = there
+    at = in_sector(own, sector)
+    step = 2.0 * PI / float(count)
+    if neighbours == 1 and count > 2:
+        behind = to_next(vec2(at.x, -at.y), step - sector.half, sector)
+        nearest = min(nearest, behind)
+    if neighbours == 2 and count > 3:
+        nearest = min(nearest, to_next(at, 2.0 * step - sector.half, sector))
+    return Nearest(max(nearest, to_drum(p, bounds)), polar_site(p, chosen, count))
+
+
+@func
+def repeated_polar_around(
+    field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+) -> float:
+    """The nearest of the copies next to the point."""
+    return nearest_polar(field, p, count, bounds, neighbours).distance
+
+
+@func
+def repeated_polar_around_site(
+    field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+) -> Site:
+    """The place in the nearest copy."""
+    return nearest_polar(field, p, count, bounds, neighbours).site
+
+
+@func
+def repeated_polar_around_slope(slope: float, bounds: Bounds, count: int, neighbours: int) -> float:
+    """The child's, where the asked copies are nearer than the others."""
+    reach = 1.0 if neighbours == 1 else 1.5
+    free = min(2.0 * PI / float(count) * reach * (1.0 - LEAD), 0.49 * PI)
+    return sector_slope(slope, bounds, free)
+
+
+def polar_requirement(count: int) -> str | None:
+    """Why there would be no copies, or None."""
+    return None if count >= 1 else "count must be 1 or more"
+
+
+def polar_around_requirement(count: int, neighbours: int) -> str | None:
+    """Why so many copies cannot be asked, or None."""
+    if neighbours not in (1, 2):
+        return "neighbours must be 0, 1 or 2"
+    return None if count > neighbours else f"count must be {neighbours + 1} or more"
+
+
+POLAR_FITTING = (
+    "a shape beside the y axis whose box fits in its sector, with a little room: set neighbours=1 "
+    "for a wider one, or kaleidoscope for one that is symmetric in its sector"
+)
+POLAR_SMALLER = (
+    "a shape beside the y axis, narrower than the sectors that are asked and less than half a turn "
+    "wide"
+)
+REPEAT_POLAR = operator(
+    "repeat polar",
+    point=repeated_polar,
+    finish=repeated_polar_value,
+    keeps=INSIDE_AND_BOUND,
+    slope=repeated_polar_slope,
+    bounds=kaleidoscope_bounds,
+    requires=polar_requirement,
+    needs=POLAR_FITTING,
+    growth=Growth.HELD,
+)
+REPEAT_POLAR_NEIGHBOURS = operator(
+    "repeat polar neighbours",
+    around=repeated_polar_around,
+    site=repeated_polar_around_site,
+    keeps=LOWER_BOUND,
+    slope=repeated_polar_around_slope,
+    bounds=kaleidoscope_bounds,
+    requires=polar_around_requirement,
+    needs=POLAR_SMALLER,
+    growth=Growth.HELD,
+)

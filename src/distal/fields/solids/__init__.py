@@ -1,0 +1,1 @@
+"""Solid shapes: fields of a point in space."""

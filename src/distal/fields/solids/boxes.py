@@ -1,0 +1,248 @@
+"""Solids with right angles: boxes, their frames, and corners of space.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance. Sizes are full
+sizes, from side to side.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Claim, Limit, primitive
+from distal.lang import abs, func, length, max, min, sqrt, vec3
+
+UNIT_CUBE: Final = vec3(1.0)
+HALF_ROOT: Final = 0.7071067811865476
+# A point that is past three sides by r each is this times r from the box.
+ROOT_THREE: Final = 1.7320508075688772
+
+# What the largest of several plane distances promises: a convex shape's inside is exact.
+CONVEX_BOUND: Final = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
+
+
+@primitive("Corner", EXACT)
+@func
+def corner(p: vec3) -> float:
+    """The eighth of space where x, y and z are all negative.
+
+    Args:
+        p: Point.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        corner((2.0, 3.0, 6.0)) = 7.0
+        corner((-1.0, 0.5, -4.0)) = 0.5
+        corner((-1.0, -0.25, -2.0)) = -0.25
+    """
+    return length(max(p, 0.0)) + min(max(p.x, p.y, p.z), 0.0)
+
+
+@func
+def box_bounds(size: vec3) -> Bounds:
+    """The box itself."""
+    return Bounds(-0.5 * size, 0.5 * size)
+
+
+@primitive("Box", EXACT, bounds=box_bounds, limits={"size": Limit.POSITIVE})
+@func
+def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
+    """Box.
+
+    Args:
+        p: Point.
+        size: Full size along x, y and z.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        box((1.5, 0.0, 0.0), (1.0, 2.0, 3.0)) = 1.0
+        box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)) = -0.5
+        box((2.5, 4.0, 7.5), (1.0, 2.0, 3.0)) = 7.0
+    """
+    return corner(abs(p) - 0.5 * size)
+
+
+@primitive(
+    "BoxCheap",
+    CONVEX_BOUND,
+    bounds=box_bounds,
+    limits={"size": Limit.POSITIVE},
+    growth=ROOT_THREE,
+    side_growth=1.0,
+)
+@func
+def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
+    """Box without a square root; outside, off the faces, the value is less than the distance.
+
+    Grown by an offset it keeps its sharp edges.
+
+    Args:
+        p: Point.
+        size: Full size along x, y and z.
+
+    Source: Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), the Chebyshev distance.
+
+    Measured:
+        box_cheap((1.5, 0.0, 0.0), (1.0, 2.0, 3.0)) = 1.0
+        box_cheap((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)) = -0.5
+        box_cheap((2.5, 4.0, 7.5), (1.0, 2.0, 3.0)) = 6.0
+    """
+    q = abs(p) - 0.5 * size
+    return max(q.x, q.y, q.z)
+
+
+def _fits_every_side(what: str, reach: float, size: vec3) -> str | None:
+    if 2.0 * reach > sorted(size)[0]:
+        return f"{what} must be at most half of the smallest size"
+    return None
+
+
+def round_box_requires(size: vec3, rounding: float) -> str | None:
+    """Opposite edges must leave each other room."""
+    return _fits_every_side("rounding", rounding, size)
+
+
+@primitive(
+    "RoundBox",
+    EXACT,
+    bounds=box_bounds,
+    limits={"size": Limit.POSITIVE, "rounding": Limit.NOT_NEGATIVE},
+    requires=round_box_requires,
+)
+@func
+def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
+    """Box whose edges are rounded inward: the full size stays.
+
+    Args:
+        p: Point.
+        size: Full size along x, y and z.
+        rounding: Radius of the edges, at most half of the smallest size.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        round_box((1.5, 0.0, 0.0), (1.0, 2.0, 3.0), 0.25) = 1.0
+        round_box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0), 0.25) = -0.5
+        round_box((2.25, 3.75, 7.25), (1.0, 2.0, 3.0), 0.25) = 6.75
+    """
+    return box(p, size - 2.0 * rounding) - rounding
+
+
+def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
+    """Opposite edges must leave each other room."""
+    return _fits_every_side("chamfer", chamfer, size)
+
+
+@primitive(
+    "ChamferBox",
+    CONVEX_BOUND,
+    bounds=box_bounds,
+    limits={"size": Limit.POSITIVE, "chamfer": Limit.NOT_NEGATIVE},
+    requires=chamfer_box_requires,
+    growth=1.0,
+)
+@func
+def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
+    """Box with every edge cut off at 45 degrees; outside a lower bound.
+
+    Args:
+        p: Point.
+        size: Full size along x, y and z.
+        chamfer: How much of each face is cut away, at most half of the smallest size.
+
+    Source: the box and twelve planes; Inigo Quilez, "Distance functions"
+        (https://iquilezles.org/articles/distfunctions/), for the box.
+
+    Measured:
+        chamfer_box((2.0, 0.0, 0.0), (2.0, 2.0, 2.0), 0.5) = 1.0
+        chamfer_box((0.75, 0.75, 0.0), (2.0, 2.0, 2.0), 0.5) = 0.0
+        chamfer_box((0.0, 0.0, 0.0), (2.0, 2.0, 2.0), 0.5) = -1.0
+    """
+    q = abs(p) - 0.5 * size
+    two_largest = q.x + q.y + q.z - min(q.x, q.y, q.z)
+    return max(corner(q), (two_largest + chamfer) * HALF_ROOT)
+
+
+def box_frame_requires(size: vec3, thickness: float) -> str | None:
+    """The beams of one face must not meet."""
+    return _fits_every_side("thickness", thickness, size)
+
+
+@primitive(
+    "BoxFrame",
+    EXACT,
+    bounds=box_bounds,
+    limits={"size": Limit.POSITIVE, "thickness": Limit.POSITIVE},
+    requires=box_frame_requires,
+)
+@func
+def box_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
+    """The twelve edges of a box as square beams.
+
+    Args:
+        p: Point.
+        size: Full size along x, y and z.
+        thickness: Of a beam, at most half of the smallest size.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
+        made exact inside.
+
+    Measured:
+        box_frame((0.0, 0.0, 0.0), (2.0, 2.0, 2.0), 0.25) = 1.0606601717798212
+        box_frame((0.875, 0.875, 0.0), (2.0, 2.0, 2.0), 0.25) = -0.125
+        box_frame((3.0, 4.0, 7.0), (2.0, 2.0, 2.0), 0.25) = 7.0
+    """
+    q = abs(p) - 0.5 * size
+    hollow = q + thickness
+    # Squares of how far p is beyond a beam's outer and inner sides, along each axis.
+    beyond_ends = max(q, 0.0) * max(q, 0.0)
+    beyond_sides = max(q, max(-hollow, 0.0)) * max(q, max(-hollow, 0.0))
+    along_x = beyond_ends.x + beyond_sides.y + beyond_sides.z
+    along_y = beyond_sides.x + beyond_ends.y + beyond_sides.z
+    along_z = beyond_sides.x + beyond_sides.y + beyond_ends.z
+    outside = sqrt(min(along_x, along_y, along_z))
+    # Inside, the nearest of the outer faces and of the inner edges of three windows.
+    inward = max(hollow, 0.0) * max(hollow, 0.0)
+    window = min(inward.x + inward.y, inward.y + inward.z, inward.z + inward.x)
+    return outside + min(max(q.x, q.y, q.z, -sqrt(window)), 0.0)
+
+
+def round_frame_requires(size: vec3, thickness: float) -> str | None:
+    """A tube lies inside the box."""
+    return _fits_every_side("thickness", thickness, size)
+
+
+@primitive(
+    "RoundFrame",
+    EXACT_OUTSIDE,
+    bounds=box_bounds,
+    limits={"size": Limit.POSITIVE, "thickness": Limit.NOT_NEGATIVE},
+    requires=round_frame_requires,
+)
+@func
+def round_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
+    """The twelve edges of a box as round bars with balls at the corners.
+
+    Inside, near a corner, the surface is farther away than the value says.
+
+    Args:
+        p: Point.
+        size: Full size along x, y and z, bars included.
+        thickness: Of a bar, at most half of the smallest size.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/),
+        the box frame with beams of no thickness, grown.
+
+    Measured:
+        round_frame((0.0, 0.0, 0.0), (2.25, 2.25, 2.25), 0.25) = 1.2892135623730951
+        round_frame((1.0, 1.0, 0.0), (2.25, 2.25, 2.25), 0.25) = -0.125
+        round_frame((3.0, 4.0, 7.0), (2.25, 2.25, 2.25), 0.25) = 6.875
+    """
+    q = abs(p) - 0.5 * (size - thickness)
+    square = q * q
+    beyond_ends = max(q, 0.0) * max(q, 0.0)
+    along_x = beyond_ends.x + square.y + square.z
+    along_y = square.x + beyond_ends.y + square.z
+    along_z = square.x + square.y + beyond_ends.z
+    return sqrt(min(along_x, along_y, along_z)) - 0.5 * thickness

@@ -1,0 +1,360 @@
+"""Cones: pointed, cut, rounded, without end; upright or between two points.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance. Each is a profile,
+looked at as how far from the axis and how high above the middle.
+"""
+
+from __future__ import annotations
+
+from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
+from distal.fields.solids.axes import (
+    HIGH_END,
+    LOW_END,
+    TINY,
+    apart,
+    around_axis,
+    around_y,
+    balls_bounds,
+    below_pi,
+    discs_bounds,
+    upright_bounds,
+)
+from distal.fields.solids.boxes import CONVEX_BOUND
+from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
+
+
+@func
+def opening(q: vec2, angle: float) -> float:
+    """Distance to what lies within ``angle`` of the downward axis, for q.x not negative."""
+    s = sin(angle)
+    c = cos(angle)
+    beside = q.x * c + q.y * s
+    # Where the side is not nearest, its tip is.
+    tip = length(q)
+    return select(q.x * s > q.y * c, beside, select(beside > 0.0, tip, -tip))
+
+
+@primitive("InfiniteCone", EXACT, limits={"angle": Limit.POSITIVE}, requires=below_pi)
+@func
+def infinite_cone(p: vec3, angle: float = 0.5) -> float:
+    """Cone without end, downward from its tip at the origin.
+
+    Args:
+        p: Point.
+        angle: From the axis to the side, below pi.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        infinite_cone((0.0, 5.0, 0.0), 0.5) = 5.0
+        infinite_cone((0.0, -2.0, 0.0), 0.5235987755982988) = -1.0
+        infinite_cone((3.0, -1.0, 0.0), 0.7853981633974483) = 1.4142135623730951
+    """
+    return opening(around_y(p), angle)
+
+
+@func
+def capped_cone_profile(q: vec2, bottom: float, top: float, height: float) -> float:
+    """Distance to a cut cone from how far from its axis, and how high above its middle."""
+    half = 0.5 * height
+    slant = vec2(top - bottom, height)
+    offset = vec2(q.x - bottom, q.y + half)
+    side = offset - slant * clamp(dot(offset, slant) / dot(slant, slant), 0.0, 1.0)
+    end_radius = select(q.y < 0.0, bottom, top)
+    end = vec2(max(q.x - end_radius, 0.0), abs(q.y) - half)
+    nearest = length(select(dot(end, end) < dot(side, side), end, side))
+    inside = offset.x * slant.y < offset.y * slant.x and end.y < 0.0
+    return select(inside, -nearest, nearest)
+
+
+@func
+def capped_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
+    """The box of an upright one."""
+    return upright_bounds(max(bottom, top), -0.5 * height, 0.5 * height)
+
+
+def capped_cone_requires(bottom: float, top: float) -> str | None:
+    """Some inside must be left."""
+    return None if bottom > 0.0 or top > 0.0 else "bottom or top must be above 0"
+
+
+@primitive(
+    "CappedCone",
+    EXACT,
+    bounds=capped_cone_bounds,
+    limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE, "height": Limit.POSITIVE},
+    requires=capped_cone_requires,
+)
+@func
+def capped_cone(p: vec3, bottom: float = 0.6, top: float = 0.3, height: float = 1.0) -> float:
+    """Upright cone with its tip cut off.
+
+    Args:
+        p: Point.
+        bottom: Radius at the lower end.
+        top: Radius at the upper end.
+        height: Full height.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        capped_cone((0.0, 3.0, 0.0), 1.0, 0.5, 2.0) = 2.0
+        capped_cone((4.0, -5.0, 0.0), 1.0, 0.5, 2.0) = 5.0
+        capped_cone((1.0, 0.0, 0.0), 0.5, 0.5, 2.0) = 0.5
+    """
+    return capped_cone_profile(around_y(p), bottom, top, height)
+
+
+@func
+def capped_cone_between_bounds(
+    start: vec3, end: vec3, start_radius: float, end_radius: float
+) -> Bounds:
+    """The box around the two ends."""
+    return discs_bounds(start, end, start_radius, end_radius)
+
+
+def capped_cone_between_requires(
+    start: vec3, end: vec3, start_radius: float, end_radius: float
+) -> str | None:
+    """Some inside must be left."""
+    if start_radius > 0.0 or end_radius > 0.0:
+        return apart(start, end)
+    return "start_radius or end_radius must be above 0"
+
+
+@primitive(
+    "CappedConeBetween",
+    EXACT,
+    bounds=capped_cone_between_bounds,
+    limits={"start_radius": Limit.NOT_NEGATIVE, "end_radius": Limit.NOT_NEGATIVE},
+    requires=capped_cone_between_requires,
+)
+@func
+def capped_cone_between(
+    p: vec3,
+    start: vec3 = LOW_END,
+    end: vec3 = HIGH_END,
+    start_radius: float = 0.6,
+    end_radius: float = 0.3,
+) -> float:
+    """Cut cone whose ends are centred at two points.
+
+    Args:
+        p: Point.
+        start: Centre of one end.
+        end: Centre of the other.
+        start_radius: Radius at ``start``.
+        end_radius: Radius at ``end``.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        capped_cone_between((5.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0, 0.5) = 3.0
+        capped_cone_between((-4.0, 4.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0, 0.5) = 5.0
+        capped_cone_between((1.0, 0.0, 1.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5, 0.5) = 0.5
+    """
+    return capped_cone_profile(
+        around_axis(p, start, end), start_radius, end_radius, max(length(end - start), TINY)
+    )
+
+
+@func
+def cone_bounds(radius: float, height: float) -> Bounds:
+    """The box of an upright cone."""
+    return upright_bounds(radius, -0.5 * height, 0.5 * height)
+
+
+@primitive(
+    "Cone",
+    EXACT,
+    bounds=cone_bounds,
+    limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
+)
+@func
+def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
+    """Upright cone, its tip on top.
+
+    Args:
+        p: Point.
+        radius: Of the base; ``height * tan(angle)`` for an angle between axis and side.
+        height: Full height; the origin is half way up.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        cone((0.0, 3.0, 0.0), 1.0, 2.0) = 2.0
+        cone((4.0, -5.0, 0.0), 1.0, 2.0) = 5.0
+        cone((0.0, -0.75, 0.0), 1.0, 2.0) = -0.25
+    """
+    return capped_cone_profile(around_y(p), radius, 0.0, height)
+
+
+@func
+def cone_cheap_growth(radius: float, height: float) -> float:
+    """Side and base moved out by 1: how far that moves the tip, or the rim out and down."""
+    side = length(vec2(height, radius))
+    return max(side / radius, length(vec2((side + radius) / height, 1.0)))
+
+
+@primitive(
+    "ConeCheap",
+    CONVEX_BOUND,
+    bounds=cone_bounds,
+    limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
+    growth=cone_cheap_growth,
+)
+@func
+def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
+    """Upright cone by its side and its base alone; beyond tip and rim less than the distance.
+
+    Args:
+        p: Point.
+        radius: Of the base.
+        height: Full height; the origin is half way up.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        cone_cheap((0.0, 3.0, 0.0), 1.0, 2.0) = 0.8944271909999159
+        cone_cheap((0.0, -3.0, 0.0), 1.0, 2.0) = 2.0
+        cone_cheap((0.0, -0.75, 0.0), 1.0, 2.0) = -0.25
+    """
+    half = 0.5 * height
+    # Across the side, from the tip: the normal is (height, radius) over its length.
+    beside = (length(p.xz) * height + (p.y - half) * radius) / length(vec2(height, radius))
+    return max(beside, -half - p.y)
+
+
+@func
+def cone_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
+    """The box around the base and the tip."""
+    return discs_bounds(start, end, radius, 0.0)
+
+
+@primitive(
+    "ConeBetween",
+    EXACT,
+    bounds=cone_between_bounds,
+    limits={"radius": Limit.POSITIVE},
+    requires=apart,
+)
+@func
+def cone_between(
+    p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5
+) -> float:
+    """Cone from the centre of its base to its tip.
+
+    Args:
+        p: Point.
+        start: Centre of the base.
+        end: Tip.
+        radius: Of the base.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        cone_between((5.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0) = 3.0
+        cone_between((-4.0, 4.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0) = 5.0
+        cone_between((0.25, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0) = -0.25
+    """
+    return capped_cone_profile(
+        around_axis(p, start, end), radius, 0.0, max(length(end - start), TINY)
+    )
+
+
+@func
+def round_cone_profile(q: vec2, bottom: float, top: float, height: float) -> float:
+    """Distance to two balls and the cone that touches both, from q as above.
+
+    The cone's side stands at right angles to (cosine, sine); the planes through the balls' centres
+    along that direction part what is nearest to either ball from what is nearest to the side.
+    """
+    # Beyond -1 or 1 one ball holds the other and is all there is.
+    sine = clamp((bottom - top) / max(height, TINY), -1.0, 1.0)
+    cosine = sqrt(1.0 - sine * sine)
+    low = q.y + 0.5 * height
+    along = low * cosine - q.x * sine
+    at_bottom = length(vec2(q.x, low)) - bottom
+    at_top = length(vec2(q.x, low - height)) - top
+    beside = q.x * cosine + low * sine - bottom
+    only_top = sine <= -1.0
+    upper = select(along >= cosine * height, at_top, beside)
+    return select(along <= 0.0 and not only_top, at_bottom, upper)
+
+
+@func
+def round_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
+    """The box around two balls, one above the other."""
+    half = 0.5 * height
+    return upright_bounds(
+        max(bottom, top), min(-half - bottom, half - top), max(half + top, bottom - half)
+    )
+
+
+@primitive(
+    "RoundCone",
+    EXACT,
+    bounds=round_cone_bounds,
+    limits={"bottom": Limit.POSITIVE, "top": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
+)
+@func
+def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, height: float = 1.0) -> float:
+    """Two balls, one above the other, and the cone that touches both.
+
+    Args:
+        p: Point.
+        bottom: Radius of the lower ball.
+        top: Radius of the upper ball.
+        height: Between the balls' centres.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        round_cone((0.0, 3.0, 0.0), 1.0, 0.5, 2.0) = 1.5
+        round_cone((0.0, -5.0, 3.0), 1.0, 0.5, 2.0) = 4.0
+        round_cone((2.0, 0.0, 0.0), 0.5, 0.5, 2.0) = 1.5
+    """
+    return round_cone_profile(around_y(p), bottom, top, height)
+
+
+@func
+def round_cone_between_bounds(
+    start: vec3, end: vec3, start_radius: float, end_radius: float
+) -> Bounds:
+    """The box around the two balls."""
+    return balls_bounds(start, end, start_radius, end_radius)
+
+
+@primitive(
+    "RoundConeBetween",
+    EXACT,
+    bounds=round_cone_between_bounds,
+    limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
+)
+@func
+def round_cone_between(
+    p: vec3,
+    start: vec3 = LOW_END,
+    end: vec3 = HIGH_END,
+    start_radius: float = 0.5,
+    end_radius: float = 0.25,
+) -> float:
+    """Two balls around two points, and the cone that touches both.
+
+    Args:
+        p: Point.
+        start: Centre of one ball.
+        end: Centre of the other.
+        start_radius: Radius at ``start``.
+        end_radius: Radius at ``end``.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        round_cone_between((4.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0, 0.5) = 1.5
+        round_cone_between((-3.0, 4.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0, 0.5) = 4.0
+        round_cone_between((1.0, 0.0, 2.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5, 0.5) = 1.5
+    """
+    return round_cone_profile(
+        around_axis(p, start, end), start_radius, end_radius, length(end - start)
+    )

@@ -1,0 +1,232 @@
+"""Round bars: cylinders and capsules, upright or between two points.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance.
+"""
+
+from __future__ import annotations
+
+from distal.fields.flats.edges import inside_both
+from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
+from distal.fields.solids.axes import (
+    HIGH_END,
+    LOW_END,
+    TINY,
+    apart,
+    around_axis,
+    around_y,
+    balls_bounds,
+    discs_bounds,
+    upright_bounds,
+)
+from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
+
+
+@primitive("InfiniteCylinder", EXACT, limits={"radius": Limit.POSITIVE})
+@func
+def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
+    """Round bar along the y axis, without end.
+
+    Args:
+        p: Point.
+        radius: Radius.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        infinite_cylinder((3.0, 100.0, 4.0), 0.5) = 4.5
+        infinite_cylinder((0.0, -7.0, 0.0), 0.5) = -0.5
+        infinite_cylinder((0.0, 2.0, -0.5), 0.5) = 0.0
+    """
+    return length(p.xz) - radius
+
+
+@func
+def cylinder_profile(q: vec2, radius: float, height: float) -> float:
+    """Distance to a cylinder from how far from its axis, and how high."""
+    return inside_both(q.x - radius, abs(q.y) - 0.5 * height)
+
+
+@func
+def cylinder_bounds(radius: float, height: float) -> Bounds:
+    """The box of an upright cylinder."""
+    return upright_bounds(radius, -0.5 * height, 0.5 * height)
+
+
+@primitive(
+    "Cylinder",
+    EXACT,
+    bounds=cylinder_bounds,
+    limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
+)
+@func
+def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
+    """Upright cylinder.
+
+    Args:
+        p: Point.
+        radius: Radius.
+        height: Full height.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        cylinder((2.0, 0.0, 0.0), 0.5, 2.0) = 1.5
+        cylinder((0.0, 0.0, 0.0), 0.5, 2.0) = -0.5
+        cylinder((0.0, 5.0, 3.5), 0.5, 2.0) = 5.0
+    """
+    return cylinder_profile(around_y(p), radius, height)
+
+
+@func
+def cylinder_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
+    """The box around the two ends."""
+    return discs_bounds(start, end, radius, radius)
+
+
+@primitive(
+    "CylinderBetween",
+    EXACT,
+    bounds=cylinder_between_bounds,
+    limits={"radius": Limit.POSITIVE},
+    requires=apart,
+)
+@func
+def cylinder_between(
+    p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5
+) -> float:
+    """Cylinder whose ends are centred at two points.
+
+    Args:
+        p: Point.
+        start: Centre of one end.
+        end: Centre of the other.
+        radius: Radius.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        cylinder_between((1.0, 2.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5) = 1.5
+        cylinder_between((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5) = -0.5
+        cylinder_between((6.0, 3.5, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5) = 5.0
+    """
+    return cylinder_profile(around_axis(p, start, end), radius, length(end - start))
+
+
+def rounded_cylinder_requires(radius: float, height: float, rounding: float) -> str | None:
+    """Opposite edges must leave each other room."""
+    if rounding > radius or 2.0 * rounding > height:
+        return "rounding must be at most the radius and half of the height"
+    return None
+
+
+@func
+def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bounds:
+    """The box of an upright cylinder."""
+    return cylinder_bounds(radius, height)
+
+
+@primitive(
+    "RoundedCylinder",
+    EXACT,
+    bounds=rounded_cylinder_bounds,
+    limits={
+        "radius": Limit.POSITIVE,
+        "height": Limit.POSITIVE,
+        "rounding": Limit.NOT_NEGATIVE,
+    },
+    requires=rounded_cylinder_requires,
+)
+@func
+def rounded_cylinder(
+    p: vec3, radius: float = 0.5, height: float = 1.0, rounding: float = 0.1
+) -> float:
+    """Upright cylinder whose edges are rounded inward: the full size stays.
+
+    Args:
+        p: Point.
+        radius: Radius.
+        height: Full height.
+        rounding: Radius of the edges, at most ``radius`` and half of ``height``.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        rounded_cylinder((2.0, 0.0, 0.0), 0.5, 2.0, 0.25) = 1.5
+        rounded_cylinder((0.0, 0.0, 0.0), 0.5, 2.0, 0.25) = -0.5
+        rounded_cylinder((0.0, 4.75, 3.25), 0.5, 2.0, 0.25) = 4.75
+    """
+    return cylinder(p, radius - rounding, height - 2.0 * rounding) - rounding
+
+
+@func
+def capsule_bounds(radius: float, height: float) -> Bounds:
+    """The box of an upright capsule."""
+    return upright_bounds(radius, -0.5 * height - radius, 0.5 * height + radius)
+
+
+@primitive(
+    "Capsule",
+    EXACT,
+    bounds=capsule_bounds,
+    limits={"radius": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
+)
+@func
+def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
+    """Upright round bar with half balls at its ends.
+
+    Args:
+        p: Point.
+        radius: Radius.
+        height: Of the straight part: between the centres of the half balls.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        capsule((2.0, 0.5, 0.0), 0.5, 2.0) = 1.5
+        capsule((0.0, 0.0, 0.0), 0.5, 2.0) = -0.5
+        capsule((0.0, 4.0, 4.0), 0.5, 2.0) = 4.5
+    """
+    half = 0.5 * height
+    return length(vec3(p.x, p.y - clamp(p.y, -half, half), p.z)) - radius
+
+
+@func
+def to_segment(p: vec3, start: vec3, end: vec3) -> vec3:
+    """From the nearest point of a straight line between two points to p.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+    """
+    offset = p - start
+    axis = end - start
+    return offset - axis * clamp(dot(offset, axis) / max(dot(axis, axis), TINY * TINY), 0.0, 1.0)
+
+
+@func
+def capsule_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
+    """The box around the two balls."""
+    return balls_bounds(start, end, radius, radius)
+
+
+@primitive(
+    "CapsuleBetween", EXACT, bounds=capsule_between_bounds, limits={"radius": Limit.POSITIVE}
+)
+@func
+def capsule_between(
+    p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4
+) -> float:
+    """Round bar between two points, with half balls at its ends.
+
+    Args:
+        p: Point.
+        start: Centre of one half ball.
+        end: Centre of the other; where it is ``start``, the shape is a ball.
+        radius: Radius.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        capsule_between((1.0, 2.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5) = 1.5
+        capsule_between((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5) = -0.5
+        capsule_between((5.0, 4.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 0.5) = 4.5
+    """
+    return length(to_segment(p, start, end)) - radius

@@ -1,0 +1,139 @@
+"""Terrain: the solid below a height that depends on the place in the plane.
+
+What flows in: a point, and the height from an image or from a flat field (whose value is read as
+the height). What flows out: the vertical way to the surface, shortened by the steepest rise, so
+that it is never more than the distance. ``RELIEF`` makes terrain of any flat shape or function.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.guarantees import (
+    LOWER_BOUND,
+    NOTHING,
+    UNBOUNDED,
+    Bounds,
+    Bounds2,
+    Growth,
+    Limit,
+    operator,
+    primitive,
+)
+from distal.lang import (
+    Texture2D,
+    clamp,
+    floor,
+    func,
+    inversesqrt,
+    ivec2,
+    max,
+    min,
+    mix,
+    texel,
+    vec2,
+    vec3,
+)
+from distal.lang import size as size_of
+
+GROUND_SIZE: Final = vec2(4.0)
+
+
+@func
+def interpolated(image: Texture2D, place: vec2) -> float:
+    """Bilinear, the first channel; ``place`` counts texels from the first one's middle."""
+    last = size_of(image) - 1
+    lower = clamp(ivec2(floor(place)), ivec2(0), max(last - 1, ivec2(0)))
+    upper = min(lower + 1, last)
+    weight = place - vec2(lower)
+    bottom = mix(texel(image, lower).x, texel(image, ivec2(upper.x, lower.y)).x, weight.x)
+    top = mix(texel(image, ivec2(lower.x, upper.y)).x, texel(image, upper).x, weight.x)
+    return mix(bottom, top, weight.y)
+
+
+@func
+def above_height(y: float, height: float, steepness: float) -> float:
+    """The vertical way, shortened to the distance from a plane as steep as that."""
+    return (y - height) * inversesqrt(1.0 + steepness * steepness)
+
+
+@primitive(
+    "Heightfield",
+    LOWER_BOUND,
+    limits={
+        "size": Limit.POSITIVE,
+        "height": Limit.NOT_ZERO,
+        "steepness": Limit.NOT_NEGATIVE,
+    },
+    tier=2,
+)
+@func
+def heightfield(
+    p: vec3,
+    image: Texture2D,
+    size: vec2 = GROUND_SIZE,
+    height: float = 1.0,
+    steepness: float = 1.0,
+) -> float:
+    """Terrain from an image of heights, in its first channel; its edges go on without end.
+
+    The promise holds if the ground rises nowhere by more than ``steepness``: take it from the data,
+    the largest difference of neighbouring texels times ``height`` over their distance, across and
+    along, squared, added, the root drawn.
+
+    Args:
+        p: Point.
+        image: The heights; the image lies on the ground, its upper side away from the viewer (at
+            the smallest z).
+        size: Width and depth that the image covers, its middle at the origin.
+        height: The height that a texel of value 1 stands for.
+        steepness: The most that the ground rises over a horizontal way of 1.
+
+    Source: John C. Hart, "Sphere tracing" (1996), for the bound.
+
+    Measured:
+        heightfield((0.0, 3.0, 0.0), Texture2D([[0.5, 0.5]]), (2.0, 2.0), 2.0, 0.0) = 2.0
+        heightfield((0.0, 3.0, 0.0), Texture2D([[0.0, 1.0]]), (4.0, 4.0), 2.0, 0.75) = 1.6
+        heightfield((9.0, 3.0, 9.0), Texture2D([[0.0, 1.0]]), (4.0, 4.0), 1.0, 0.75) = 1.6
+    """
+    texels = vec2(size_of(image))
+    share = vec2(p.x, -p.z) / size + 0.5
+    place = clamp(share * texels - 0.5, vec2(0.0), texels - 1.0)
+    return above_height(p.y, height * interpolated(image, place), steepness)
+
+
+@func
+def on_the_ground(p: vec3) -> vec2:
+    """The place in the plane as seen from above, its upper side away from the viewer."""
+    return vec2(p.x, -p.z)
+
+
+@func
+def relief_value(d: float, p: vec3, slope: float) -> float:
+    """The flat field's value is the ground's height."""
+    return above_height(p.y, d, slope)
+
+
+@func
+def relief_slope(slope: float) -> float:
+    """1, unless the child has no bound on its slope."""
+    return UNBOUNDED if slope >= UNBOUNDED / 1000.0 else 1.0
+
+
+@func
+def relief_bounds(bounds: Bounds2) -> Bounds:
+    """The ground has no end."""
+    return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED))
+
+
+RELIEF = operator(
+    "relief",
+    point=on_the_ground,
+    finish=relief_value,
+    keeps=NOTHING,
+    slope=relief_slope,
+    needs="a flat field with a bound on its slope",
+    bounds=relief_bounds,
+    growth=Growth.HELD,
+)
+"""Terrain: the values of a flat field, ``Shape2D.from_function(height, slope=…)``, as heights."""

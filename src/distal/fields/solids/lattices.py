@@ -1,0 +1,141 @@
+"""Strut lattices: round bars between the points of a crystal's lattice, without end.
+
+What flows in: a point, the edge of the cell that repeats, the struts' radius. What flows out: the
+distance, exact outside. Each lattice is mirrored at the planes through its nodes and half way
+between them, so a point is folded into an eighth of a cell: what is nearest to it lies there too.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.flats.edges import nearer
+from distal.fields.guarantees import EXACT_OUTSIDE, Limit, primitive
+from distal.lang import abs, func, length, max, min, round, vec2, vec3
+
+LIMITS: Final = {"cell_size": Limit.POSITIVE, "radius": Limit.POSITIVE}
+ROOT_HALF: Final = 0.7071067811865476
+ROOT_THIRD: Final = 0.5773502691896258
+
+
+def _cubic_gaps_stay(cell_size: float, radius: float) -> str | None:
+    return "radius must be below 0.5 cell_size" if 2.0 * radius >= cell_size else None
+
+
+def _diagonal_gaps_stay(cell_size: float, radius: float) -> str | None:
+    return "radius must be at most 0.25 cell_size" if 4.0 * radius > cell_size else None
+
+
+def _octet_gaps_stay(cell_size: float, radius: float) -> str | None:
+    return "radius must be at most 0.15 cell_size" if radius > 0.15 * cell_size else None
+
+
+@func
+def folded(p: vec3, cell_size: float) -> vec3:
+    """The place in the eighth of a cell between a node at 0 and the cell's middle."""
+    return abs(p - cell_size * round(p / cell_size))
+
+
+@func
+def descending(q: vec3) -> vec3:
+    """The components sorted, the largest first."""
+    highest = max(max(q.x, q.y), q.z)
+    lowest = min(min(q.x, q.y), q.z)
+    middle = max(min(q.x, q.y), min(max(q.x, q.y), q.z))
+    return vec3(highest, middle, lowest)
+
+
+@primitive("CubicLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_cubic_gaps_stay, tier=2)
+@func
+def cubic_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.06) -> float:
+    """Struts along the edges of cubes, a node at the origin.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cubes.
+        radius: Of the struts, below half of ``cell_size``.
+
+    Source: the nearest of three perpendicular lines after folding.
+
+    Measured:
+        cubic_lattice((0.5, 0.0, 0.0), 1.0, 0.125) = -0.125
+        cubic_lattice((2.25, 1.5, 0.0), 1.0, 0.125) = 0.125
+        cubic_lattice((0.0, 3.25, 5.5), 2.0, 0.25) = 0.25
+    """
+    return length(descending(folded(p, cell_size)).yz) - radius
+
+
+@func
+def from_face_diagonals(q: vec3) -> vec2:
+    """The way, in two parts, from the nearest line from 0 to the middle of a cube's face."""
+    s = descending(q)
+    return vec2(ROOT_HALF * (s.x - s.y), s.z)
+
+
+@primitive("BccLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_diagonal_gaps_stay, tier=2)
+@func
+def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
+    """Struts from the corners of cubes to their middles (body-centred cubic).
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cubes; a corner is at the origin.
+        radius: Of the struts, at most a quarter of ``cell_size``.
+
+    Source: the nearest line after folding, which is the cube's diagonal.
+
+    Measured:
+        bcc_lattice((0.25, 0.25, 0.25), 1.0, 0.125) = -0.125
+        bcc_lattice((0.5, 0.0, 0.0), 1.0, 0.125) = 0.2832483
+        bcc_lattice((4.0, 1.0, -2.0), 2.0, 0.25) = 0.5664966
+    """
+    q = folded(p, cell_size)
+    return ROOT_THIRD * length(q - q.yzx) - radius
+
+
+@primitive("FccLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_diagonal_gaps_stay, tier=2)
+@func
+def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
+    """Struts from the corners of cubes to the middles of their faces (face-centred cubic).
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cubes; a corner is at the origin.
+        radius: Of the struts, at most a quarter of ``cell_size``.
+
+    Source: the nearest of three lines after folding.
+
+    Measured:
+        fcc_lattice((0.25, 0.25, 0.0), 1.0, 0.125) = -0.125
+        fcc_lattice((0.5, 0.0, 0.0), 1.0, 0.125) = 0.2285534
+        fcc_lattice((1.0, 1.0, -1.0), 2.0, 0.25) = 0.75
+    """
+    return length(from_face_diagonals(folded(p, cell_size))) - radius
+
+
+@primitive("OctetLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_octet_gaps_stay, tier=2)
+@func
+def octet_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> float:
+    """The octet truss: the edges of octahedra and tetrahedra that fill space.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats; a node is at the origin.
+        radius: Of the struts, at most 0.15 ``cell_size``.
+
+    Source: Buckminster Fuller's truss (US patent 2986241, 1961); the nearest of a tetrahedron's six
+    edges after folding.
+
+    Measured:
+        octet_lattice((0.25, 0.25, 0.0), 1.0, 0.125) = -0.125
+        octet_lattice((0.5, 0.0, 0.0), 1.0, 0.125) = 0.2285534
+        octet_lattice((0.5, 0.5, 0.5), 2.0, 0.25) = 0.25
+    """
+    half = 0.5 * cell_size
+    q = folded(p, cell_size)
+    # The three edges that do not pass the node: one lies in each of the faces away from it.
+    away = half - q
+    along = ROOT_HALF * (q.x + q.y + q.z - half - q)
+    nearest = nearer(vec2(away.x, along.x), vec2(away.y, along.y))
+    nearest = nearer(nearest, vec2(away.z, along.z))
+    return length(nearer(nearest, from_face_diagonals(q))) - radius

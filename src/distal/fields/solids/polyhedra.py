@@ -1,0 +1,218 @@
+"""Polyhedra with exact distance, and convex bodies from any planes.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance. Mirrors of the
+shape's symmetry move the point to where one face, with one of its edges, is the nearest.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
+from distal.fields.solids.boxes import CONVEX_BOUND, ROOT_THREE, UNIT_CUBE
+from distal.fields.solids.regular import DIAGONAL, RADIUS, octahedron_bounds
+from distal.lang import (
+    Buffer,
+    abs,
+    clamp,
+    dot,
+    func,
+    length,
+    max,
+    min,
+    select,
+    sqrt,
+    vec2,
+    vec3,
+    vec4,
+)
+from distal.lang import size as count_of
+
+HALF_ROOT: Final = math.sqrt(0.5)
+CUT_CORNERS: Final = Buffer(
+    [
+        vec4(x * DIAGONAL, y * DIAGONAL, z * DIAGONAL, 0.6)
+        for x in (-1.0, 1.0)
+        for y in (-1.0, 1.0)
+        for z in (-1.0, 1.0)
+    ]
+)
+
+
+@func
+def face_edge(height: float, past_edge: float, past_end: float) -> float:
+    """Distance to a convex body from above one face, near one edge of it.
+
+    Args:
+        height: Above the face's plane.
+        past_edge: In that plane, how far past the edge.
+        past_end: Along the edge, how far past its end.
+    """
+    return select(past_edge > 0.0, length(vec3(height, past_edge, max(past_end, 0.0))), height)
+
+
+@primitive("Octahedron", EXACT, bounds=octahedron_bounds, limits=RADIUS)
+@func
+def octahedron(p: vec3, radius: float = 1.0) -> float:
+    """Regular octahedron.
+
+    Args:
+        p: Point.
+        radius: From the centre to the vertices, which lie on the axes.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
+        by symmetry.
+
+    Measured:
+        octahedron((0.0, 0.0, 0.0), 3.0) = -1.7320508075688772
+        octahedron((2.0, 2.0, 2.0), 3.0) = 1.7320508075688772
+        octahedron((0.0, 4.0, 0.0), 1.0) = 3.0
+    """
+    q = abs(p)
+    # The nearest edge is that of the two largest parts.
+    smallest = min(q.x, q.y, q.z)
+    largest = max(q.x, q.y, q.z)
+    both = q.x + q.y + q.z - smallest
+    return face_edge(
+        (both + smallest - radius) * DIAGONAL,
+        (both - 2.0 * smallest - radius) * (DIAGONAL * HALF_ROOT),
+        (2.0 * largest - both - radius) * HALF_ROOT,
+    )
+
+
+@func
+def tetrahedron_bounds(radius: float) -> Bounds:
+    """The cube whose corners, every other one, are the vertices."""
+    return Bounds(vec3(-radius * DIAGONAL), vec3(radius * DIAGONAL))
+
+
+@primitive("Tetrahedron", EXACT, bounds=tetrahedron_bounds, limits=RADIUS)
+@func
+def tetrahedron(p: vec3, radius: float = 1.0) -> float:
+    """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them.
+
+    Args:
+        p: Point.
+        radius: From the centre to the vertices.
+
+    Source: derived from the symmetry: mirrors lead to x >= y >= |z|, where the face along
+        (1, 1, -1) and its edge through (x, 0, 0) along (0, 1, 1) are nearest.
+
+    Measured:
+        tetrahedron((0.0, 0.0, 0.0), 3.0) = -1.0
+        tetrahedron((2.0, 0.0, 0.0), 1.7320508075688772) = 1.0
+        tetrahedron((3.0, 3.0, 3.0), 1.7320508075688772) = 3.4641016151377544
+    """
+    # An even number of signs may change: the two larger parts become positive.
+    q = abs(p)
+    low = min(q.x, q.y, q.z)
+    high = max(q.x, q.y, q.z)
+    middle = q.x + q.y + q.z - low - high
+    z = select(p.x * p.y * p.z < 0.0, -low, low)
+    corner = radius * DIAGONAL
+    return face_edge(
+        (high + middle - z - corner) * DIAGONAL,
+        (2.0 * (high - corner) - middle + z) * (DIAGONAL * HALF_ROOT),
+        (middle + z) * HALF_ROOT - corner / HALF_ROOT,
+    )
+
+
+@func
+def pyramid_bounds(size: float, height: float) -> Bounds:
+    """The box of base and tip."""
+    reach = vec3(0.5 * size, 0.5 * height, 0.5 * size)
+    return Bounds(-reach, reach)
+
+
+@primitive(
+    "Pyramid",
+    EXACT,
+    bounds=pyramid_bounds,
+    limits={"size": Limit.POSITIVE, "height": Limit.POSITIVE},
+)
+@func
+def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
+    """Upright pyramid over a square.
+
+    Args:
+        p: Point.
+        size: Side of the square base.
+        height: Full height; the origin is half way up.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
+        worked out anew in the plane of a side.
+
+    Measured:
+        pyramid((0.0, 4.0, 0.0), 2.0, 2.0) = 3.0
+        pyramid((3.0, -4.0, 7.0), 2.0, 2.0) = 7.0
+        pyramid((0.0, -0.75, 0.0), 2.0, 2.0) = -0.25
+    """
+    half = 0.5 * size
+    # The nearest side looks along x; z runs along its base.
+    x = max(abs(p.x), abs(p.z)) - half
+    z = min(abs(p.x), abs(p.z))
+    y = p.y + 0.5 * height
+    # In the plane of the side: up the slope, and above the plane.
+    slope_length = length(vec2(half, height))
+    up = (y * height - x * half) / slope_length
+    above = (x * height + y * half) / slope_length
+    # From the nearest point of the slanted edge, which runs from (half, 0) to the tip.
+    edge = vec2(-half, slope_length)
+    beside = vec2(z - half, up)
+    from_edge = beside - edge * clamp(dot(beside, edge) / dot(edge, edge), 0.0, 1.0)
+    past_edge = beside.x * edge.y > beside.y * edge.x
+    from_side = select(past_edge, from_edge, vec2(max(beside.x, 0.0), min(up, 0.0)))
+    base = vec3(max(x, 0.0), max(z - half, 0.0), y)
+    square = min(dot(from_side, from_side) + above * above, dot(base, base))
+    return select(max(above, -y) < 0.0, max(above, -y), sqrt(square))
+
+
+@func
+def convex_polyhedron_bounds(planes: Buffer[vec4], size: vec3) -> Bounds:
+    """The box that is cut."""
+    return Bounds(-0.5 * size, 0.5 * size)
+
+
+def convex_polyhedron_requires(planes: Any) -> str | None:
+    """A longer normal would make the field too steep."""
+    rows: Any = getattr(planes, "data", ()) if isinstance(planes, Buffer) else planes
+    for x, y, z, _ in rows:
+        if math.fabs(x * x + y * y + z * z - 1.0) > 1e-4:
+            return "the first three numbers of each of the planes must be a vector of length 1"
+    return None
+
+
+@primitive(
+    "ConvexPolyhedron",
+    CONVEX_BOUND,
+    bounds=convex_polyhedron_bounds,
+    limits={"size": Limit.POSITIVE},
+    requires=convex_polyhedron_requires,
+    growth=ROOT_THREE,
+    side_growth=1.0,
+)
+@func
+def convex_polyhedron(p: vec3, planes: Buffer[vec4] = CUT_CORNERS, size: vec3 = UNIT_CUBE) -> float:
+    """What planes leave of a box; beyond edges less than the distance.
+
+    Args:
+        p: Point.
+        planes: Each an outward normal of length 1, and how far along it the plane is from the
+            origin.
+        size: Full size of the box; large enough, it cuts nothing and only bounds the shape.
+
+    Source: the largest of the planes' distances; Akleman and Chen, "Generalized Distance
+        Functions", 1999.
+
+    Measured:
+        convex_polyhedron((3.0, 0.0, 0.0), [(1.0, 0.0, 0.0, 0.5)], (4.0, 4.0, 4.0)) = 2.5
+        convex_polyhedron((0.0, 0.0, 0.0), [(0.6, 0.8, 0.0, 1.0)], (4.0, 4.0, 4.0)) = -1.0
+        convex_polyhedron((0.0, 5.0, 0.0), [(0.6, 0.8, 0.0, 1.0)], (4.0, 4.0, 4.0)) = 3.0
+    """
+    q = abs(p) - 0.5 * size
+    outside = max(q.x, q.y, q.z)
+    for i in range(count_of(planes)):
+        plane = planes[i]
+        outside = max(outside, dot(p, plane.xyz) - plane.w)
+    return outside

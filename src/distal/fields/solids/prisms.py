@@ -1,0 +1,201 @@
+"""Upright prisms over regular polygons and the rhombus.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance. Symmetry turns the
+point until one side of the outline, square to the z axis, is the nearest.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from distal.fields.flats.edges import fold_past, fold_sectors, inside_both
+from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
+from distal.lang import abs, cos, dot, func, length, max, min, sin, vec2, vec3
+
+SIZES: Final = {"apothem": Limit.POSITIVE, "height": Limit.POSITIVE}
+DIAGONALS: Final = vec2(1.0, 0.6)
+PI: Final = math.pi
+
+# Half of a side, and how far the corners are, for a side at distance 1 from the centre.
+TRIANGLE_HALF_SIDE: Final = math.sqrt(3.0)
+HEXAGON_HALF_SIDE: Final = math.tan(math.pi / 6.0)
+HEXAGON_REACH: Final = 1.0 / math.cos(math.pi / 6.0)
+OCTAGON_HALF_SIDE: Final = math.tan(math.pi / 8.0)
+
+
+@func
+def prism_side(q: vec2, y: float, half_side: float, apothem: float, height: float) -> float:
+    """Distance to a prism, one of whose sides is nearest and looks along q's y axis."""
+    beyond = vec3(abs(q.x) - half_side, q.y - apothem, abs(y) - 0.5 * height)
+    # Beside the outline's corner its edge is nearest; inside, q.x is always within the side.
+    return length(max(beyond, 0.0)) + min(max(beyond.y, beyond.z), 0.0)
+
+
+@func
+def tri_prism_bounds(apothem: float, height: float) -> Bounds:
+    """The box of a triangle with a side square to z."""
+    half = TRIANGLE_HALF_SIDE * apothem
+    return Bounds(vec3(-half, -0.5 * height, -2.0 * apothem), vec3(half, 0.5 * height, apothem))
+
+
+@primitive("TriPrism", EXACT, bounds=tri_prism_bounds, limits=SIZES)
+@func
+def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
+    """Upright prism over an equilateral triangle; one side looks along z.
+
+    Args:
+        p: Point.
+        apothem: From the axis to the middle of a side: half of that to a corner.
+        height: Full height.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
+        made exact.
+
+    Measured:
+        tri_prism((0.0, 0.0, 3.0), 1.0, 4.0) = 2.0
+        tri_prism((0.0, 5.0, -6.0), 1.0, 4.0) = 5.0
+        tri_prism((0.0, 0.0, 0.0), 1.0, 4.0) = -1.0
+    """
+    q = fold_past(vec2(abs(p.x), p.z), PI / 3.0)
+    return prism_side(q, p.y, TRIANGLE_HALF_SIDE * apothem, apothem, height)
+
+
+@func
+def hex_prism_bounds(apothem: float, height: float) -> Bounds:
+    """The box of a hexagon with two sides square to z."""
+    reach = vec3(HEXAGON_REACH * apothem, 0.5 * height, apothem)
+    return Bounds(-reach, reach)
+
+
+@primitive("HexPrism", EXACT, bounds=hex_prism_bounds, limits=SIZES)
+@func
+def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
+    """Upright prism over a regular hexagon; one side looks along z.
+
+    Args:
+        p: Point.
+        apothem: From the axis to the middle of a side.
+        height: Full height.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        hex_prism((0.0, 0.0, 3.0), 1.0, 4.0) = 2.0
+        hex_prism((4.1547005383792515, 6.0, 0.0), 1.0, 4.0) = 5.0
+        hex_prism((0.0, 1.5, 0.0), 1.0, 4.0) = -0.5
+    """
+    q = fold_past(abs(p.xz), PI / 6.0)
+    return prism_side(q, p.y, HEXAGON_HALF_SIDE * apothem, apothem, height)
+
+
+@func
+def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
+    """The box of an octagon with sides square to x and z."""
+    reach = vec3(apothem, 0.5 * height, apothem)
+    return Bounds(-reach, reach)
+
+
+@primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds, limits=SIZES)
+@func
+def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
+    """Upright prism over a regular octagon; sides look along x and z.
+
+    Args:
+        p: Point.
+        apothem: From the axis to the middle of a side.
+        height: Full height.
+
+    Source: Inigo Quilez, "2D distance functions"
+        (https://iquilezles.org/articles/distfunctions2d/), for the octagon.
+
+    Measured:
+        octagon_prism((3.0, 0.0, 0.0), 1.0, 4.0) = 2.0
+        octagon_prism((4.0, 6.0, 0.0), 1.0, 4.0) = 5.0
+        octagon_prism((2.0, 0.0, 2.0), 1.0, 4.0) = 1.8284271247461903
+    """
+    q = abs(p.xz)
+    q = vec2(min(q.x, q.y), max(q.x, q.y))
+    return prism_side(fold_past(q, PI / 8.0), p.y, OCTAGON_HALF_SIDE * apothem, apothem, height)
+
+
+@func
+def prism_bounds(count: int, apothem: float, height: float) -> Bounds:
+    """The box of the circle through the corners."""
+    reach = apothem / cos(PI / float(count))
+    return Bounds(vec3(-reach, -0.5 * height, -reach), vec3(reach, 0.5 * height, reach))
+
+
+def prism_requires(count: int) -> str | None:
+    """Fewer sides enclose nothing."""
+    return None if count >= 3 else "count must be 3 or more"
+
+
+@primitive("Prism", EXACT, bounds=prism_bounds, limits=SIZES, requires=prism_requires)
+@func
+def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:
+    """Upright prism over a regular polygon; one side looks along z.
+
+    Args:
+        p: Point.
+        count: How many sides, 3 or more.
+        apothem: From the axis to the middle of a side.
+        height: Full height.
+
+    Source: the sector that the angle names, turned to z; Inigo Quilez, "2D distance functions"
+        (https://iquilezles.org/articles/distfunctions2d/), for the polygons.
+
+    Measured:
+        prism((0.0, 0.0, 3.0), 5, 1.0, 4.0) = 2.0
+        prism((0.0, 6.0, 4.0), 7, 1.0, 4.0) = 5.0
+        prism((0.0, 0.0, 0.0), 9, 1.0, 4.0) = -1.0
+    """
+    half_side = sin(PI / float(count)) / cos(PI / float(count)) * apothem
+    return prism_side(fold_sectors(p.xz, count), p.y, half_side, apothem, height)
+
+
+@func
+def rhombus_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
+    """The box of a rhombus, grown by its rounding."""
+    reach = vec3(0.5 * diagonals.x + rounding, 0.5 * height, 0.5 * diagonals.y + rounding)
+    return Bounds(-reach, reach)
+
+
+@primitive(
+    "Rhombus",
+    EXACT,
+    bounds=rhombus_bounds,
+    limits={
+        "diagonals": Limit.POSITIVE,
+        "height": Limit.POSITIVE,
+        "rounding": Limit.NOT_NEGATIVE,
+    },
+)
+@func
+def rhombus(
+    p: vec3, diagonals: vec2 = DIAGONALS, height: float = 1.0, rounding: float = 0.05
+) -> float:
+    """Upright prism over a rhombus with rounded upright edges.
+
+    Args:
+        p: Point.
+        diagonals: Full size along x and z, before rounding.
+        height: Full height.
+        rounding: How far the outline is grown, which rounds its corners.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        rhombus((4.25, 6.0, 0.0), (2.0, 1.0), 4.0, 0.25) = 5.0
+        rhombus((0.0, 0.0, 0.0), (8.0, 6.0), 6.0, 0.25) = -2.65
+        rhombus((4.0, 0.0, 3.0), (8.0, 6.0), 6.0, 0.0) = 2.4
+    """
+    q = abs(p.xz) - vec2(0.5 * diagonals.x, 0.0)
+    side = vec2(-0.5 * diagonals.x, 0.5 * diagonals.y)
+    side_length = length(side)
+    direction = side / side_length
+    across = q.x * direction.y - q.y * direction.x
+    beyond = abs(dot(q, direction) - 0.5 * side_length) - 0.5 * side_length
+    # Inside, the foot of the perpendicular always lies on the side.
+    outline = length(max(vec2(beyond, across), 0.0)) + min(across, 0.0)
+    return inside_both(outline - rounding, abs(p.y) - 0.5 * height)

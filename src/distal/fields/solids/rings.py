@@ -1,0 +1,200 @@
+"""Circles and what stands at a distance from them: rings, arcs, links, discs.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance. Rings lie flat,
+around the y axis.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Limit, primitive
+from distal.lang import abs, cos, func, length, max, select, sin, vec2, vec3
+
+PI: Final = math.pi
+
+
+@func
+def flat_bounds(radius: float) -> Bounds:
+    """The square around a flat circle."""
+    reach = vec3(radius, 0.0, radius)
+    return Bounds(-reach, reach)
+
+
+@primitive(
+    "CircleLine",
+    EXACT_OUTSIDE,
+    bounds=flat_bounds,
+    limits={"radius": Limit.POSITIVE},
+    signed=False,
+)
+@func
+def circle_line(p: vec3, radius: float = 0.75) -> float:
+    """A circle without thickness around the y axis.
+
+    Args:
+        p: Point.
+        radius: Radius.
+
+    Source: Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), fCircle.
+
+    Measured:
+        circle_line((0.0, 0.0, 0.0), 2.0) = 2.0
+        circle_line((3.0, 4.0, 4.0), 2.0) = 5.0
+        circle_line((0.0, 1.5, 2.0), 2.0) = 1.5
+    """
+    return length(vec2(length(p.xz) - radius, p.y))
+
+
+@primitive(
+    "Disc", EXACT_OUTSIDE, bounds=flat_bounds, limits={"radius": Limit.POSITIVE}, signed=False
+)
+@func
+def disc(p: vec3, radius: float = 0.75) -> float:
+    """A round plate without thickness around the y axis.
+
+    Args:
+        p: Point.
+        radius: Radius.
+
+    Source: Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), fDisc.
+
+    Measured:
+        disc((0.5, 2.0, 0.5), 1.0) = 2.0
+        disc((3.0, 3.0, 4.0), 1.0) = 5.0
+        disc((0.0, 0.0, 0.5), 1.0) = 0.0
+    """
+    return length(vec2(max(length(p.xz) - radius, 0.0), p.y))
+
+
+@func
+def torus_bounds(major: float, minor: float) -> Bounds:
+    """The box of a lying ring."""
+    reach = vec3(major + minor, minor, major + minor)
+    return Bounds(-reach, reach)
+
+
+def torus_requires(major: float, minor: float) -> str | None:
+    """A thicker tube would run into itself."""
+    return "minor must be at most major" if minor > major else None
+
+
+@primitive(
+    "Torus",
+    EXACT,
+    bounds=torus_bounds,
+    limits={"major": Limit.POSITIVE, "minor": Limit.POSITIVE},
+    requires=torus_requires,
+)
+@func
+def torus(p: vec3, major: float = 0.75, minor: float = 0.25) -> float:
+    """Ring around the y axis.
+
+    Args:
+        p: Point.
+        major: Radius of the ring's centre line.
+        minor: Radius of the tube, at most ``major``.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        torus((1.0, 0.0, 0.0), 0.75, 0.25) = 0.0
+        torus((0.0, 0.0, 0.0), 0.75, 0.25) = 0.5
+        torus((0.75, 1.0, 0.0), 0.75, 0.25) = 0.75
+    """
+    return circle_line(p, major) - minor
+
+
+@func
+def capped_torus_bounds(angle: float, major: float, minor: float) -> Bounds:
+    """The box of an arc that is symmetric about x."""
+    wide = major * select(angle > 0.5 * PI, 1.0, sin(angle))
+    return Bounds(
+        vec3(major * cos(angle) - minor, -minor, -wide - minor),
+        vec3(major + minor, minor, wide + minor),
+    )
+
+
+def capped_torus_requires(angle: float, major: float, minor: float) -> str | None:
+    """The tube must not run into itself."""
+    if angle > PI + 1e-6:
+        return "angle must be at most pi"
+    if minor > major:
+        return "minor must be at most major"
+    gap = major * math.sin(angle)
+    if 0.5 * PI < angle < PI - 1e-6 and minor > gap:
+        return "the two ends must not meet: minor must be at most major * sin(angle)"
+    return None
+
+
+@primitive(
+    "CappedTorus",
+    EXACT,
+    bounds=capped_torus_bounds,
+    limits={"angle": Limit.POSITIVE, "major": Limit.POSITIVE, "minor": Limit.POSITIVE},
+    requires=capped_torus_requires,
+)
+@func
+def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float = 0.25) -> float:
+    """Part of a ring around the y axis, with round ends, symmetric about the x axis.
+
+    Args:
+        p: Point.
+        angle: From the middle of the arc, on the x axis, to either end; at most pi.
+        major: Radius of the arc.
+        minor: Radius of the tube.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        capped_torus((3.0, 0.0, 0.0), 1.5707963267948966, 1.0, 0.25) = 1.75
+        capped_torus((-4.0, 3.0, 1.0), 1.5707963267948966, 1.0, 0.25) = 4.75
+        capped_torus((0.0, 0.0, -1.0), 1.5707963267948966, 1.0, 0.25) = -0.25
+    """
+    side = abs(p.z)
+    # In 32 bits the sine of pi is below 0 and would leave out the ring's start.
+    end = vec2(cos(angle), max(sin(angle), 0.0))
+    to_end = length(vec3(p.x - major * end.x, p.y, side - major * end.y))
+    beside_arc = p.x * end.y >= side * end.x
+    return select(beside_arc, circle_line(p, major), to_end) - minor
+
+
+@func
+def link_bounds(height: float, major: float, minor: float) -> Bounds:
+    """The box of an upright link."""
+    reach = vec3(major + minor, 0.5 * height + major + minor, minor)
+    return Bounds(-reach, reach)
+
+
+def link_requires(major: float, minor: float) -> str | None:
+    """A thicker tube would run into itself."""
+    return "minor must be at most major" if minor > major else None
+
+
+@primitive(
+    "Link",
+    EXACT,
+    bounds=link_bounds,
+    limits={"height": Limit.NOT_NEGATIVE, "major": Limit.POSITIVE, "minor": Limit.POSITIVE},
+    requires=link_requires,
+)
+@func
+def link(p: vec3, height: float = 0.5, major: float = 0.4, minor: float = 0.15) -> float:
+    """Link of a chain, upright, seen as a ring along the z axis.
+
+    Args:
+        p: Point.
+        height: Of the two straight parts.
+        major: Radius of the two half rings' centre lines.
+        minor: Radius of the tube, at most ``major``.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        link((0.0, 0.0, 0.0), 1.0, 0.5, 0.25) = 0.25
+        link((0.5, 0.25, 0.0), 1.0, 0.5, 0.25) = -0.25
+        link((0.0, 5.0, 3.0), 1.0, 0.5, 0.25) = 4.75
+    """
+    bent = vec2(p.x, max(abs(p.y) - 0.5 * height, 0.0))
+    return length(vec2(length(bent) - major, p.z)) - minor

@@ -1,0 +1,236 @@
+"""Balls and what is stretched or swollen from a ball.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance, or a bound on it.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, primitive
+from distal.fields.solids.axes import TINY
+from distal.fields.solids.regular import along_vertices
+from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec3
+
+EGG: Final = vec3(0.5, 0.75, 0.5)
+HALF_BALL: Final = vec3(0.5)
+
+
+@func
+def sphere_bounds(radius: float) -> Bounds:
+    """The cube around the ball."""
+    return Bounds(vec3(-radius), vec3(radius))
+
+
+@primitive("Sphere", EXACT, bounds=sphere_bounds, limits={"radius": Limit.POSITIVE})
+@func
+def sphere(p: vec3, radius: float = 1.0) -> float:
+    """Ball.
+
+    Args:
+        p: Point.
+        radius: Radius.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        sphere((2.0, 3.0, 6.0), 1.0) = 6.0
+        sphere((0.0, 0.0, 0.0), 1.0) = -1.0
+        sphere((0.0, 0.0, -0.5), 0.5) = 0.0
+    """
+    return length(p) - radius
+
+
+@func
+def ellipsoid_bounds(radii: vec3) -> Bounds:
+    """The box that the radii span."""
+    return Bounds(-radii, radii)
+
+
+@func
+def ellipsoid_slope(radii: vec3) -> float:
+    """Bound on the slope, from the ratio s of the largest to the smallest radius, squared.
+
+    Far away the field is |q|^2 / |q / radii| with q = p / radii; nearer, its gradient is a mean of
+    that one's and a unit vector. Weigh the axes by the squares of q's parts: the squared slope is
+    then 4 - 4 E(r^2) E(r^-2) + E(r^2)^2 E(r^-4), at most E(r^2)^2 E(r^-4). The chord of the convex
+    x^-2 bounds the last factor, and the cubic that results is largest at
+    E(r^2) = 2 (s^2 + s + 1) / (3 (s + 1)), in units of the smallest radius, squared.
+    """
+    ratio = max(radii.x, radii.y, radii.z) / min(radii.x, radii.y, radii.z)
+    s = ratio * ratio
+    k = s * s + s + 1.0
+    return sqrt(k * k * k * (4.0 / 27.0)) / (s * (s + 1.0))
+
+
+@func
+def ellipsoid_growth(radii: vec3) -> float:
+    """Half of the ratio s of the largest to the smallest radius and its inverse.
+
+    With k = |q| outside, a point is at most |p| (k - 1) / k from the box, and the field is
+    (k - 1) k / |q / radii|. Weigh the axes by the squares of q's parts: the quotient is at most
+    sqrt(E(r^2) E(r^-2)), and that at most (s + 1 / s) / 2 (Kantorovich's inequality).
+    """
+    ratio = max(radii.x, radii.y, radii.z) / min(radii.x, radii.y, radii.z)
+    return 0.5 * (ratio + 1.0 / ratio)
+
+
+@primitive(
+    "Ellipsoid",
+    LOWER_BOUND,
+    slope=ellipsoid_slope,
+    bounds=ellipsoid_bounds,
+    limits={"radii": Limit.POSITIVE},
+    growth=ellipsoid_growth,
+)
+@func
+def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:
+    """Ellipsoid; outside a lower bound, close to the distance near the surface.
+
+    Outside, the convex ``|p / radii| - 1`` over its own slope. Inside that would jump at the
+    centre; there the scale goes over to the smallest radius.
+
+    Args:
+        p: Point.
+        radii: Half of the size along x, y and z.
+
+    Source: Inigo Quilez, "Ellipsoid SDF" (https://iquilezles.org/articles/ellipsoids/), outside.
+
+    Measured:
+        ellipsoid((2.0, 0.0, 0.0), (1.0, 2.0, 3.0)) = 1.0
+        ellipsoid((0.0, 5.0, 0.0), (1.0, 2.0, 3.0)) = 3.0
+        ellipsoid((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)) = -1.0
+    """
+    q = p / radii
+    k = length(q)
+    scale = k / max(length(q / radii), TINY)
+    smallest = min(radii.x, radii.y, radii.z)
+    return (k - 1.0) * select(k < 1.0, smallest + (scale - smallest) * k, scale)
+
+
+def superellipsoid_requires(across: float, upward: float) -> str | None:
+    """Below 1 the shape has spikes, and the field no bound on its slope."""
+    if across < 1.0 or upward < 1.0:
+        return "across and upward must be 1 or more"
+    return None
+
+
+@func
+def superellipsoid_steepest(across: float, upward: float) -> float:
+    """How much faster than the distance the norm grows, over the smallest radius, at most."""
+    return pow(2.0, max(1.0 / across - 0.5, 0.0) + max(1.0 / upward - 0.5, 0.0))
+
+
+@func
+def superellipsoid_side_growth(radii: vec3, across: float, upward: float) -> float:
+    """The norm is at least each part of p / radii: a side is passed by its radius at most."""
+    smallest = min(radii.x, radii.y, radii.z)
+    return max(radii.x, radii.y, radii.z) / smallest * superellipsoid_steepest(across, upward)
+
+
+@func
+def superellipsoid_growth(radii: vec3, across: float, upward: float) -> float:
+    """As for a side, all of them passed at once."""
+    smallest = min(radii.x, radii.y, radii.z)
+    return length(radii) / smallest * superellipsoid_steepest(across, upward)
+
+
+@primitive(
+    "Superellipsoid",
+    LOWER_BOUND,
+    bounds=ellipsoid_bounds,
+    limits={"radii": Limit.POSITIVE},
+    requires=superellipsoid_requires,
+    growth=superellipsoid_growth,
+    side_growth=superellipsoid_side_growth,
+)
+@func
+def superellipsoid(
+    p: vec3, radii: vec3 = HALF_BALL, across: float = 4.0, upward: float = 4.0
+) -> float:
+    """Between a diamond, a ball and a box, by two exponents; a bound with slope 1.
+
+    ``((|x|^across + |z|^across)^(upward/across) + |y|^upward)^(1/upward)``, of p / radii, less 1:
+    a norm. It grows no faster than the distance times 2^(1/e - 1/2) for each exponent e below 2,
+    over the smallest radius.
+
+    Args:
+        p: Point.
+        radii: Half of the size along x, y and z.
+        across: Exponent of the outline seen from above: 1 diamond, 2 circle, large square.
+        upward: Exponent of the outline seen from the side.
+
+    Source: Alan Barr, "Superquadrics and Angle-Preserving Transformations", IEEE Computer Graphics
+        and Applications 1(1), 1981.
+
+    Measured:
+        superellipsoid((2.0, 0.0, 0.0), (1.0, 1.0, 1.0), 4.0, 4.0) = 1.0
+        superellipsoid((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 8.0, 3.0) = -1.0
+        superellipsoid((3.0, 4.0, 0.0), (1.0, 1.0, 1.0), 2.0, 2.0) = 4.0
+    """
+    q = abs(p / radii)
+    # Relative to the largest part, so that no power overflows.
+    largest = max(q.x, q.y, q.z, TINY)
+    r = q / largest
+    ring = pow(pow(r.x, across) + pow(r.z, across), upward / across)
+    norm = largest * pow(ring + pow(r.y, upward), 1.0 / upward)
+    steepest = superellipsoid_steepest(across, upward)
+    return (norm - 1.0) * (min(radii.x, radii.y, radii.z) / steepest)
+
+
+# A bump reaches half way to the next: the cosine of half the angle between the vertices of an
+# icosahedron.
+BUMP_EDGE: Final = 0.8506508083520399
+# The steepest descent of a bump along the angle: 4 / (3 sqrt(3)) * sqrt(2 / (1 - BUMP_EDGE)).
+BUMP_SLOPE: Final = 2.8172
+
+
+@func
+def blob_bounds(radius: float, height: float) -> Bounds:
+    """The ball with its bumps."""
+    return Bounds(vec3(-radius - height), vec3(radius + height))
+
+
+@func
+def blob_slope(radius: float, height: float) -> float:
+    """Outward at most 1, sideways the bumps' share."""
+    sideways = BUMP_SLOPE * height / radius
+    return sqrt(1.0 + sideways * sideways)
+
+
+def blob_requires(radius: float, height: float) -> str | None:
+    """A higher bump would turn the field around near the centre."""
+    return "height must be at most the radius" if height > radius else None
+
+
+@primitive(
+    "Blob",
+    NOTHING,
+    slope=blob_slope,
+    bounds=blob_bounds,
+    limits={"radius": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
+    requires=blob_requires,
+    growth=1.0,
+)
+@func
+def blob(p: vec3, radius: float = 0.75, height: float = 0.2) -> float:
+    """Ball with twelve round bumps, towards the vertices of an icosahedron.
+
+    Args:
+        p: Point.
+        radius: Of the ball between the bumps.
+        height: Of the bumps, at most the radius.
+
+    Source: after Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), with another profile.
+
+    Measured:
+        blob((2.0, 2.0, 2.0), 1.0, 0.25) = 2.4641016151377544
+        blob((0.0, 1.0514622242382672, 1.7013016167040798), 1.0, 0.25) = 0.75
+        blob((0.0, 0.0, 0.0), 1.0, 0.25) = -1.0
+    """
+    far = length(p)
+    towards = along_vertices(abs(p))
+    # 1 - cosine of the angle to the nearest bump's top, as a share of that at its foot.
+    outward = clamp((1.0 - towards / max(far, TINY)) / (1.0 - BUMP_EDGE), 0.0, 1.0)
+    bump = (1.0 - outward) * (1.0 - outward)
+    return far - radius - height * min(far / radius, 1.0) * bump

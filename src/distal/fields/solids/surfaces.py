@@ -1,0 +1,190 @@
+"""Planes and what few of them enclose: half spaces, slabs, wedges; flat faces without thickness.
+
+What flows in: a point and the numbers of a shape. What flows out: the distance; of the faces,
+which have no inside, without a sign.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Limit, primitive
+from distal.fields.solids.axes import TINY
+from distal.fields.solids.cones import opening
+from distal.fields.solids.cylinders import to_segment
+from distal.lang import abs, cross, dot, func, length, max, min, select, vec2, vec3
+
+UP: Final = vec3(0.0, 1.0, 0.0)
+TURN: Final = math.tau
+CORNER_A: Final = vec3(-0.5, 0.0, 0.5)
+CORNER_B: Final = vec3(0.5, 0.0, 0.5)
+CORNER_C: Final = vec3(0.5, 0.0, -0.5)
+CORNER_D: Final = vec3(-0.5, 0.0, -0.5)
+
+
+@primitive("Plane", EXACT)
+@func
+def plane(p: vec3, y: float = 0.0) -> float:
+    """Ground: everything up to a height.
+
+    Args:
+        p: Point.
+        y: The height.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        plane((5.0, 3.0, -2.0), 1.0) = 2.0
+        plane((0.0, 0.0, 0.0), 1.0) = -1.0
+        plane((4.0, -1.0, 0.0), -1.0) = 0.0
+    """
+    return p.y - y
+
+
+@primitive("HalfSpace", EXACT, limits={"normal": Limit.UNIT})
+@func
+def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
+    """Everything behind a plane.
+
+    Args:
+        p: Point.
+        normal: The way out, of length 1.
+        offset: How far along the normal the plane is from the origin.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        half_space((5.0, 0.0, 0.0), (0.6, 0.8, 0.0), 1.0) = 2.0
+        half_space((0.0, 0.0, 7.0), (0.6, 0.8, 0.0), 1.0) = -1.0
+        half_space((0.6, 0.8, 3.0), (0.6, 0.8, 0.0), 1.0) = 0.0
+    """
+    return dot(p, normal) - offset
+
+
+@primitive("Slab", EXACT, limits={"thickness": Limit.POSITIVE})
+@func
+def slab(p: vec3, thickness: float = 0.5) -> float:
+    """Level slab without end, half of it above the origin.
+
+    Args:
+        p: Point.
+        thickness: Full thickness.
+
+    Source: the two planes.
+
+    Measured:
+        slab((1.0, 3.0, 1.0), 2.0) = 2.0
+        slab((9.0, 0.25, 0.0), 2.0) = -0.75
+        slab((0.0, -1.0, 7.0), 2.0) = 0.0
+    """
+    return abs(p.y) - 0.5 * thickness
+
+
+def wedge_requires(angle: float) -> str | None:
+    """A whole turn leaves nothing outside."""
+    return None if angle < TURN else "angle must be below a whole turn, 2 pi"
+
+
+@primitive("Wedge", EXACT, limits={"angle": Limit.POSITIVE}, requires=wedge_requires)
+@func
+def wedge(p: vec3, angle: float = 1.0) -> float:
+    """What lies between two planes that meet in the z axis, around the way down; without end.
+
+    Args:
+        p: Point.
+        angle: Between the planes, below 2 pi.
+
+    Source: the infinite cone of Inigo Quilez, "Distance functions"
+        (https://iquilezles.org/articles/distfunctions/), in the plane.
+
+    Measured:
+        wedge((0.0, 5.0, 9.0), 1.0) = 5.0
+        wedge((0.0, -2.0, 3.0), 1.0471975511965976) = -1.0
+        wedge((-3.0, -1.0, 0.0), 1.5707963267948966) = 1.4142135623730951
+    """
+    return opening(vec2(abs(p.x), p.y), 0.5 * angle)
+
+
+@func
+def beside_edge(p: vec3, start: vec3, end: vec3, normal: vec3) -> bool:
+    """Whether p lies outside the plane that stands on an edge; the edges run around normal.
+
+    True where there is no normal: corners in one line leave edges alone.
+    """
+    return dot(cross(end - start, normal), p - start) >= 0.0
+
+
+@func
+def nearer(u: vec3, v: vec3) -> vec3:
+    """The shorter of two vectors."""
+    return select(dot(v, v) < dot(u, u), v, u)
+
+
+@func
+def triangle_bounds(a: vec3, b: vec3, c: vec3) -> Bounds:
+    """The box of the corners."""
+    return Bounds(min(a, b, c), max(a, b, c))
+
+
+@primitive("Triangle", EXACT_OUTSIDE, bounds=triangle_bounds, signed=False)
+@func
+def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C) -> float:
+    """Flat triangle without thickness.
+
+    Args:
+        p: Point.
+        a: One corner.
+        b: Another corner.
+        c: The third corner.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        triangle((0.25, 2.0, 0.25), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 2.0
+        triangle((3.0, 3.0, -6.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 7.0
+        triangle((0.5, 3.0, -4.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 5.0
+    """
+    normal = cross(b - a, c - a)
+    outside = (
+        beside_edge(p, a, b, normal) or beside_edge(p, b, c, normal) or beside_edge(p, c, a, normal)
+    )
+    above = dot(normal, p - a) / max(length(normal), TINY)
+    edges = nearer(nearer(to_segment(p, a, b), to_segment(p, b, c)), to_segment(p, c, a))
+    return select(outside, length(edges), abs(above))
+
+
+@func
+def quad_bounds(a: vec3, b: vec3, c: vec3, d: vec3) -> Bounds:
+    """The box of the corners."""
+    return Bounds(min(a, b, c, d), max(a, b, c, d))
+
+
+@primitive("Quad", EXACT_OUTSIDE, bounds=quad_bounds, signed=False)
+@func
+def quad(
+    p: vec3,
+    a: vec3 = CORNER_A,
+    b: vec3 = CORNER_B,
+    c: vec3 = CORNER_C,
+    d: vec3 = CORNER_D,
+) -> float:
+    """Face with four corners, without thickness: the triangles a, b, c and a, c, d.
+
+    Flat and convex where the corners are; any others may be given too.
+
+    Args:
+        p: Point.
+        a: One corner.
+        b: The next corner around the face.
+        c: The corner opposite ``a``; the two triangles share the edge between them.
+        d: The corner opposite ``b``.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
+
+    Measured:
+        quad((0.0, 2.0, 0.25)) = 2.0
+        quad((2.5, 3.0, 6.5)) = 7.0
+        quad((0.25, 3.0, -4.5)) = 5.0
+    """
+    return min(triangle(p, a, b, c), triangle(p, a, c, d))

@@ -1,0 +1,384 @@
+"""Triply periodic minimal surfaces, as sheets or as the solid on one side.
+
+What flows in: a point, the edge of the cell that repeats, an offset and, for sheets, a thickness.
+What flows out: the surface's equation over its typical gradient, which is about the distance near
+the surface, and the bound on its slope. ``THICKEN_BY`` lets another shape's distance steer the
+thickness of a sheet.
+
+Each equation's steepest place bounds its slope (maxima over a cell, in closed form where the
+comment gives one). The typical gradient is the mean over a thin layer around the surface, so that a
+sheet is on average as thick as it should be (measured at 200,000 places).
+
+Source: Alan Schoen, "Infinite periodic minimal surfaces without self-intersections" (NASA TN
+D-5541, 1970), for the surfaces; the nodal equations after Hans-Georg von Schnering and Reinhard
+Nesper, "Nodal surfaces of Fourier series" (1991).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from distal.fields.extents import moved_out
+from distal.fields.guarantees import NOTHING, Bounds, Growth, Limit, operator, primitive
+from distal.lang import abs, clamp, cos, dot, func, max, sin, vec3
+
+TAU: Final = 6.283185307179586
+
+GYROID_STEEPEST: Final = 1.7320508075688772  # sqrt(3)
+GYROID_TYPICAL: Final = 1.53
+SCHWARZ_P_STEEPEST: Final = 1.7320508075688772  # sqrt(3)
+SCHWARZ_P_TYPICAL: Final = 1.307
+DIAMOND_STEEPEST: Final = 1.224744871391589  # sqrt(3/2)
+DIAMOND_TYPICAL: Final = 1.055
+NEOVIUS_STEEPEST: Final = 7.0
+NEOVIUS_TYPICAL: Final = 2.57
+LIDINOID_STEEPEST: Final = 2.598076211353316  # 3/2 sqrt(3)
+LIDINOID_TYPICAL: Final = 1.28
+SPLIT_P_STEEPEST: Final = 3.62008
+SPLIT_P_TYPICAL: Final = 2.25
+IWP_STEEPEST: Final = 5.196152422706632  # 3 sqrt(3)
+IWP_TYPICAL: Final = 4.31
+
+LIMITS: Final = {"cell_size": Limit.POSITIVE, "thickness": Limit.POSITIVE}
+
+
+def _sheet_fits(cell_size: float, thickness: float, offset: float) -> str | None:
+    """A sheet much thicker than this fills all there is; so does a large offset of a solid."""
+    if 4.0 * thickness > cell_size:
+        return "thickness must be at most a quarter of cell_size"
+    if 10.0 * math.fabs(offset) > cell_size:
+        return "offset must be at most a tenth of cell_size, either way"
+    return None
+
+
+@func
+def layered(
+    value: float, cell_size: float, typical: float, thickness: float, offset: float, solid: bool
+) -> float:
+    """The solid below a value of 0, moved out by ``offset``, or a sheet around its surface."""
+    d = value * cell_size / (TAU * typical) - offset
+    return d if solid else abs(d) - 0.5 * thickness
+
+
+@primitive(
+    "Gyroid",
+    NOTHING,
+    slope=GYROID_STEEPEST / GYROID_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def gyroid(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Schoen's gyroid: no straight lines, no mirrors, two mazes that never meet.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
+
+    Measured:
+        gyroid((0.0, 0.0, 0.0), 1.0, 0.25) = -0.125
+        gyroid((0.25, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.1040228
+        gyroid((1.0, 0.5, 0.0), 2.0, 0.1, 0.05, True) = 0.1580457
+    """
+    q = p * (TAU / cell_size)
+    value = dot(sin(q), cos(q.yzx))
+    return layered(value, cell_size, GYROID_TYPICAL, thickness, offset, solid)
+
+
+@primitive(
+    "SchwarzP",
+    NOTHING,
+    slope=SCHWARZ_P_STEEPEST / SCHWARZ_P_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def schwarz_p(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Schwarz's primitive surface: tubes along the axes that meet in every cell's middle.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: Hermann Schwarz (1865), for the surface; its nodal equation.
+
+    Measured:
+        schwarz_p((0.25, 0.25, 0.25), 1.0, 0.25) = -0.125
+        schwarz_p((0.0, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.3653136
+        schwarz_p((1.0, 0.5, 0.5), 2.0, 0.1, 0.05, True) = -0.2935424
+    """
+    q = cos(p * (TAU / cell_size))
+    value = q.x + q.y + q.z
+    return layered(value, cell_size, SCHWARZ_P_TYPICAL, thickness, offset, solid)
+
+
+@primitive(
+    "Diamond",
+    NOTHING,
+    slope=DIAMOND_STEEPEST / DIAMOND_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def diamond(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Schwarz's diamond surface: tubes along the bonds of a diamond's atoms.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: Hermann Schwarz (1865), for the surface; its nodal equation.
+
+    Measured:
+        diamond((0.25, 0.0, 0.0), 1.0, 0.25) = -0.125
+        diamond((0.0, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.1508578
+        diamond((0.5, 0.5, 0.5), 2.0, 0.1, 0.05, True) = -0.3517155
+    """
+    q = p * (TAU / cell_size)
+    c = cos(q)
+    s = sin(q)
+    value = c.x * c.y * c.z - s.x * s.y * s.z
+    return layered(value, cell_size, DIAMOND_TYPICAL, thickness, offset, solid)
+
+
+@primitive(
+    "Neovius",
+    NOTHING,
+    slope=NEOVIUS_STEEPEST / NEOVIUS_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def neovius(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Neovius' surface: as Schwarz's primitive one, with tubes along the edges too.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: Edvard Neovius (1883), for the surface; its nodal equation.
+
+    Measured:
+        neovius((0.25, 0.25, 0.25), 1.0, 0.25) = -0.125
+        neovius((0.0, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.8050639
+        neovius((1.0, 0.5, 0.5), 2.0, 0.1, 0.05, True) = -0.421568
+    """
+    c = cos(p * (TAU / cell_size))
+    value = 3.0 * (c.x + c.y + c.z) + 4.0 * c.x * c.y * c.z
+    return layered(value, cell_size, NEOVIUS_TYPICAL, thickness, offset, solid)
+
+
+@primitive(
+    "Lidinoid",
+    NOTHING,
+    slope=LIDINOID_STEEPEST / LIDINOID_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def lidinoid(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Lidin's surface, a twisted kin of the gyroid.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: Sven Lidin and Stefan Larsson (1990), for the surface; its nodal equation.
+
+    Measured:
+        lidinoid((0.0, 0.0, 0.0), 1.0, 0.25) = 0.0428587
+        lidinoid((0.25, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.0808209
+        lidinoid((0.5, 0.5, 0.0), 2.0, 0.1, 0.05, True) = 0.1116417
+    """
+    q = p * (TAU / cell_size)
+    s = sin(q)
+    c = cos(q)
+    double_sine = 2.0 * s * c
+    double_cosine = 2.0 * c * c - 1.0
+    woven = dot(double_sine, c.yzx * s.zxy)
+    value = 0.5 * woven - 0.5 * dot(double_cosine, double_cosine.yzx) + 0.15
+    return layered(value, cell_size, LIDINOID_TYPICAL, thickness, offset, solid)
+
+
+@primitive(
+    "SplitP",
+    NOTHING,
+    slope=SPLIT_P_STEEPEST / SPLIT_P_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def split_p(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """A surface between the gyroid and Schwarz's primitive one.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: the nodal equation in use among makers of lattices.
+
+    Measured:
+        split_p((0.0, 0.0, 0.0), 1.0, 0.25) = 0.002324
+        split_p((0.25, 0.25, 0.25), 1.0, 0.1, 0.0, True) = 0.0424413
+        split_p((0.5, 0.5, 0.0), 2.0, 0.1, 0.05, True) = 0.0348826
+    """
+    q = p * (TAU / cell_size)
+    s = sin(q)
+    c = cos(q)
+    double_sine = 2.0 * s * c
+    double_cosine = 2.0 * c * c - 1.0
+    woven = 1.1 * dot(double_sine, s.zxy * c.yzx)
+    pairs = 0.2 * dot(double_cosine, double_cosine.yzx)
+    value = woven - pairs - 0.4 * (double_cosine.x + double_cosine.y + double_cosine.z)
+    return layered(value, cell_size, SPLIT_P_TYPICAL, thickness, offset, solid)
+
+
+@primitive(
+    "IWP",
+    NOTHING,
+    slope=IWP_STEEPEST / IWP_TYPICAL,
+    limits=LIMITS,
+    requires=_sheet_fits,
+    tier=2,
+)
+@func
+def iwp(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Schoen's I-WP surface: tubes along the diagonals of a cube.
+
+    Args:
+        p: Point.
+        cell_size: Edge of the cube that repeats.
+        thickness: Of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved to its outer side.
+        solid: The solid inside the surface instead of a sheet.
+
+    Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
+
+    Measured:
+        iwp((0.0, 0.0, 0.0), 1.0, 0.25) = -0.0142193
+        iwp((0.25, 0.25, 0.25), 1.0, 0.1, 0.0, True) = 0.1107807
+        iwp((1.0, 0.0, 0.0), 2.0, 0.1, 0.05, True) = -0.419269
+    """
+    c = cos(p * (TAU / cell_size))
+    double_cosine = 2.0 * c * c - 1.0
+    value = 2.0 * dot(c, c.yzx) - (double_cosine.x + double_cosine.y + double_cosine.z)
+    return layered(value, cell_size, IWP_TYPICAL, thickness, offset, solid)
+
+
+@func
+def graded(a: float, b: float, near_thickness: float, far_thickness: float, span: float) -> float:
+    """A sheet around the first surface, its thickness told by the second shape's distance."""
+    share = clamp(b / span, 0.0, 1.0)
+    return abs(a) - 0.5 * (near_thickness + (far_thickness - near_thickness) * share)
+
+
+@func
+def graded_mix(a: float, b: float) -> float:
+    """The second shape tells the thickness alone and shows nowhere."""
+    return 0.0
+
+
+@func
+def graded_slope(
+    slope_a: float, slope_b: float, near_thickness: float, far_thickness: float, span: float
+) -> float:
+    """The first shape's, and what the thickness changes."""
+    return slope_a + 0.5 * slope_b * abs(far_thickness - near_thickness) / span
+
+
+@func
+def graded_bounds(
+    bounds_a: Bounds,
+    bounds_b: Bounds,
+    near_thickness: float,
+    far_thickness: float,
+    side_growth_a: float,
+) -> Bounds:
+    """The first shape's box, moved out by half of the thickest place."""
+    return moved_out(bounds_a, 0.5 * max(near_thickness, far_thickness), side_growth_a)
+
+
+THICKEN_BY = operator(
+    "thicken by",
+    combine=graded,
+    mix=graded_mix,
+    slope=graded_slope,
+    bounds=graded_bounds,
+    limits={
+        "near_thickness": Limit.NOT_NEGATIVE,
+        "far_thickness": Limit.NOT_NEGATIVE,
+        "span": Limit.POSITIVE,
+    },
+    growth=Growth.FIRST,
+)
+"""A sheet around the first shape's surface: ``near_thickness`` thick on and in the second shape,
+``far_thickness`` where that is ``span`` away or more."""

@@ -1,0 +1,314 @@
+"""Tubes along lines in space: through points and along Bézier curves.
+
+What flows in: a point, the curve's points as numbers or data, radii. What flows out: the distance,
+exact outside. A tube that grows thinner is followed by straight pieces, each
+the hull of two balls: the nearest point of the curve would jump where its radius changes.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.fields.flats.curves import BEZIER_STEPS, bezier_step
+from distal.fields.guarantees import EXACT_OUTSIDE, Bounds, Limit, primitive
+from distal.fields.solids.axes import TINY
+from distal.fields.solids.cones import round_cone_between
+from distal.lang import Buffer, abs, clamp, dot, func, length, max, min, select, size, vec3, vec4
+
+START: Final = vec3(-0.5, -0.3, 0.0)
+CONTROL: Final = vec3(0.0, 0.8, 0.4)
+LEAVING: Final = vec3(-0.3, 0.7, 0.3)
+ARRIVING: Final = vec3(0.3, -0.7, 0.3)
+END: Final = vec3(0.5, -0.3, 0.0)
+PIECES: Final = 16
+
+
+@func
+def nearer(a: vec3, b: vec3) -> vec3:
+    """The shorter of two vectors."""
+    return select(dot(b, b) < dot(a, a), b, a)
+
+
+@func
+def from_segment(p: vec3, start: vec3, end: vec3) -> vec3:
+    """The vector from the nearest point of a straight line between two points."""
+    along = end - start
+    from_start = p - start
+    t = clamp(dot(from_start, along) / max(dot(along, along), TINY * TINY), 0.0, 1.0)
+    return from_start - along * t
+
+
+@func
+def polyline_tube_bounds(points: Buffer[vec3], radius: float) -> Bounds:
+    """Around all points, wider by the radius."""
+    low = points[0]
+    high = points[0]
+    for i in range(1, size(points)):
+        low = min(low, points[i])
+        high = max(high, points[i])
+    return Bounds(low - radius, high + radius)
+
+
+@primitive(
+    "PolylineTube",
+    EXACT_OUTSIDE,
+    bounds=polyline_tube_bounds,
+    limits={"radius": Limit.POSITIVE},
+    tier=2,
+)
+@func
+def polyline_tube(
+    p: vec3, points: Buffer[vec3], radius: float = 0.1, closed: bool = False
+) -> float:
+    """A round tube through points, straight between them.
+
+    Args:
+        p: Point.
+        points: The corners in order.
+        radius: Of the tube.
+        closed: Whether the last point is joined to the first.
+
+    Source: the nearest of the lines between the points.
+
+    Measured:
+        polyline_tube((2.0, 0.0, 3.0), Buffer([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0)]), 0.5) = 2.5
+        polyline_tube((-3.0, 0.0, 4.0), Buffer([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0)]), 0.5) = 4.5
+        polyline_tube((0.0, 1.0, 0.0), Buffer([(0.0, 0.0, 0.0), (0.0, 2.0, 0.0)]), 0.25) = -0.25
+    """
+    start = points[0]
+    first = 1
+    if closed:
+        start = points[size(points) - 1]
+        first = 0
+    nearest = p - start
+    for i in range(first, size(points)):
+        nearest = nearer(nearest, from_segment(p, start, points[i]))
+        start = points[i]
+    return length(nearest) - radius
+
+
+@func
+def tapered_tube_bounds(points: Buffer[vec4]) -> Bounds:
+    """Around all balls."""
+    low = points[0].xyz - points[0].w
+    high = points[0].xyz + points[0].w
+    for i in range(1, size(points)):
+        low = min(low, points[i].xyz - points[i].w)
+        high = max(high, points[i].xyz + points[i].w)
+    return Bounds(low, high)
+
+
+@primitive("TaperedPolylineTube", EXACT_OUTSIDE, bounds=tapered_tube_bounds, tier=2)
+@func
+def tapered_polyline_tube(p: vec3, points: Buffer[vec4]) -> float:
+    """A round tube through points, with a radius for each: branches, tentacles.
+
+    Args:
+        p: Point.
+        points: The corners in order; the fourth number of each is the radius there, above 0.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/), for
+    each piece, a round cone.
+
+    Measured:
+        tapered_polyline_tube((0.0, 3.0, 4.0), Buffer([(0.0, 0.0, 0.0, 2.0)])) = 3.0
+        tapered_polyline_tube((4.0, 0.0, 0.0), Buffer([(0.0, 0.0, 0.0, 1.0), (2.0, 0.0, 0.0, 0.5)])) = 1.5
+        tapered_polyline_tube((1.0, 0.0, 2.0), Buffer([(0.0, 0.0, 0.0, 0.5), (2.0, 0.0, 0.0, 0.5)])) = 1.5
+    """  # noqa: E501
+    start = points[0]
+    d = length(p - start.xyz) - start.w
+    for i in range(1, size(points)):
+        end = points[i]
+        d = min(d, round_cone_between(p, start.xyz, end.xyz, start.w, end.w))
+        start = end
+    return d
+
+
+@func
+def from_bezier(p: vec3, start: vec3, control: vec3, end: vec3) -> vec3:
+    """The vector from the nearest point of a quadratic Bézier curve.
+
+    As in the plane (``flats_curves``): the two lows of the square of the distance are found from
+    either end of the curve.
+    """
+    velocity = control - start
+    bend = end - control - velocity
+    offset = start - p
+    third = dot(bend, bend)
+    second = 3.0 * dot(velocity, bend)
+    first = 2.0 * dot(velocity, velocity) + dot(offset, bend)
+    zeroth = dot(offset, velocity)
+    low = 0.0
+    high = 1.0
+    for _ in range(BEZIER_STEPS):
+        low = bezier_step(low, third, second, first, zeroth)
+        high = bezier_step(high, third, second, first, zeroth)
+    return nearer(
+        offset + (2.0 * velocity + bend * low) * low,
+        offset + (2.0 * velocity + bend * high) * high,
+    )
+
+
+@func
+def bezier_tube_bounds(start: vec3, control: vec3, end: vec3, radius: float) -> Bounds:
+    """Around the ends, and where the curve turns back along an axis."""
+    velocity = control - start
+    bend = end - control - velocity
+    divisor = select(abs(bend) > TINY, bend, TINY)
+    t = clamp(-velocity / divisor, 0.0, 1.0)
+    turn = start + (2.0 * velocity + bend * t) * t
+    return Bounds(min(start, end, turn) - radius, max(start, end, turn) + radius)
+
+
+@primitive(
+    "BezierTube",
+    EXACT_OUTSIDE,
+    bounds=bezier_tube_bounds,
+    limits={"radius": Limit.POSITIVE},
+    tier=2,
+)
+@func
+def bezier_tube(
+    p: vec3, start: vec3 = START, control: vec3 = CONTROL, end: vec3 = END, radius: float = 0.1
+) -> float:
+    """A round tube along a quadratic Bézier curve.
+
+    Args:
+        p: Point.
+        start: Where it starts.
+        control: Where it heads at first, and comes from at last.
+        end: Where it ends.
+        radius: Of the tube.
+
+    Source: Inigo Quilez, "Quadratic Bézier - distance 3D"
+    (https://iquilezles.org/articles/distfunctions/), for the cubic; its roots by Edmond Halley's
+    method.
+
+    Measured:
+        bezier_tube((0.0, 3.0, 0.0), (-1.0, -1.0, 0.0), (0.0, 1.0, 0.0), (1.0, -1.0, 0.0), 0.5) = 2.5
+        bezier_tube((5.0, -1.0, -3.0), (-1.0, -1.0, 0.0), (0.0, 1.0, 0.0), (1.0, -1.0, 0.0), 0.5) = 4.5
+        bezier_tube((2.0, 1.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (4.0, 0.0, 0.0), 0.5) = 0.5
+    """  # noqa: E501
+    return length(from_bezier(p, start, control, end)) - radius
+
+
+@func
+def cubic_tube_bounds(
+    start: vec3, leaving: vec3, arriving: vec3, end: vec3, start_radius: float, end_radius: float
+) -> Bounds:
+    """Around the ends and the control points, wider by the larger radius."""
+    radius = max(start_radius, end_radius)
+    low = min(start, leaving, arriving, end) - radius
+    return Bounds(low, max(start, leaving, arriving, end) + radius)
+
+
+TAPERED: Final = {"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE}
+
+
+def _has_pieces(pieces: int) -> str | None:
+    return "pieces must be 1 or more" if pieces < 1 else None
+
+
+@primitive(
+    "CubicBezierTube",
+    EXACT_OUTSIDE,
+    bounds=cubic_tube_bounds,
+    limits=TAPERED,
+    requires=_has_pieces,
+    tier=2,
+)
+@func
+def cubic_bezier_tube(
+    p: vec3,
+    start: vec3 = START,
+    leaving: vec3 = LEAVING,
+    arriving: vec3 = ARRIVING,
+    end: vec3 = END,
+    start_radius: float = 0.12,
+    end_radius: float = 0.06,
+    pieces: int = PIECES,
+) -> float:
+    """A round tube along a cubic Bézier curve, its radius changing evenly; made of straight pieces.
+
+    Args:
+        p: Point.
+        start: Where it starts.
+        leaving: Where it heads at first.
+        arriving: Where it comes from at last.
+        end: Where it ends.
+        start_radius: Radius at ``start``.
+        end_radius: Radius at ``end``.
+        pieces: How many straight pieces stand for the curve.
+
+    Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/), for
+    each piece, a round cone.
+
+    Measured:
+        cubic_bezier_tube((2.0, 0.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (3.0, 0.0, 0.0), (4.0, 0.0, 0.0), 0.5, 0.5) = 0.5
+        cubic_bezier_tube((7.0, 4.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (3.0, 0.0, 0.0), (4.0, 0.0, 0.0), 0.5, 0.5) = 4.5
+        cubic_bezier_tube((0.0, 0.0, -9.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 3.0), (0.0, 0.0, 4.0), 1.0, 0.5) = 8.0
+    """  # noqa: E501
+    velocity = 3.0 * (leaving - start)
+    bend = 3.0 * (start - 2.0 * leaving + arriving)
+    jerk = end - start - 3.0 * (arriving - leaving)
+    share = 1.0 / float(pieces)
+    near = start
+    near_radius = start_radius
+    d = length(p - start) - start_radius
+    for i in range(pieces):
+        t = float(i + 1) * share
+        far = start + ((jerk * t + bend) * t + velocity) * t
+        far_radius = start_radius + (end_radius - start_radius) * t
+        d = min(d, round_cone_between(p, near, far, near_radius, far_radius))
+        near = far
+        near_radius = far_radius
+    return d
+
+
+@func
+def tapered_bezier_bounds(
+    start: vec3, control: vec3, end: vec3, start_radius: float, end_radius: float
+) -> Bounds:
+    """Around the ends and the turns, wider by the larger radius."""
+    return bezier_tube_bounds(start, control, end, max(start_radius, end_radius))
+
+
+@primitive(
+    "TaperedBezierTube",
+    EXACT_OUTSIDE,
+    bounds=tapered_bezier_bounds,
+    limits=TAPERED,
+    requires=_has_pieces,
+    tier=2,
+)
+@func
+def tapered_bezier_tube(
+    p: vec3,
+    start: vec3 = START,
+    control: vec3 = CONTROL,
+    end: vec3 = END,
+    start_radius: float = 0.12,
+    end_radius: float = 0.06,
+    pieces: int = PIECES,
+) -> float:
+    """A round tube along a quadratic Bézier curve, its radius changing evenly; straight pieces.
+
+    Args:
+        p: Point.
+        start: Where it starts.
+        control: Where it heads at first, and comes from at last.
+        end: Where it ends.
+        start_radius: Radius at ``start``.
+        end_radius: Radius at ``end``.
+        pieces: How many straight pieces stand for the curve.
+
+    Source: ``cubic_bezier_tube``, the curve raised by a degree.
+
+    Measured:
+        tapered_bezier_tube((2.0, 0.0, 1.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (4.0, 0.0, 0.0), 0.5, 0.5) = 0.5
+        tapered_bezier_tube((7.0, 4.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (4.0, 0.0, 0.0), 0.5, 0.5) = 4.5
+        tapered_bezier_tube((0.0, 0.0, -9.0), (0.0, 0.0, 0.0), (0.0, 0.0, 2.0), (0.0, 0.0, 4.0), 1.0, 0.5) = 8.0
+    """  # noqa: E501
+    leaving = (start + 2.0 * control) / 3.0
+    arriving = (end + 2.0 * control) / 3.0
+    return cubic_bezier_tube(p, start, leaving, arriving, end, start_radius, end_radius, pieces)

@@ -1,0 +1,207 @@
+"""Assignment: to names, to parts of values, to several at once."""
+
+from __future__ import annotations
+
+import ast
+
+from distal.frontend.lowering.body import Body, Variable
+from distal.frontend.lowering.expressions import element, member
+from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.types.coercion import conversion_hint, fit, settle, shown_type
+from distal.frontend.types.operators import binary
+from distal.frontend.values import Closure, Display, Static, Value, Whole
+from distal.ir.build import integer
+from distal.ir.nodes import Assign, Const, Expr, Field, Index, Read, Swizzle, Uniform
+from distal.ir.types import FLOAT, INT, Array, Scalar, Struct, Type, Vector, is_static
+from distal.ir.walk import nodes_in
+
+
+def assign(body: Body, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
+    """``target = value``."""
+    match target:
+        case ast.Name():
+            _assign_name(body, target, value, stmt)
+        case ast.Tuple(elts) | ast.List(elts):
+            _unpack(body, target, elts, value, stmt)
+        case ast.Attribute() | ast.Subscript():
+            place = lvalue(body, target)
+            _assign_part(body, place, target, value, stmt)
+        case ast.Starred():
+            raise body.problem("'*' is not part of scene code", target)
+        case _:
+            raise body.problem("this cannot be assigned to", target)
+
+
+def local(body: Body, target: ast.Name) -> Variable:
+    """The local that a name being assigned stands for."""
+    variable = body.lookup(target.id)
+    assert variable is not None, target.id
+    if variable.loop:
+        message = f"the loop variable '{target.id}' is read-only"
+        raise body.problem(message, target, "assign to a local with another name")
+    return variable
+
+
+def _assign_name(body: Body, target: ast.Name, value: Value, stmt: ast.stmt) -> None:
+    variable = local(body, target)
+    if isinstance(value, Static | Closure) or is_static(getattr(value, "type", INT)):
+        _assign_static(body, variable, value, target)
+        return
+    if variable.static is not None:
+        raise body.problem(f"'{variable.name}' is a function and does not change", target)
+    if variable.type is None:
+        expr = settle(body, value, value_node(stmt))
+    else:
+        fitted = fit(body, value, variable.type, value_node(stmt))
+        if fitted is None:
+            raise _changed_type(body, variable.name, variable.type, value, stmt)
+        expr = fitted
+    starts = not variable.ir_name
+    body.store(variable, expr, stmt)
+    if starts and isinstance(value, Whole):
+        body.whole_starts[variable.ir_name] = value.value
+
+
+def value_node(stmt: ast.stmt) -> ast.expr | ast.stmt:
+    """The right side of an assignment, for its mistakes."""
+    value = getattr(stmt, "value", None)
+    return value if isinstance(value, ast.expr) else stmt
+
+
+def _assign_static(body: Body, variable: Variable, value: Value, target: ast.Name) -> None:
+    """A local name for a function, a type or a resource: at compile time only."""
+    if variable.changes or variable.type is not None:
+        message = f"'{variable.name}' cannot change what function it stands for"
+        raise body.problem(message, target, "give each function a name of its own")
+    variable.static = value
+    body.assigned.add(variable)
+
+
+def _changed_type(body: Body, name: str, type: Type, value: Value, stmt: ast.stmt) -> SceneError:
+    given = shown_type(value)
+    hint = conversion_hint(value, type)
+    if type is INT and given == str(FLOAT):
+        hint = f"start it as a float: {name} = 0.0"
+    return body.problem(f"'{name}' is {type} and cannot become {given}", stmt, hint)
+
+
+def _assign_part(body: Body, place: Expr, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
+    fitted = fit(body, value, place.type, value_node(stmt))
+    if fitted is None:
+        message = f"'{ast.unparse(target)}' is {place.type}, not {shown_type(value)}"
+        raise body.problem(message, stmt, conversion_hint(value, place.type))
+    body.emit(Assign(place, fitted, span=body.span(stmt)))
+
+
+def lvalue(body: Body, target: ast.expr) -> Expr:
+    """The place that ``v.xy``, ``a[i]`` or ``hit.color`` names, rooted in a local."""
+    match target:
+        case ast.Name():
+            return _root(body, target)
+        case ast.Attribute(base, name):
+            place = member(body, lvalue(body, base), name, target)
+            if isinstance(place, Swizzle) and len(set(place.lanes)) < len(place.lanes):
+                message = f"'.{name}' names a component twice and cannot be assigned to"
+                raise body.problem(message, target)
+            return place
+        case ast.Subscript(base):
+            place = element(body, lvalue(body, base), target)
+            if isinstance(place, Field):
+                raise body.problem("a tuple does not change", target, "use a struct")
+            return place
+        case _:
+            raise body.problem("this cannot be assigned to", target, "assign it to a local first")
+
+
+def _root(body: Body, target: ast.Name) -> Expr:
+    variable = body.lookup(target.id)
+    if variable is None:
+        message = f"'{target.id}' belongs to the module or to an outer function and cannot change"
+        raise body.problem(message, target, f"copy it first: local = {target.id}")
+    local(body, target)
+    if variable.failed:
+        raise FollowupError
+    if variable.static is not None:
+        raise body.problem(f"'{target.id}' cannot change", target)
+    value = body.read(variable, target)
+    assert isinstance(value, Read)
+    return value
+
+
+def _unpack(
+    body: Body, target: ast.expr, elements: list[ast.expr], value: Value, stmt: ast.stmt
+) -> None:
+    items = _items(body, value, len(elements), target, stmt)
+    if len(items) > 1 and _depend(body, items, elements):
+        # All values are taken before the first target changes: a, b = b, a.
+        items = [_held(body, i) for i in items]
+    for element_target, item in zip(elements, items, strict=True):
+        assign(body, element_target, item, stmt)
+
+
+def _held(body: Body, value: Value) -> Value:
+    match value:
+        case Whole() | Static() | Closure() | Const() | Uniform():
+            return value
+        case Display(items, is_list, captured):
+            return Display(tuple(_held(body, i) for i in items), is_list, captured)
+        case _:
+            return body.hold("value", value)
+
+
+def _depend(body: Body, items: list[Value], targets: list[ast.expr]) -> bool:
+    """Whether a value reads a local that an assignment before it may have changed."""
+    names = {n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)}
+    variables = (body.lookup(name) for name in names)
+    changing = {v.ir_name for v in variables if v is not None and v.changes}
+    return bool(changing) and any(_reads(i, changing) for i in items)
+
+
+def _reads(value: Value, names: set[str]) -> bool:
+    match value:
+        case Whole() | Static() | Closure():
+            return False
+        case Display(items):
+            return any(_reads(i, names) for i in items)
+        case _:
+            return any(isinstance(e, Read) and e.name in names for e in nodes_in(value))
+
+
+def _items(body: Body, value: Value, count: int, target: ast.expr, stmt: ast.stmt) -> list[Value]:
+    if isinstance(value, Display):
+        items = list(value.items)
+    else:
+        items = _parts(body, settle(body, value, value_node(stmt)), stmt)
+    if len(items) != count:
+        raise body.problem(f"{count} names cannot take {len(items)} values", target)
+    return items
+
+
+def _parts(body: Body, value: Expr, stmt: ast.stmt) -> list[Value]:
+    match value.type:
+        case Struct(_, fields, True):
+            held = body.bind("values", value)
+            return [Field(held, name, type) for name, type in fields]
+        case Vector(kind, size):
+            held = body.bind("values", value)
+            return [Swizzle(held, lane, Scalar(kind)) for lane in "xyzw"[:size]]
+        case Array(element_type, length):
+            held = body.bind("values", value)
+            return [Index(held, integer(i), element_type) for i in range(length)]
+        case _:
+            raise body.problem(f"{value.type} does not unpack", value_node(stmt))
+
+
+def augment(body: Body, stmt: ast.AugAssign) -> None:
+    """``target op= value``."""
+    if isinstance(stmt.target, ast.Name):
+        variable = local(body, stmt.target)
+        old = body.read(variable, stmt.target)
+        value = binary(body, stmt.op, old, body.expression(stmt.value), stmt)
+        if isinstance(old, Static | Closure):
+            raise body.problem(f"'{stmt.target.id}' does not change", stmt)
+        _assign_name(body, stmt.target, value, stmt)
+        return
+    place = lvalue(body, stmt.target)
+    value = binary(body, stmt.op, place, body.expression(stmt.value), stmt)
+    _assign_part(body, place, stmt.target, value, stmt)

@@ -1,0 +1,413 @@
+"""Expressions: one function for each kind of syntax node, in one table.
+
+A node without an entry is not part of the language; the author is told so at that node.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from enum import EnumMeta
+from types import ModuleType
+from typing import Any, Final
+
+from distal.frontend.lowering.body import Body, Variable
+from distal.frontend.lowering.calls import arguments, lower_call
+from distal.frontend.objects import RefusedError, value_of
+from distal.frontend.problems import did_you_mean
+from distal.frontend.refusals import refusal
+from distal.frontend.types.coercion import constant_int, fit, settle, unify
+from distal.frontend.types.constructors import repeated
+from distal.frontend.types.operators import binary, compare, condition, unary
+from distal.frontend.values import (
+    FALSE,
+    LARGEST_FLOAT,
+    TRUE,
+    Closure,
+    Display,
+    Static,
+    Value,
+    Whole,
+)
+from distal.ir.build import element_type, integer
+from distal.ir.nodes import (
+    Const,
+    Expr,
+    Field,
+    Index,
+    Logical,
+    LogicalOp,
+    Select,
+    Swizzle,
+    Unary,
+    UnaryOp,
+)
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    Array,
+    Buffer,
+    Kind,
+    Matrix,
+    Scalar,
+    Struct,
+    Vector,
+    kind_of,
+    vector_of,
+)
+
+_LETTER_SETS: Final = ("xyzw", "rgba")
+
+
+def lower_expression(body: Body, node: ast.expr) -> Value:
+    """The value of an expression."""
+    rule = _RULES.get(type(node))
+    if rule is None:
+        raise refusal(body, node)
+    return rule(body, node)
+
+
+def _constant(body: Body, node: ast.Constant) -> Value:
+    match node.value:
+        case bool():
+            return TRUE if node.value else FALSE
+        case int():
+            return Whole(node.value)
+        case float():
+            if abs(node.value) <= LARGEST_FLOAT:
+                return Const(node.value, FLOAT)
+            hint = "the largest is 3.4e38"
+            raise body.problem("this number is larger than a 32-bit float can be", node, hint)
+        case _:
+            raise refusal(body, node)
+
+
+def _name(body: Body, node: ast.Name) -> Value:
+    found = body.find(node.id, node)
+    if isinstance(found, Variable):
+        return body.read(found, node)
+    exists, obj = found
+    if not exists:
+        hint = did_you_mean(node.id, body.names.known() | body.plan.names)
+        raise body.problem(f"'{node.id}' is not defined", node, hint)
+    return object_value(body, obj, node.id, node)
+
+
+def object_value(body: Body, obj: Any, text: str, node: ast.expr) -> Value:
+    """The meaning of a Python object that is named here."""
+    try:
+        return value_of(obj, text, body.program)
+    except RefusedError as refused:
+        raise body.problem(refused.message, node, refused.hint) from None
+
+
+def _attribute(body: Body, node: ast.Attribute) -> Value:
+    base = body.expression(node.value)
+    if isinstance(base, Static):
+        return _static_attribute(body, base, node)
+    if node.attr == "value" and _is_enum_member(body, node.value):
+        return base
+    if isinstance(base, Display) and len(base.items) in (2, 3, 4):
+        base = _as_vector(body, base, node.value)
+    value = settle(body, base, node.value)
+    return member(body, value, node.attr, node)
+
+
+def _is_enum_member(body: Body, node: ast.expr) -> bool:
+    """Whether this is ``Mode.A``, which stands for its value already."""
+    if not isinstance(node, ast.Attribute):
+        return False
+    owner = body.expression(node.value)
+    return isinstance(owner, Static) and isinstance(owner.object, EnumMeta)
+
+
+def _as_vector(body: Body, display: Display, node: ast.expr) -> Value:
+    """A captured tuple whose components are picked is a vector of floats."""
+    fitted = fit(body, display, vector_of(Kind.FLOAT, len(display.items)), node)
+    return display if fitted is None else fitted
+
+
+def member(body: Body, value: Expr, name: str, node: ast.expr) -> Expr:
+    """``value.name``: a swizzle or a field."""
+    match value.type:
+        case Vector(kind):
+            lanes = swizzle_lanes(body, name, value.type, node)
+            return Swizzle(value, lanes, vector_of(kind, len(lanes)), span=body.span(node))
+        case Struct(_, fields, False):
+            found = value.type.field(name)
+            if found is not None:
+                return Field(value, name, found, span=body.span(node))
+            names = [n for n, _ in fields]
+            close = did_you_mean(name, names)
+            listed = f"fields: {', '.join(names)}"
+            hint = f"{close} {listed}" if close else listed
+            raise body.problem(f"{value.type} has no field '{name}'", node, hint)
+        case _:
+            hint = ""
+            if isinstance(value.type, Scalar) and set(name) <= set("xyzwrgba"):
+                hint = f"a {value.type} has one component: use it as it is"
+            raise body.problem(f"{value.type} has no '{name}'", node, hint or None)
+
+
+def swizzle_lanes(body: Body, name: str, type: Vector, node: ast.expr) -> str:
+    """The letters of a swizzle as ``xyzw``."""
+    for letters in _LETTER_SETS:
+        if set(name) <= set(letters):
+            lanes = "".join("xyzw"[letters.index(c)] for c in name)
+            if set(lanes) <= set("xyzw"[: type.size]):
+                if len(lanes) <= 4:
+                    return lanes
+                raise body.problem("a swizzle has 1 to 4 letters", node)
+            hint = f"its components are {', '.join(letters[: type.size])}"
+            raise body.problem(f"{type} has no component '{name}'", node, hint)
+    if name == "length":
+        raise body.problem(f"{type} has no 'length'", node, "write length(v)")
+    hint = f"its components are {', '.join('xyzw'[: type.size])}"
+    if set(name) <= set("xyzwrgba"):
+        hint = "xyzw and rgba do not mix in one swizzle"
+    raise body.problem(f"{type} has no component '{name}'", node, hint)
+
+
+def _static_attribute(body: Body, base: Static, node: ast.Attribute) -> Value:
+    text = f"{base.text}.{node.attr}"
+    try:
+        obj = getattr(base.object, node.attr)
+    except AttributeError:
+        known = dir(base.object)
+        what = "the module" if isinstance(base.object, ModuleType) else ""
+        subject = f"{what} '{base.text}'".strip()
+        hint = did_you_mean(node.attr, known)
+        if hint is None and isinstance(base.object, EnumMeta):
+            hint = f"its members: {', '.join(base.object.__members__)}"
+        raise body.problem(f"{subject} has no '{node.attr}'", node, hint) from None
+    except Exception as error:
+        message = f"'{text}' fails: {type(error).__name__}"
+        raise body.problem(message, node) from None
+    return object_value(body, obj, text, node)
+
+
+def _bin_op(body: Body, node: ast.BinOp) -> Value:
+    # A long sum leans to the left: go down its spine in a loop, not by recursion.
+    spine = [node]
+    while isinstance(spine[-1].left, ast.BinOp):
+        spine.append(spine[-1].left)
+    value = body.expression(spine[-1].left)
+    for step in reversed(spine):
+        right = body.expression(step.right)
+        value = _one_bin_op(body, step, value, right)
+        if not isinstance(value, Whole | Display | Static | Closure):
+            value = body.shallow(value)
+    return value
+
+
+def _one_bin_op(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+    if isinstance(node.op, ast.Mult):
+        for one, other in ((left, right), (right, left)):
+            if isinstance(one, Display) and one.is_list and not one.captured:
+                return repeated(body, one, other, node)
+    return binary(body, node.op, left, right, node)
+
+
+def _unary_op(body: Body, node: ast.UnaryOp) -> Value:
+    operand = body.expression(node.operand)
+    if not isinstance(node.op, ast.Not):
+        return unary(body, node.op, operand, node)
+    if not isinstance(operand, Whole | Display | Static | Closure):
+        type = operand.type
+        if isinstance(type, Vector) and type.kind is Kind.BOOL:
+            hint = "write ~v for each component, or not any(v)"
+            raise body.problem(f"'not' takes a bool, not {type}", node, hint)
+    value = condition(body, operand, node.operand, "the operand of 'not'")
+    return Unary(UnaryOp.NOT, value, BOOL, span=body.span(node))
+
+
+def _bool_op(body: Body, node: ast.BoolOp) -> Value:
+    op = LogicalOp.AND if isinstance(node.op, ast.And) else LogicalOp.OR
+    what = f"an operand of '{op.value}'"
+    parts = [condition(body, body.expression(v), v, what) for v in node.values]
+    total = parts[0]
+    for part in parts[1:]:
+        total = body.shallow(Logical(op, total, part, BOOL, span=body.span(node)))
+    return total
+
+
+def _compare(body: Body, node: ast.Compare) -> Value:
+    left = body.expression(node.left)
+    parts: list[Expr] = []
+    for op, at in zip(node.ops, node.comparators, strict=True):
+        right = body.expression(at)
+        parts.append(compare(body, op, left, right, node))
+        left = right
+    if len(parts) == 1:
+        return parts[0]
+    total: Expr | None = None
+    for part in parts:
+        if part.type is not BOOL:
+            hint = "write all(a < b) and all(b < c)"
+            raise body.problem("a chain compares single numbers, not vectors", node, hint)
+        total = part if total is None else Logical(LogicalOp.AND, total, part, BOOL)
+        total = body.shallow(total)
+    assert total is not None
+    return total
+
+
+def _if_exp(body: Body, node: ast.IfExp) -> Value:
+    test = condition(body, body.expression(node.test), node.test, "a condition")
+    values = (body.expression(node.body), body.expression(node.orelse))
+    yes, no = unify(body, values, node, "the branches of a conditional expression are")
+    return Select(test, yes, no, yes.type, span=body.span(node))
+
+
+def _subscript(body: Body, node: ast.Subscript) -> Value:
+    base = body.expression(node.value)
+    if isinstance(base, Static):
+        message = f"'{base.text}' is not an array"
+        raise body.problem(message, node)
+    if isinstance(base, Display):
+        position = constant_int(body.expression(node.slice))
+        if position is not None:
+            check_index(body, position, len(base.items), node)
+            return base.items[position]
+        return element(body, body.bind(array_name(node.value), settle(body, base, node)), node)
+    return element(body, settle(body, base, node.value), node)
+
+
+def array_name(node: ast.expr) -> str:
+    """What a local that holds an array is called: as the author calls it."""
+    match node:
+        case ast.Name(name) | ast.Attribute(_, name):
+            return name
+        case _:
+            return "values"
+
+
+def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:
+    """``base[index]``, also as a target."""
+    if isinstance(node.slice, ast.Slice):
+        hint = "pick components by letters, such as .xy" if isinstance(base.type, Vector) else None
+        raise body.problem("slices are not part of scene code", node, hint)
+    if isinstance(node.slice, ast.Tuple):
+        hint = "write m[column][row]" if isinstance(base.type, Matrix) else None
+        raise body.problem("an index is one number", node, hint)
+    index = body.expression(node.slice)
+    length = _length(body, base, node)
+    position = constant_int(index)
+    if position is not None:
+        check_index(body, position, length, node)
+        return _constant_element(body, base, position, node)
+    value = settle(body, index, node.slice)
+    if isinstance(base.type, Struct):
+        raise body.problem("a tuple's index is a number known now", node.slice)
+    if value.type is not INT:
+        hint = (
+            "write int(...) around it" if kind_of(value.type) in (Kind.FLOAT, Kind.UINT) else None
+        )
+        raise body.problem(f"an index is int, not {value.type}", node.slice, hint)
+    return Index(base, value, element_type(base.type), span=body.span(node))
+
+
+def _length(body: Body, base: Expr, node: ast.expr) -> int | None:
+    match base.type:
+        case Array(_, length):
+            return length
+        case Vector(_, size) | Matrix(size):
+            return size
+        case Struct(_, fields, True):
+            return len(fields)
+        case Buffer():
+            return None
+        case _:
+            raise body.problem(f"{base.type} takes no index", node)
+
+
+def _constant_element(body: Body, base: Expr, position: int, node: ast.expr) -> Expr:
+    span = body.span(node)
+    match base.type:
+        case Vector(kind):
+            return Swizzle(base, "xyzw"[position], Scalar(kind), span=span)
+        case Struct(_, fields):
+            name, type = fields[position]
+            return Field(base, name, type, span=span)
+        case _:
+            return Index(base, integer(position), element_type(base.type), span=span)
+
+
+LONGEST_QUOTE: Final = 40  # letters of the author's code inside a hint
+
+
+def check_index(body: Body, position: int, length: int | None, node: ast.Subscript) -> None:
+    """Refuse a constant index outside 0 .. length - 1; the length of a buffer is not known.
+
+    A negative one is refused too, although Python counts it from the end: computed indices are
+    clamped, and one index must not mean two elements.
+    """
+    if position < 0 and (length is None or position >= -length):
+        text = ast.unparse(node.value)
+        name = text if len(text) <= LONGEST_QUOTE else "..."
+        inside = f"len({name}) - {-position}" if length is None else str(length + position)
+        message = f"index {position} is negative: indices count from 0, on every target"
+        raise body.problem(message, node, f"write {name}[{inside}]")
+    if length is not None and not 0 <= position < length:
+        raise body.problem(f"index {position} is out of range: there are {length} elements", node)
+
+
+def _tuple(body: Body, node: ast.Tuple) -> Value:
+    if not node.elts:
+        raise body.problem("an empty tuple holds nothing", node)
+    return Display(_items(body, node.elts), is_list=False)
+
+
+def _list(body: Body, node: ast.List) -> Value:
+    if not node.elts:
+        raise body.problem("an array has at least one element", node, "write [0.0] * 8")
+    return Display(_items(body, node.elts), is_list=True)
+
+
+def _items(body: Body, nodes: list[ast.expr]) -> tuple[Value, ...]:
+    for node in nodes:
+        if isinstance(node, ast.Starred):
+            raise body.problem("'*' is not part of scene code", node)
+    return tuple(body.expression(n) for n in nodes)
+
+
+def _lambda(body: Body, node: ast.Lambda) -> Value:
+    return make_closure(body, node, "lambda")
+
+
+def make_closure(body: Body, node: ast.Lambda | ast.FunctionDef, name: str) -> Closure:
+    """A function that may use the locals around it; its defaults are computed here."""
+    a = node.args
+    if a.vararg or a.kwarg:
+        raise body.problem(
+            "'*' parameters are not part of scene code", a.vararg or a.kwarg or a.args[0]
+        )
+    positional = [*a.posonlyargs, *a.args]
+    pairs = list(zip(positional[len(positional) - len(a.defaults) :], a.defaults, strict=True))
+    pairs += [(p, d) for p, d in zip(a.kwonlyargs, a.kw_defaults, strict=True) if d is not None]
+    defaults: dict[str, Value] = {p.arg: body.expression(d) for p, d in pairs}
+    return Closure(node, body, name, defaults)
+
+
+def arguments_of_range(body: Body, node: ast.Call) -> list[Value]:
+    """The 1 to 3 arguments of ``range``."""
+    if node.keywords or not 1 <= len(node.args) <= 3:
+        raise body.problem("'range' takes 1 to 3 arguments", node, "range(start, stop, step)")
+    return arguments(body, node)
+
+
+_RULES: Final[dict[type[ast.expr], Callable[[Body, Any], Value]]] = {
+    ast.Constant: _constant,
+    ast.Name: _name,
+    ast.Attribute: _attribute,
+    ast.BinOp: _bin_op,
+    ast.UnaryOp: _unary_op,
+    ast.BoolOp: _bool_op,
+    ast.Compare: _compare,
+    ast.IfExp: _if_exp,
+    ast.Call: lower_call,
+    ast.Subscript: _subscript,
+    ast.Tuple: _tuple,
+    ast.List: _list,
+    ast.Lambda: _lambda,
+}

@@ -1,0 +1,340 @@
+"""Statements: one function for each kind of syntax node, in one table.
+
+A mistake inside a statement is recorded and the next statement is lowered all the same, so that an
+author sees every mistake of a function at once.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Callable
+from typing import Any, Final
+
+from distal.frontend.lowering.assignment import assign, augment, value_node
+from distal.frontend.lowering.body import Body, Loop, Variable
+from distal.frontend.lowering.expressions import arguments_of_range, array_name, make_closure
+from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.refusals import refusal
+from distal.frontend.types.coercion import constant_int, fit_or_refuse, natural_type, settle
+from distal.frontend.types.operators import condition
+from distal.frontend.values import TRUE, Closure, Display, Static, Value, Whole
+from distal.ir.build import index as element_at
+from distal.ir.build import integer, negation
+from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
+from distal.ir.types import INT, Array, Type, is_static
+
+DEEP_CALLS: Final = 20  # a statement that fails below so many calls fails because of them
+
+
+def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
+    """Lower into the current block, going on after each mistake."""
+    for stmt in statements:
+        body.begin_statement(stmt)
+        try:
+            rule = _RULES.get(type(stmt))
+            if rule is None:
+                raise refusal(body, stmt)
+            rule(body, stmt)
+        except SceneError as problem:
+            body.report(problem.diagnostic)
+            _give_up(body, stmt)
+        except FollowupError:
+            body.failed = True
+            _give_up(body, stmt)
+        except RecursionError:
+            _report_depth(body, stmt)
+            _give_up(body, stmt)
+
+
+def _report_depth(body: Body, stmt: ast.stmt) -> None:
+    """Say that Python's stack is used up: by this statement, or by the calls that lead to it."""
+    body.failed = True
+    program = body.program
+    if len(program.in_progress) < DEEP_CALLS:
+        hint = "split it into several lines"
+        body.report(body.problem("this is too deeply nested", stmt, hint).diagnostic)
+    elif not program.is_too_deep:
+        program.is_too_deep = True  # every caller on the way back meets the same
+        first = program.in_progress[0].source_name
+        message = f"functions call one another too many levels deep, beginning with '{first}'"
+        hint = "join some of them, or call them one after the other"
+        body.report(body.problem(message, stmt, hint).diagnostic)
+
+
+def _give_up(body: Body, stmt: ast.stmt) -> None:
+    """What a failed statement would have defined is not missed any more."""
+    names = [n.id for n in ast.walk(stmt) if isinstance(n, ast.Name) and _stores(n)]
+    if isinstance(stmt, ast.FunctionDef | ast.ClassDef):
+        names.append(stmt.name)
+    for name in names:
+        variable = body.lookup(name)
+        if variable is not None:
+            body.assigned.add(variable)
+            variable.failed = True
+
+
+def _stores(node: ast.Name) -> bool:
+    return isinstance(node.ctx, ast.Store)
+
+
+def _guarded(body: Body, lower: Callable[[], Expr]) -> Expr | None:
+    """A head's value, or None after recording its mistake: the blocks are lowered still."""
+    try:
+        return lower()
+    except SceneError as problem:
+        body.report(problem.diagnostic)
+    except FollowupError:
+        body.failed = True
+    return None
+
+
+def _assign(body: Body, stmt: ast.Assign) -> None:
+    value = body.expression(stmt.value)
+    if len(stmt.targets) > 1 and not isinstance(value, Whole | Display | Static | Closure):
+        value = body.bind("value", value)
+    for target in stmt.targets:
+        assign(body, target, value, stmt)
+
+
+def _ann_assign(body: Body, stmt: ast.AnnAssign) -> None:
+    if not isinstance(stmt.target, ast.Name):
+        raise body.problem("only a name takes a type", stmt.target)
+    type = body.program.annotation(body, stmt.annotation)
+    variable = body.lookup(stmt.target.id)
+    if is_static(type):
+        raise body.problem(f"a local cannot be {type}", stmt.annotation)
+    if variable is not None and variable.type is None and not variable.loop:
+        variable.type = type
+    elif variable is not None and variable.type is not type and not variable.loop:
+        message = f"'{variable.name}' is {variable.type} and cannot become {type}"
+        raise body.problem(message, stmt)
+    if stmt.value is not None:
+        value = body.expression(stmt.value)
+        expr = fit_or_refuse(body, value, type, value_node(stmt), f"'{stmt.target.id}'")
+        assign(body, stmt.target, expr, stmt)
+
+
+def _if(body: Body, stmt: ast.If) -> None:
+    def head() -> Expr:
+        return condition(body, body.expression(stmt.test), stmt.test, "a condition")
+
+    test = _guarded(body, head)
+    before, reachable = set(body.assigned), body.reachable
+    with body.block(stmt.body) as then:
+        lower_statements(body, stmt.body)
+    then_assigned, then_reachable = body.assigned, body.reachable
+    body.assigned, body.reachable = before, reachable
+    with body.block(stmt.orelse) as otherwise:
+        lower_statements(body, stmt.orelse)
+    if then_reachable:
+        both = then_assigned & body.assigned
+        body.assigned = both if body.reachable else then_assigned
+    body.reachable = then_reachable or body.reachable
+    if test is not None:
+        made = If(test, tuple(then.statements), tuple(otherwise.statements), span=body.span(stmt))
+        _emit_after(body, made, reachable=reachable)
+
+
+def _emit_after(body: Body, stmt: Stmt, *, reachable: bool) -> None:
+    """Add a statement whose own end may not be reached, though its start is."""
+    after, body.reachable = body.reachable, reachable
+    body.emit(stmt)
+    body.reachable = after
+
+
+def _while(body: Body, stmt: ast.While) -> None:
+    if stmt.orelse:
+        raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
+    reachable = body.reachable
+    with body.block([]) as head:
+
+        def lower_head() -> Expr:
+            return condition(body, body.expression(stmt.test), stmt.test, "a condition")
+
+        test = _guarded(body, lower_head)
+    before = set(body.assigned)
+    loop = Loop()
+    body.loops.append(loop)
+    with body.block(stmt.body) as inner:
+        lower_statements(body, stmt.body)
+    body.loops.pop()
+    forever = test is TRUE
+    body.assigned = before if not forever or loop.at_break is None else loop.at_break
+    body.reachable = reachable and not (forever and loop.at_break is None)
+    if test is None:
+        return
+    span = body.span(stmt)
+    statements = tuple(inner.statements)
+    if head.statements:
+        # The condition needs lets of its own, computed again each round.
+        leave = If(negation(test), (Break(span=span),), (), span=span)
+        test, statements = TRUE, (*head.statements, leave, *statements)
+    _emit_after(body, While(test, statements, span=span), reachable=reachable)
+
+
+def _for(body: Body, stmt: ast.For) -> None:
+    if stmt.orelse:
+        raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
+    if not isinstance(stmt.target, ast.Name):
+        raise body.problem("a loop has one loop variable", stmt.target, "unpack it in the body")
+    name = stmt.target.id
+    shadowed = body.lookup(name)
+    if shadowed is not None and not (name == "_" and shadowed.loop):
+        message = f"'{name}' is a local already"
+        raise body.problem(message, stmt.target, "give the loop variable a name of its own")
+    try:
+        bounds, array = _iteration(body, stmt)
+    except SceneError as problem:
+        body.report(problem.diagnostic)
+        bounds, array = None, None
+    except FollowupError:
+        body.failed = True
+        bounds, array = None, None
+    variable = Variable(name, body, False, loop=True, failed=bounds is None)
+    counter = body.fresh((name.strip("_") or "i") if array is None else f"{name}_index")
+    _loop_body(body, stmt, variable, counter, bounds, array)
+    if shadowed is not None:  # a loop in a loop, both with _: in Python the inner one's stays
+        body.assigned.discard(shadowed)
+
+
+def _loop_body(
+    body: Body,
+    stmt: ast.For,
+    variable: Variable,
+    counter: str,
+    bounds: tuple[Expr, Expr, int] | None,
+    array: Expr | None,
+) -> None:
+    before, reachable, span = set(body.assigned), body.reachable, body.span(stmt)
+    body.loops.append(Loop())
+    with body.block(stmt.body) as block:
+        block.variables[variable.name] = variable
+        body.assigned.add(variable)
+        variable.ir_name, variable.type = counter, INT
+        if array is not None:
+            value = element_at(array, Read(counter, INT))
+            variable.ir_name, variable.type = body.fresh(variable.name), value.type
+            body.emit(Let(variable.ir_name, value, span=span))
+        lower_statements(body, stmt.body)
+    body.loops.pop()
+    body.assigned, body.reachable = before, reachable
+    if bounds is not None:
+        start, stop, step = bounds
+        body.emit(For(counter, start, stop, step, tuple(block.statements), span=span))
+
+
+def _iteration(body: Body, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr | None]:
+    """(start, stop, step) and, for a loop over an array, the array."""
+    node = stmt.iter
+    if isinstance(node, ast.Call):
+        called = body.expression(node.func)
+        if isinstance(called, Static) and called.object is builtins.range:
+            return _range(body, node), None
+    value = settle(body, body.expression(node), node)
+    if not isinstance(value.type, Array):
+        hint = "write for i in range(n)" if value.type is INT else None
+        raise body.problem(f"a loop goes over range(...) or an array, not {value.type}", node, hint)
+    array = body.hold(array_name(node), value)
+    return (integer(0), integer(value.type.length), 1), array
+
+
+def _range(body: Body, node: ast.Call) -> tuple[Expr, Expr, int]:
+    args = arguments_of_range(body, node)
+    step = constant_int(args[2]) if len(args) == 3 else 1
+    if step is None:
+        raise body.problem("the step of a range is a whole number known now", node.args[2])
+    if step == 0:
+        raise body.problem("the step of a range is not 0", node.args[2])
+    bounds = args[:2] if len(args) > 1 else [Whole(0), *args]
+    nodes = node.args[:2] if len(args) > 1 else [node.args[0], node.args[0]]
+    whole = [_bound(body, b, at) for b, at in zip(bounds, nodes, strict=True)]
+    if step not in range(-(2**31), 2**31):
+        raise body.problem(f"{step} is out of the range of int", node.args[2])
+    return whole[0], whole[1], step
+
+
+def _bound(body: Body, value: Value, node: ast.expr) -> Expr:
+    return fit_or_refuse(body, value, INT, node, "a bound of a range")
+
+
+def _break(body: Body, stmt: ast.Break) -> None:
+    body.emit(Break(span=body.span(stmt)))
+    loop = body.loops[-1]
+    if body.reachable:
+        known = loop.at_break
+        loop.at_break = set(body.assigned) if known is None else known & body.assigned
+    body.reachable = False
+
+
+def _continue(body: Body, stmt: ast.Continue) -> None:
+    body.emit(Continue(span=body.span(stmt)))
+    body.reachable = False
+
+
+def _return(body: Body, stmt: ast.Return) -> None:
+    try:
+        if stmt.value is None:
+            raise body.problem(f"'{body.name}' returns no value here", stmt, "write return value")
+        value = body.expression(stmt.value)
+        expr = _returned(body, value, stmt.value)
+        body.returned.append((value, stmt))
+        body.emit(Return(expr, span=body.span(stmt)))
+    finally:
+        body.reachable = False
+
+
+def _returned(body: Body, value: Value, node: ast.expr) -> Expr:
+    if body.result is not None:
+        whose = "the lambda" if body.name == "lambda" else f"'{body.name}'"
+        return fit_or_refuse(body, value, body.result, node, f"the value of {whose}")
+    expr = settle(body, value, node)
+    if is_static(expr.type):
+        raise body.problem(f"a function returns a value, not {expr.type}", node)
+    return expr
+
+
+def _expr(body: Body, stmt: ast.Expr) -> None:
+    match stmt.value:
+        case ast.Constant(value) if value is Ellipsis:
+            return
+        case ast.Constant(str()):
+            return  # a docstring, or a comment written as one
+        case _:
+            natural: Type | None = natural_type(body.expression(stmt.value))
+            what = "this value" if natural is None else f"this {natural}"
+            hint = "functions have no effect but their value: assign it, or return it"
+            raise body.problem(f"{what} is not used", stmt, hint)
+
+
+def _pass(body: Body, stmt: ast.Pass) -> None:
+    """Nothing."""
+
+
+def _function_def(body: Body, stmt: ast.FunctionDef) -> None:
+    variable = body.lookup(stmt.name)
+    assert variable is not None
+    if stmt.decorator_list:
+        message = f"the nested function '{stmt.name}' has a decorator"
+        raise body.problem(message, stmt.decorator_list[0], "a nested def needs none")
+    if variable.changes or variable.static is not None:
+        message = f"'{stmt.name}' cannot change what function it stands for"
+        raise SceneError(message, body.source.header(stmt), "give each function a name of its own")
+    variable.static = make_closure(body, stmt, stmt.name)
+    body.assigned.add(variable)
+
+
+_RULES: Final[dict[type[ast.stmt], Callable[[Body, Any], None]]] = {
+    ast.Assign: _assign,
+    ast.AugAssign: augment,
+    ast.AnnAssign: _ann_assign,
+    ast.If: _if,
+    ast.While: _while,
+    ast.For: _for,
+    ast.Break: _break,
+    ast.Continue: _continue,
+    ast.Return: _return,
+    ast.Expr: _expr,
+    ast.Pass: _pass,
+    ast.FunctionDef: _function_def,
+}

@@ -1,0 +1,1 @@
+"""Signatures, scopes and overloads of scene functions."""

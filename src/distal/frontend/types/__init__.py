@@ -1,0 +1,1 @@
+"""The typing rules of scene code: coercion, unification, operators, constructors."""

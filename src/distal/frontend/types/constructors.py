@@ -1,0 +1,248 @@
+"""Types called like functions: ``vec3(...)``, ``int(x)``, ``mat2(...)``, structs."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+
+from distal.frontend.lowering.body import Body
+from distal.frontend.objects import RefusedError, value_of
+from distal.frontend.problems import did_you_mean
+from distal.frontend.signatures.annotations import AnnotationError, struct_defaults, struct_type
+from distal.frontend.types.coercion import fit, fit_or_refuse, natural_type, settle, shown_type
+from distal.frontend.values import LARGEST_ARRAY, Closure, Display, Static, Value, Whole
+from distal.ir.build import cast, integer, number, splat
+from distal.ir.nodes import Compose, Const, Construct, Expr, Index
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    UINT,
+    Array,
+    Kind,
+    Matrix,
+    Scalar,
+    Struct,
+    Type,
+    Vector,
+    component_count,
+    vector_of,
+)
+
+
+def construct(body: Body, type: Type, args: Sequence[Value], node: ast.Call) -> Value:
+    """A scalar, vector or matrix made from ``args``."""
+    if node.keywords:
+        message = f"'{type}' takes no keyword arguments"
+        raise body.problem(message, node.keywords[0])
+    for arg in args:
+        if isinstance(arg, Static | Closure):
+            settle(body, arg, node)
+    match type:
+        case Scalar(kind):
+            return _scalar(body, kind, args, node)
+        case Vector():
+            return _vector(body, type, args, node)
+        case Matrix():
+            return _matrix(body, type, args, node)
+        case _:
+            raise body.problem(f"{type} is not made by a call", node)
+
+
+def _scalar(body: Body, kind: Kind, args: Sequence[Value], node: ast.Call) -> Value:
+    type = Scalar(kind)
+    if len(args) != 1:
+        raise body.problem(f"'{type}' takes 1 argument, got {len(args)}", node)
+    (arg,) = args
+    if isinstance(arg, Whole):
+        return _literal(body, arg.value, type, node)
+    value = settle(body, arg, node)
+    if not isinstance(value.type, Scalar):
+        hint = None
+        if isinstance(value.type, Vector):
+            hint = f"pick a component, such as .x, or write {vector_of(kind, value.type.size)}(...)"
+        raise body.problem(f"'{type}' does not take {value.type}", node, hint)
+    return cast(value, kind)
+
+
+def _literal(body: Body, value: int, type: Scalar, node: ast.Call) -> Expr:
+    match type.kind:
+        case Kind.BOOL:
+            return Const(value != 0, BOOL)
+        case Kind.FLOAT:
+            fitted = fit(body, Whole(value), FLOAT, node)
+            assert fitted is not None
+            return fitted
+        case Kind.INT | Kind.UINT:
+            if not -(2**31) <= value < 2**32:
+                raise body.problem(f"{value:.6g} does not fit into 32 bits", node)
+            if type is UINT:
+                return Const(value & 0xFFFFFFFF, UINT)
+            return Const(value - 2**32 if value >= 2**31 else value, INT)
+
+
+def _vector(body: Body, type: Vector, args: Sequence[Value], node: ast.Call) -> Expr:
+    if not args:
+        raise body.problem(f"'{type}' needs {type.size} components", node, f"write {type}(0)")
+    if len(args) == 1:
+        args = _elements(body, args[0], node)
+    parts = [_component(body, a, type, node) for a in args]
+    if len(parts) == 1:
+        (part,) = parts
+        if isinstance(part.type, Scalar):
+            return splat(part, type)
+        if part.type is type:
+            return part
+    total = sum(component_count(p.type) for p in parts)
+    if total != type.size:
+        hint = None
+        if len(parts) == 1 and total > type.size:
+            hint = f"write .{'xyzw'[: type.size]} to take the first {type.size}"
+        raise body.problem(f"{type} has {type.size} components, not {total}", node, hint)
+    return Compose(tuple(parts), type, span=body.span(node))
+
+
+def _elements(body: Body, arg: Value, node: ast.Call) -> Sequence[Value]:
+    """The elements of a short array of numbers; else the argument itself."""
+    if isinstance(arg, Display):
+        return [arg]
+    match natural_type(arg):
+        case Array(Scalar() as element, length) if 2 <= length <= 4:
+            array = body.bind("values", settle(body, arg, node))
+            return [Index(array, integer(i), element) for i in range(length)]
+        case _:
+            return [arg]
+
+
+def _component(body: Body, arg: Value, type: Vector, node: ast.Call) -> Expr:
+    scalar = Scalar(type.kind)
+    if isinstance(arg, Whole):
+        if type.kind is Kind.BOOL:
+            return Const(arg.value != 0, BOOL)
+        fitted = fit(body, arg, scalar, node)
+        assert fitted is not None
+        return fitted
+    if isinstance(arg, Display) and 2 <= len(arg.items) <= 4:
+        parts = tuple(_component(body, i, type, node) for i in arg.items)
+        if all(isinstance(p.type, Scalar) for p in parts):
+            return Compose(parts, vector_of(type.kind, len(parts)))
+    value = settle(body, arg, node)
+    match value.type:
+        case Scalar() | Vector():
+            return cast(value, type.kind)
+        case _:
+            raise body.problem(f"'{type}' is made of numbers and vectors, not {value.type}", node)
+
+
+def _matrix(body: Body, type: Matrix, args: Sequence[Value], node: ast.Call) -> Expr:
+    size, column = type.size, Vector(Kind.FLOAT, type.size)
+    if len(args) == 1:
+        only = args[0]
+        if natural_type(only) is type:
+            return settle(body, only, node)
+        scalar = fit(body, only, FLOAT, node)
+        if scalar is not None:
+            return _diagonal(scalar, type)
+    if len(args) == size:
+        columns = [fit(body, a, column, node) for a in args]
+        if all(c is not None for c in columns):
+            return Compose(tuple(c for c in columns if c is not None), type, span=body.span(node))
+    if len(args) == size * size:
+        cells = [fit(body, a, FLOAT, node) for a in args]
+        known = tuple(c for c in cells if c is not None)
+        if len(known) == len(cells):
+            rows = (known[i : i + size] for i in range(0, len(known), size))
+            return Compose(tuple(Compose(r, column) for r in rows), type, span=body.span(node))
+    given = ", ".join(shown_type(a) for a in args) or "nothing"
+    hint = f"give {size} columns ({column}), {size * size} floats column by column, or a matrix"
+    raise body.problem(f"'{type}' is not made of {given}", node, hint)
+
+
+def _diagonal(scalar: Expr, type: Matrix) -> Expr:
+    size, zero = type.size, number(0)
+    columns = (
+        Compose(tuple(scalar if i == j else zero for i in range(size)), Vector(Kind.FLOAT, size))
+        for j in range(size)
+    )
+    return Compose(tuple(columns), type)
+
+
+def construct_struct(body: Body, cls: type, args: Sequence[Value], node: ast.Call) -> Expr:
+    """``Hit(distance, material=2)``: positional, by keyword, defaults."""
+    try:
+        type = body.program.adopt(struct_type(cls))
+    except AnnotationError as error:
+        raise body.problem(error.message, node, error.hint) from None
+    assert isinstance(type, Struct)
+    names = [name for name, _ in type.fields]
+    if len(args) > len(names):
+        raise body.problem(f"'{type}' has {len(names)} fields, got {len(args)}", node)
+    given: dict[str, tuple[Value, ast.expr]] = {
+        name: (value, at) for name, value, at in zip(names, args, node.args, strict=False)
+    }
+    for keyword in node.keywords:
+        if keyword.arg is None:
+            raise body.problem("'**' in a call is not part of scene code", keyword)
+        if keyword.arg not in names:
+            hint = did_you_mean(keyword.arg, names) or f"fields: {', '.join(names)}"
+            raise body.problem(f"'{type}' has no field '{keyword.arg}'", keyword, hint)
+        if keyword.arg in given:
+            raise body.problem(f"'{type}' gets field '{keyword.arg}' twice", keyword)
+        given[keyword.arg] = (body.expression(keyword.value), keyword.value)
+    parts = tuple(_struct_field(body, cls, type, n, t, given, node) for n, t in type.fields)
+    return Construct(parts, type, span=body.span(node))
+
+
+def _struct_field(
+    body: Body,
+    cls: type,
+    type: Struct,
+    name: str,
+    wanted: Type,
+    given: dict[str, tuple[Value, ast.expr]],
+    node: ast.Call,
+) -> Expr:
+    what = f"field '{name}' of '{type}'"
+    if name in given:
+        value, at = given[name]
+        return fit_or_refuse(body, value, wanted, at, what)
+    make = struct_defaults(cls).get(name)
+    if make is None:
+        raise body.problem(f"'{type}' needs its field '{name}'", node)
+    try:
+        default = value_of(make(), f"{type}.{name}", body.program)
+    except RefusedError as refused:
+        raise body.problem(refused.message, node, refused.hint) from None
+    return fit_or_refuse(body, default, wanted, node, what)
+
+
+def length_of(body: Body, value: Value, node: ast.expr) -> Value:
+    """``len(x)``: known now for everything but a buffer."""
+    if isinstance(value, Display):
+        return Whole(len(value.items))
+    expr = settle(body, value, node)
+    match expr.type:
+        case Array(_, length):
+            return Whole(length)
+        case Vector(_, size) | Matrix(size):
+            return Whole(size)
+        case Struct(_, fields, is_tuple) if is_tuple:
+            return Whole(len(fields))
+        case _:
+            raise body.problem(f"'len' does not take {expr.type}", node)
+
+
+def _size(value: Value) -> int:
+    """How many single values a display holds."""
+    return sum(map(_size, value.items)) if isinstance(value, Display) else 1
+
+
+def repeated(body: Body, element: Value, count: Value, node: ast.expr) -> Value:
+    """``[x] * n``: an array of equal elements."""
+    if not isinstance(count, Whole) or not isinstance(element, Display):
+        raise body.problem("a list is repeated a number of times known now", node)
+    total = _size(element) * count.value
+    if not 1 <= total <= LARGEST_ARRAY:
+        message = f"an array has 1 to {LARGEST_ARRAY} components, not {total}"
+        raise body.problem(message, node, "more belong into a Buffer" if total > 0 else None)
+    return Display(element.items * count.value, is_list=True)

@@ -1,0 +1,277 @@
+"""The rules of operators: what each takes and what it gives.
+
+Literals alone are computed here, in Python's own arithmetic; everything else becomes a node.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable
+from typing import Any, Final
+
+from distal.frontend.lowering.body import Body
+from distal.frontend.objects import RefusedError, float_constant
+from distal.frontend.problems import SceneError
+from distal.frontend.types.coercion import settle, shown_type
+from distal.frontend.types.powers import power
+from distal.frontend.types.unification import do_not_mix, firm, meet
+from distal.frontend.values import Value, Whole
+from distal.ir.build import cast, splat
+from distal.ir.nodes import (
+    Binary,
+    BinaryOp,
+    Cast,
+    Compare,
+    CompareOp,
+    Const,
+    Expr,
+    MatMul,
+    Splat,
+    Unary,
+    UnaryOp,
+)
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    UINT,
+    Kind,
+    Matrix,
+    Scalar,
+    Type,
+    Vector,
+    kind_of,
+    with_kind,
+)
+
+_OPS: Final[dict[type[ast.operator], BinaryOp]] = {
+    ast.Add: BinaryOp.ADD,
+    ast.Sub: BinaryOp.SUB,
+    ast.Mult: BinaryOp.MUL,
+    ast.Div: BinaryOp.DIV,
+    ast.FloorDiv: BinaryOp.FLOOR_DIV,
+    ast.Mod: BinaryOp.MOD,
+    ast.BitAnd: BinaryOp.AND,
+    ast.BitOr: BinaryOp.OR,
+    ast.BitXor: BinaryOp.XOR,
+    ast.LShift: BinaryOp.SHL,
+    ast.RShift: BinaryOp.SHR,
+}
+COMPARISONS: Final[dict[type[ast.cmpop], CompareOp]] = {
+    ast.Eq: CompareOp.EQ,
+    ast.NotEq: CompareOp.NE,
+    ast.Lt: CompareOp.LT,
+    ast.LtE: CompareOp.LE,
+    ast.Gt: CompareOp.GT,
+    ast.GtE: CompareOp.GE,
+}
+_LITERAL: Final[dict[BinaryOp, Callable[[int, int], int]]] = {
+    BinaryOp.ADD: operator.add,
+    BinaryOp.SUB: operator.sub,
+    BinaryOp.MUL: operator.mul,
+    BinaryOp.FLOOR_DIV: operator.floordiv,
+    BinaryOp.MOD: operator.mod,
+    BinaryOp.AND: operator.and_,
+    BinaryOp.OR: operator.or_,
+    BinaryOp.XOR: operator.xor,
+}
+_BITWISE = {BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR}
+_DIVISIONS = {BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD}
+_SHIFTS = {BinaryOp.SHL, BinaryOp.SHR}
+_LARGEST_LITERAL = 1 << 64
+
+
+def binary(
+    body: Body, op: ast.operator, lhs: Value, rhs: Value, node: ast.expr | ast.stmt
+) -> Value:
+    """``lhs op rhs``."""
+    if isinstance(op, ast.Pow):
+        return power(body, lhs, rhs, node)
+    if isinstance(op, ast.MatMult):
+        return _matmul(body, lhs, rhs, node)
+    kind = _OPS[type(op)]
+    if isinstance(lhs, Whole) and isinstance(rhs, Whole):
+        folded = _fold(body, kind, lhs.value, rhs.value, node)
+        if folded is not None:
+            return folded
+    if kind in _SHIFTS:
+        return _shift(body, kind, lhs, rhs, node)
+    left, right = meet(body, lhs, rhs, node, kind.value)
+    return _arithmetic(body, kind, left, right, node)
+
+
+def _fold(body: Body, op: BinaryOp, lhs: int, rhs: int, node: ast.expr | ast.stmt) -> Value | None:
+    if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD) and rhs == 0:
+        raise body.problem("division by zero", node)
+    if op is BinaryOp.DIV:
+        try:
+            return float_constant(lhs / rhs, "the quotient")
+        except (RefusedError, OverflowError):
+            raise body.problem("the quotient is out of the range of float", node) from None
+    compute = _LITERAL.get(op)
+    if compute is None:
+        return None
+    value = compute(lhs, rhs)
+    if abs(value) >= _LARGEST_LITERAL:
+        raise body.problem("this number is too large", node, "write it as a float")
+    return Whole(value)
+
+
+def _arithmetic(body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt) -> Expr:
+    type, span = lhs.type, body.span(node)
+    kind = kind_of(type)
+    if kind is None:
+        raise body.problem(f"'{op.value}' does not take {type}", node)
+    if isinstance(type, Matrix):
+        _check_matrix(body, op, lhs, rhs, node)
+    elif op in _BITWISE:
+        if kind is Kind.FLOAT:
+            hint = "use ** for powers" if op is BinaryOp.XOR else "use and, or for conditions"
+            raise body.problem(f"'{op.value}' does not take {type}", node, hint)
+    elif kind is Kind.BOOL:
+        hint = "convert the bool: int(b) or float(b)"
+        raise body.problem(f"'{op.value}' does not take {type}", node, hint)
+    elif op is BinaryOp.DIV and kind is not Kind.FLOAT:
+        lhs, rhs = cast(lhs, Kind.FLOAT), cast(rhs, Kind.FLOAT)
+        type = lhs.type
+    if op in _DIVISIONS and _is_zero(rhs):
+        raise body.problem("division by zero", node)
+    return Binary(op, lhs, rhs, type, span=span)
+
+
+def _is_zero(value: Expr) -> bool:
+    if isinstance(value, Splat | Cast):
+        value = value.value
+    return isinstance(value, Const) and value.value == 0
+
+
+def _check_matrix(
+    body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt
+) -> None:
+    scaled = isinstance(rhs, Splat) or (isinstance(lhs, Splat) and op is BinaryOp.MUL)
+    if op in (BinaryOp.ADD, BinaryOp.SUB) and not (scaled or isinstance(lhs, Splat)):
+        return
+    if op in (BinaryOp.MUL, BinaryOp.DIV) and scaled:
+        return
+    if scaled or isinstance(lhs, Splat):
+        raise body.problem(
+            f"'{op.value}' does not take {lhs.type} and a number in this order", node
+        )
+    hint = "the product of matrices is written @" if op is BinaryOp.MUL else None
+    raise body.problem(f"'{op.value}' does not take {lhs.type} and {rhs.type}", node, hint)
+
+
+def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Value:
+    if isinstance(rhs, Whole) and not 0 <= rhs.value < 32:
+        raise body.problem("a shift goes by 0 to 31 bits", node)
+    if isinstance(lhs, Whole) and isinstance(rhs, Whole):
+        shifted = lhs.value << rhs.value if op is BinaryOp.SHL else lhs.value >> rhs.value
+        return Whole(shifted)
+    value = settle(body, lhs, node)
+    kind = kind_of(value.type)
+    if isinstance(rhs, Whole) and kind is Kind.UINT:
+        count: Expr = Const(rhs.value, UINT)
+    else:
+        count = settle(body, rhs, node)
+    if kind not in (Kind.INT, Kind.UINT) or isinstance(value.type, Matrix):
+        raise body.problem(f"'{op.value}' does not take {value.type}", node)
+    if kind_of(count.type) not in (Kind.INT, Kind.UINT):
+        raise body.problem(f"'{op.value}' shifts by an int, not {count.type}", node)
+    # int and uint counts keep their bits, and only the low five tell.
+    count = cast(count, kind)
+    if isinstance(value.type, Scalar):
+        value = splat(value, count.type)
+    elif isinstance(count.type, Scalar):
+        count = splat(count, value.type)
+    if value.type is not count.type:
+        raise do_not_mix(body, value, count, node, op.value)
+    return Binary(op, value, count, value.type, span=body.span(node))
+
+
+def _matmul(body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Expr:
+    left, right = firm(body, lhs, rhs, node), firm(body, rhs, lhs, node)
+    match left.type, right.type:
+        case (Matrix(n), Matrix(m)) if n == m:
+            type: Type = left.type
+        case (Matrix(n), Vector(Kind.FLOAT, m)) if n == m:
+            type = right.type
+        case (Vector(Kind.FLOAT, n), Matrix(m)) if n == m:
+            type = left.type
+        case _:
+            scalar = isinstance(left.type, Scalar) or isinstance(right.type, Scalar)
+            hint = "a number times a matrix is written *" if scalar else None
+            message = f"'@' does not take {left.type} and {right.type}"
+            raise body.problem(message, node, hint)
+    return MatMul(left, right, type, span=body.span(node))
+
+
+def unary(body: Body, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
+    """``-x``, ``+x``, ``~x``; ``not`` is a condition's."""
+    if isinstance(operand, Whole):
+        match op:
+            case ast.USub():
+                return Whole(-operand.value)
+            case ast.UAdd():
+                return operand
+            case _:
+                return Whole(~operand.value)
+    value = settle(body, operand, node)
+    kind, span = kind_of(value.type), body.span(node)
+    match op:
+        case ast.USub() | ast.UAdd() if kind in (Kind.FLOAT, Kind.INT, Kind.UINT):
+            if isinstance(op, ast.UAdd):
+                return value
+            if isinstance(value, Const) and kind is Kind.FLOAT:
+                return Const(-value.value, FLOAT, span=span)
+            return Unary(UnaryOp.NEGATE, value, value.type, span=span)
+        case ast.Invert() if kind in (Kind.INT, Kind.UINT):
+            return Unary(UnaryOp.INVERT, value, value.type, span=span)
+        case ast.Invert() if kind is Kind.BOOL and isinstance(value.type, Vector):
+            return Unary(UnaryOp.NOT, value, value.type, span=span)
+        case _:
+            symbol = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}[type(op)]
+            hint = "write not" if isinstance(op, ast.Invert) and kind is Kind.BOOL else None
+            raise body.problem(f"'{symbol}' does not take {value.type}", node, hint)
+
+
+def compare(body: Body, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -> Expr:
+    """One comparison of a chain."""
+    found = COMPARISONS.get(type(op))
+    if found is None:
+        raise _no_comparison(body, op, node)
+    if isinstance(lhs, Whole) and isinstance(rhs, Whole):
+        meaning: Any = getattr(operator, found.name.lower())
+        return Const(bool(meaning(lhs.value, rhs.value)), BOOL)
+    left, right = meet(body, lhs, rhs, node, found.value)
+    kind = kind_of(left.type)
+    if kind is None or isinstance(left.type, Matrix):
+        raise body.problem(f"'{found.value}' does not compare {left.type}", node)
+    if kind is Kind.BOOL and found not in (CompareOp.EQ, CompareOp.NE):
+        raise body.problem(f"'{found.value}' does not compare {left.type}", node)
+    return Compare(found, left, right, with_kind(left.type, Kind.BOOL), span=body.span(node))
+
+
+def _no_comparison(body: Body, op: ast.cmpop, node: ast.expr) -> SceneError:
+    match op:
+        case ast.Is() | ast.IsNot():
+            symbol = "is" if isinstance(op, ast.Is) else "is not"
+            other = "==" if isinstance(op, ast.Is) else "!="
+            return body.problem(f"'{symbol}' is not part of scene code", node, f"write {other}")
+        case _:
+            hint = "compare with each: x == a or x == b"
+            return body.problem("'in' is not part of scene code", node, hint)
+
+
+def condition(body: Body, value: Value, node: ast.expr, what: str) -> Expr:
+    """A value that decides something: a bool, and nothing that only resembles one."""
+    if isinstance(value, Whole):
+        raise body.problem(f"{what} is a bool, not int", node, "compare it: x != 0")
+    expr = settle(body, value, node)
+    if expr.type is BOOL:
+        return expr
+    hint = None
+    if isinstance(expr.type, Vector) and expr.type.kind is Kind.BOOL:
+        hint = "write any(...) or all(...) around it"
+    elif isinstance(expr.type, Scalar):
+        hint = "compare it: x != 0"
+    raise body.problem(f"{what} is a bool, not {shown_type(expr)}", node, hint)

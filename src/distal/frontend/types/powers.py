@@ -1,0 +1,98 @@
+"""``base ** exponent``: constant whole exponents multiply, others are the row ``pow``."""
+
+from __future__ import annotations
+
+import ast
+
+from distal.diagnostics import Span
+from distal.frontend.lowering.body import Body
+from distal.frontend.types.coercion import settle
+from distal.frontend.types.unification import meet
+from distal.frontend.values import Value, Whole
+from distal.ir.build import builtin, compare, number, select
+from distal.ir.limits import LARGEST_POWER, SMALLEST
+from distal.ir.nodes import Binary, BinaryOp, CompareOp, Const, Expr
+from distal.ir.types import FLOAT, Kind, Matrix, kind_of
+
+
+def power(body: Body, base: Value, exponent: Value, node: ast.expr | ast.stmt) -> Value:
+    """``base ** exponent``: constant whole exponents multiply, others are the row ``pow``."""
+    whole = _whole_exponent(exponent)
+    if isinstance(base, Whole) and whole is not None and isinstance(exponent, Whole):
+        return _fold_power(body, base.value, whole, node)
+    if isinstance(base, Whole) and whole is None:
+        exponent_expr = settle(body, exponent, node)
+        if kind_of(exponent_expr.type) is not Kind.FLOAT:
+            raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
+    if whole is None:
+        left, right = meet(body, base, exponent, node, "**")
+        if kind_of(left.type) is not Kind.FLOAT or isinstance(left.type, Matrix):
+            if kind_of(left.type) in (Kind.INT, Kind.UINT):
+                raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
+            raise body.problem(f"'**' does not take {left.type}", node)
+        return builtin("pow", left, right)
+    value = settle(body, base, node)
+    kind = kind_of(value.type)
+    if kind is Kind.BOOL or kind is None or isinstance(value.type, Matrix):
+        raise body.problem(f"'**' does not take {value.type}", node)
+    if kind is not Kind.FLOAT:
+        if not isinstance(exponent, Whole):
+            raise body.problem(f"{value.type} and float do not mix in '**'", node, "use float(...)")
+        if whole < 0:
+            raise body.problem("an int to a negative power is not an int", node, "use float(...)")
+    return _multiplied(body, value, whole, node)
+
+
+def _whole_exponent(exponent: Value) -> int | None:
+    match exponent:
+        case Whole(value):
+            return value
+        case Const(value, type) if type is FLOAT and float(value).is_integer():
+            # Beyond this float exponents are not meant as repeated products.
+            return int(value) if abs(value) <= 1024 else None
+        case _:
+            return None
+
+
+def _fold_power(body: Body, base: int, exponent: int, node: ast.expr | ast.stmt) -> Value:
+    if exponent < 0:
+        if base == 0:
+            raise body.problem("division by zero", node)
+        return number(float(base) ** exponent)
+    if abs(base) > 1 and exponent * abs(base).bit_length() > 128:
+        raise body.problem("this number is too large", node, "write it as a float")
+    return Whole(base**exponent)
+
+
+def _multiplied(body: Body, base: Expr, exponent: int, node: ast.expr | ast.stmt) -> Expr:
+    """Repeated squaring; each power of two is computed once."""
+    if exponent == 0:
+        return number(1, base.type)
+    span = body.span(node)
+    power = body.bind("base", base) if abs(exponent) > 1 else base
+    result: Expr | None = None
+    left = abs(exponent)
+    while True:
+        if left & 1:
+            result = (
+                power
+                if result is None
+                else Binary(BinaryOp.MUL, result, power, base.type, span=span)
+            )
+        left >>= 1
+        if not left:
+            break
+        power = Binary(BinaryOp.MUL, power, power, base.type, span=span)
+        if left > 1:
+            power = body.bind("power", power)
+    assert result is not None
+    return result if exponent > 0 else _reciprocal(body, result, span)
+
+
+def _reciprocal(body: Body, product: Expr, span: Span) -> Expr:
+    """1 / product, as large as a power becomes (the row ``pow``) where that is 0."""
+    product = body.bind("product", product)
+    inverse = Binary(BinaryOp.DIV, number(1, product.type), product, product.type, span=span)
+    size = builtin("abs", product)
+    is_zero = compare(CompareOp.LT, size, number(SMALLEST, product.type))
+    return select(is_zero, number(LARGEST_POWER, product.type), inverse)

@@ -1,0 +1,136 @@
+"""Linear light and layers to an OpenEXR file, and back.
+
+What flows in: linear light with straight alpha, layers by name, texts. What flows out: one part of
+scan lines. Knows nothing of scenes. Channels are called as compositors find them by themselves:
+``R G B A``, ``Z`` (the format's own name for depth), ``N.X N.Y N.Z``, ``albedo.R`` …,
+``material.id``.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.images.exr_header import read_header
+from distal.images.metadata import PREFIX, ReadError
+from distal.packages import imported
+
+BITS: Final = (16, 32)
+
+# Layer -> its channels, and whether half floats are enough for it. Depth is geometry: 11 bits would
+# make steps of it. An id is a whole number.
+CHANNELS: Final[dict[str, tuple[tuple[str, ...], bool]]] = {
+    "depth": (("Z",), False),
+    "normal": (("N.X", "N.Y", "N.Z"), True),
+    "albedo": (("albedo.R", "albedo.G", "albedo.B"), True),
+    "material": (("material.id",), False),
+}
+_COLOR: Final = ("R", "G", "B", "A")
+# Red, green, blue, white of ITU-R BT.709, whose primaries are also those of sRGB.
+_REC709: Final = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
+_LARGEST_HALF: Final = 65504.0
+
+
+def encode(
+    light: NDArray[np.float32],
+    layers: Mapping[str, NDArray[Any]],
+    texts: Mapping[str, str],
+    bits: int = 16,
+) -> bytes:
+    """An EXR of the light, with the layers beside it and the texts as attributes.
+
+    Args:
+        light: (height, width, 4), straight alpha; stored premultiplied, as the format has it.
+        layers: Arrays by the names of ``CHANNELS``: (height, width) or (height, width, 3).
+        texts: What the file says about itself.
+        bits: Of a channel: 16, half floats, or 32.
+
+    Raises:
+        PackageError: OpenEXR is missing or broken.
+    """
+    openexr = imported("OpenEXR")
+    associated = light.copy()
+    # Where nothing covers a pixel its color is nothing too, even if it is infinite.
+    np.multiply(light[..., :3], light[..., 3:], out=associated[..., :3], where=light[..., 3:] != 0)
+    associated[light[..., 3] == 0, :3] = 0.0
+    channels = {n: _stored(associated[..., i], bits) for i, n in enumerate(_COLOR)}
+    for name, values in layers.items():
+        names, halved = CHANNELS[name]
+        parts = values.reshape(*values.shape[:2], -1)
+        for i, channel in enumerate(names):
+            channels[channel] = _stored(parts[..., i], bits if halved else 32)
+    header: dict[str, Any] = {
+        "compression": openexr.ZIP_COMPRESSION,
+        "type": openexr.scanlineimage,
+        "chromaticities": _REC709,
+        "pixelAspectRatio": 1.0,
+        **texts,
+    }
+    buffer = io.BytesIO()
+    with openexr.File(header, channels) as file:
+        file.write(buffer)
+    return buffer.getvalue()
+
+
+def _stored(values: NDArray[Any], bits: int) -> NDArray[Any]:
+    """Values as a channel: half floats, floats, or whole numbers as they are.
+
+    What is too large for a half becomes its largest: infinity would spread in every filter.
+    Infinities and NaN that the scene made stay.
+    """
+    if bits == 32 or values.dtype == np.uint32:
+        return np.ascontiguousarray(values)
+    clamped = np.clip(values, -_LARGEST_HALF, _LARGEST_HALF)
+    return np.where(np.isinf(values), values, clamped).astype(np.float16)
+
+
+def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
+    """The size, the bits of a color's channel and our texts of an EXR.
+
+    Raises:
+        ReadError: The file is broken or cut short.
+    """
+    try:
+        header = read_header(path)
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{path} is broken: it is no whole EXR: {error}") from None
+    texts = {key: text for key, text in header.texts.items() if key.startswith(PREFIX)}
+    return header.size, header.bits["R"], texts
+
+
+def decode(data: bytes) -> dict[str, NDArray[Any]]:
+    """The channels of an EXR by name, each (height, width).
+
+    Raises:
+        ReadError: The file is broken.
+        PackageError: OpenEXR is missing or broken.
+    """
+    openexr = imported("OpenEXR")
+    try:
+        with _quiet(), openexr.File(io.BytesIO(data), separate_channels=True) as file:
+            return {name: channel.pixels for name, channel in file.channels().items()}
+    except Exception:
+        raise ReadError("it is no whole EXR") from None
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep to itself what the library's C++ prints of a broken file, beside what it raises."""
+    kept = [os.dup(number) for number in (1, 2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for number in (1, 2):
+            os.dup2(nowhere, number)
+        yield
+    finally:
+        for number, copy in zip((1, 2), kept, strict=True):
+            os.dup2(copy, number)
+            os.close(copy)
+        os.close(nowhere)

@@ -1,0 +1,153 @@
+"""The head of an OpenEXR file, read without the library: others may have made the file.
+
+What flows in: a file. What flows out: its size, the bits of a channel, its texts; or a
+``ValueError`` in words. OpenEXR's C++ ends the process on some broken files, so nothing of a file
+reaches it before its head is known to be one that ``exr.encode`` writes.
+
+Source: "OpenEXR File Layout" of the format's documentation.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO, Final
+
+from distal.images.metadata import LARGEST_SIDE_PX
+
+_MAGIC: Final = b"\x76\x2f\x31\x01"
+_VERSION: Final = 2
+_LONG_NAMES: Final = 0x400  # the one flag that a single part of scan lines may have
+_LONGEST_NAME: Final = 255
+_LONGEST_VALUE: Final = 2**22  # bytes
+_MOST_ATTRIBUTES: Final = 1000
+_BITS: Final = {0: 32, 1: 16, 2: 32}  # of whole numbers, halves, floats
+# Rows in a chunk, by the number of the compression.
+_ROWS: Final = {0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 256}
+
+
+@dataclass(slots=True)
+class Header:
+    """What the head of a file says.
+
+    Attributes:
+        size: Width and height in pixels.
+        bits: Of each channel by name.
+        texts: The attributes that are texts.
+    """
+
+    size: tuple[int, int] = (0, 0)
+    bits: dict[str, int] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)
+
+
+def read_header(path: Path) -> Header:
+    """Read the head, and see that every row is there.
+
+    Raises:
+        OSError: The file cannot be read.
+        ValueError: It is none that distal writes, or is cut short.
+    """
+    with path.open("rb") as file:
+        magic, version = struct.unpack("<4sI", _exactly(file, 8))
+        if magic != _MAGIC or version & 0xFF != _VERSION:
+            raise ValueError("it is of another version")
+        if version & ~0xFF & ~_LONG_NAMES:
+            raise ValueError("it has tiles, depths or several parts")
+        values = _attributes(file)
+        header = Header(size=_size(values), bits=_channels(values))
+        if "R" not in header.bits:
+            raise ValueError("it has no channel R")
+        header.texts = {
+            name: data.decode("utf-8", "replace")
+            for name, (kind, data) in values.items()
+            if kind == "string"
+        }
+        _check_rows(file, header.size[1], _rows_in_chunk(values))
+    return header
+
+
+def _exactly(file: BinaryIO, count: int) -> bytes:
+    data = file.read(count)
+    if len(data) != count:
+        raise ValueError("it is cut short")
+    return data
+
+
+def _name(file: BinaryIO) -> str:
+    name = bytearray()
+    while (byte := _exactly(file, 1)) != b"\0":
+        name += byte
+        if len(name) > _LONGEST_NAME:
+            raise ValueError("a name is too long")
+    return name.decode("utf-8", "replace")
+
+
+def _attributes(file: BinaryIO) -> dict[str, tuple[str, bytes]]:
+    """Type and value of each attribute by name."""
+    found: dict[str, tuple[str, bytes]] = {}
+    while name := _name(file):
+        kind = _name(file)
+        (length,) = struct.unpack("<i", _exactly(file, 4))
+        if not 0 <= length <= _LONGEST_VALUE or len(found) == _MOST_ATTRIBUTES or name in found:
+            raise ValueError("its attributes are garbled")
+        found[name] = kind, _exactly(file, length)
+    return found
+
+
+def _value(
+    values: dict[str, tuple[str, bytes]], name: str, kind: str, form: str
+) -> tuple[int, ...]:
+    found, data = values.get(name, ("", b""))
+    if found != kind or len(data) != struct.calcsize(form):
+        raise ValueError(f"its {name} is missing or garbled")
+    return struct.unpack(form, data)
+
+
+def _size(values: dict[str, tuple[str, bytes]]) -> tuple[int, int]:
+    left, top, right, bottom = _value(values, "dataWindow", "box2i", "<4i")
+    width, height = right - left + 1, bottom - top + 1
+    if not (0 < width <= LARGEST_SIDE_PX and 0 < height <= LARGEST_SIDE_PX):
+        raise ValueError(f"it claims {width}x{height} pixels")
+    return width, height
+
+
+def _rows_in_chunk(values: dict[str, tuple[str, bytes]]) -> int:
+    (number,) = _value(values, "compression", "compression", "<B")
+    if number not in _ROWS:
+        raise ValueError("its compression is unknown")
+    return _ROWS[number]
+
+
+def _channels(values: dict[str, tuple[str, bytes]]) -> dict[str, int]:
+    kind, data = values.get("channels", ("", b""))
+    found: dict[str, int] = {}
+    place = 0
+    while kind == "chlist" and data[place : place + 1] not in (b"\0", b""):
+        name, end, rest = data[place:].partition(b"\0")
+        if not end or len(rest) < 16:
+            raise ValueError("its channels are garbled")
+        number, _, across, down = struct.unpack_from("<iIii", rest)
+        if number not in _BITS or (across, down) != (1, 1):
+            raise ValueError("its channels are garbled")
+        found[name.decode("utf-8", "replace")] = _BITS[number]
+        place += len(name) + 17
+    if not found:
+        raise ValueError("it has no channels")
+    return found
+
+
+def _check_rows(file: BinaryIO, height: int, rows: int) -> None:
+    """Each chunk lies in the file: position of its row, its length, and so many bytes."""
+    count = -(-height // rows)
+    places = struct.unpack(f"<{count}Q", _exactly(file, 8 * count))
+    begin = file.tell()
+    end = file.seek(0, 2)
+    for place in places:
+        if not begin <= place <= end - 8:
+            raise ValueError("it is cut short")
+        file.seek(place)
+        _, length = struct.unpack("<ii", _exactly(file, 8))
+        if not 0 <= length <= end - place - 8:
+            raise ValueError("it is cut short")

@@ -1,0 +1,278 @@
+"""Where a picture came from, as texts in its file, and back.
+
+What flows in: a ``Provenance``, or a file that ``Picture.save`` wrote. What flows out: texts by
+key, or the ``Record`` they stand for. Knows file formats by their heads only; pixels are others'
+matter.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from distal.diagnostics import LONGEST_MESSAGE, printable
+from distal.version import __version__
+
+_First = TypeVar("_First")
+
+PREFIX: Final = "distal:"
+# What is larger was not rendered here: refused before its pixels take memory.
+LARGEST_SIDE_PX: Final = 16384
+# Characters of a text, and modules beside a scene: more was not written here.
+_LONGEST_TEXT: Final = 2**20
+_MOST_NEIGHBOURS: Final = 10_000
+_HEAD_PNG: Final = b"\x89PNG\r\n\x1a\n"
+_HEAD_EXR: Final = b"\x76\x2f\x31\x01"
+
+
+class ReadError(Exception):
+    """A picture's file that cannot be read, or does not say where it came from, in one line."""
+
+    def __init__(self, message: str) -> None:
+        # It quotes what stands in files that others made.
+        super().__init__(printable(message, LONGEST_MESSAGE))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Provenance:
+    """Where a picture came from: what is needed to render it again.
+
+    Attributes:
+        source: ``FILE[:NAME]`` or ``example:NAME`` as the author gave it; of what no file was
+            loaded for, the name of the scene or function; may be empty.
+        source_hash: SHA-256 of the text of that file and of the modules beside it that it imports;
+            of what no file was loaded for, of the files that its functions stand in; may be empty.
+        neighbours: The places of these modules beside the file.
+        parameters: The value of each parameter by name, as plain JSON values.
+        time: Seconds.
+        index: The frame's number.
+        seed: What random numbers start from.
+        mouse: The frame's mouse.
+        samples: Rays for each pixel.
+        view: What is shown.
+        plane: The plane of the view "slice": normal and offset.
+        transparent: Whether alpha is 0 where nothing is met.
+        exposure: The factor on all light that was asked for; None: the scene's own.
+        tone_map: The tone map that was asked for; None: the scene's own.
+        steering: How the camera was moved by hand: yaw, pitch, zoom, pan x and y; None: not.
+        stage: The parameters and the time that a lone shape's stage was made for; None of a scene
+            of its own.
+        layers: The layers that were rendered with it.
+        freeze: Whether the scene's numbers were constants.
+        device: What rendered it.
+    """
+
+    source: str = ""
+    source_hash: str = ""
+    neighbours: tuple[str, ...] = ()
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    time: float = 0.0
+    index: int = 0
+    seed: int = 0
+    mouse: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    samples: int = 1
+    view: str = "color"
+    plane: tuple[tuple[float, ...], float] | None = None
+    transparent: bool = False
+    exposure: float | None = None
+    tone_map: str | None = None
+    steering: tuple[float, ...] | None = None
+    stage: tuple[Mapping[str, Any], float] | None = None
+    layers: tuple[str, ...] = ()
+    freeze: bool = False
+    device: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What a picture's file says about itself.
+
+    Attributes:
+        provenance: Where it came from.
+        size: Width and height in pixels, as it was rendered.
+        stored_size: The file's own: another if a program scaled or cropped it since.
+        version: The version of distal that made it.
+        format: "png" or "exr".
+        bits: Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR.
+    """
+
+    provenance: Provenance
+    size: tuple[int, int]
+    stored_size: tuple[int, int]
+    version: str
+    format: str
+    bits: int
+
+
+def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
+    """The texts that a file carries. What was not asked for has none."""
+    found = {
+        "Software": f"distal {__version__}",
+        "distal:version": __version__,
+        "distal:source": origin.source,
+        "distal:source-hash": origin.source_hash,
+        "distal:parameters": json.dumps(dict(origin.parameters), sort_keys=True),
+        "distal:time": repr(float(origin.time)),
+        "distal:size": f"{size[0]}x{size[1]}",
+        "distal:index": str(origin.index),
+        "distal:seed": str(origin.seed),
+        "distal:mouse": json.dumps(list(origin.mouse)),
+        "distal:samples": str(origin.samples),
+        "distal:view": origin.view,
+        "distal:transparent": json.dumps(origin.transparent),
+        "distal:device": origin.device,
+    }
+    if origin.neighbours:
+        found["distal:neighbours"] = json.dumps(origin.neighbours)
+    if origin.plane is not None:
+        found["distal:plane"] = json.dumps([list(origin.plane[0]), origin.plane[1]])
+    if origin.exposure is not None:
+        found["distal:exposure"] = repr(float(origin.exposure))
+    if origin.tone_map is not None:
+        found["distal:tone-map"] = origin.tone_map
+    if origin.steering is not None:
+        found["distal:steering"] = json.dumps(list(origin.steering))
+    if origin.stage is not None:
+        values, time = origin.stage
+        found["distal:stage"] = json.dumps([dict(values), float(time)], sort_keys=True)
+    if origin.layers:
+        found["distal:layers"] = ",".join(origin.layers)
+    if origin.freeze:
+        found["distal:freeze"] = "true"
+    return found
+
+
+def provenance(found: Mapping[str, str]) -> Provenance:
+    """What texts stand for; what they do not say has its default.
+
+    Raises:
+        ReadError: A text is not what stands there.
+    """
+
+    def json_of(key: str, otherwise: Any) -> Any:
+        return json.loads(found[key]) if key in found else otherwise
+
+    try:
+        if any(len(text) > _LONGEST_TEXT for text in found.values()):
+            raise ValueError("a text is too long")
+        plane = json_of("distal:plane", None)
+        steering = json_of("distal:steering", None)
+        stage = json_of("distal:stage", None)
+        exposure = found.get("distal:exposure")
+        return Provenance(
+            source=found.get("distal:source", ""),
+            source_hash=found.get("distal:source-hash", ""),
+            neighbours=_places(json_of("distal:neighbours", [])),
+            parameters=_values(json_of("distal:parameters", {})),
+            time=_number(float(found.get("distal:time", "0"))),
+            index=int(found.get("distal:index", "0")),
+            seed=int(found.get("distal:seed", "0")),
+            mouse=_numbers(json_of("distal:mouse", [0.0] * 4), 4),
+            samples=int(found.get("distal:samples", "1")),
+            view=found.get("distal:view", "color"),
+            plane=None if plane is None else _pair(plane, lambda normal: _numbers(normal, 3)),
+            transparent=_flag(found.get("distal:transparent", "false")),
+            exposure=None if exposure is None else _number(float(exposure)),
+            tone_map=found.get("distal:tone-map"),
+            steering=None if steering is None else _numbers(steering, 5),
+            stage=None if stage is None else _pair(stage, _values),
+            layers=tuple(filter(None, found.get("distal:layers", "").split(","))),
+            freeze=_flag(found.get("distal:freeze", "false")),
+            device=found.get("distal:device", ""),
+        )
+    except (ValueError, TypeError, LookupError, RecursionError, OverflowError):
+        raise ReadError("what it says about itself is garbled") from None
+
+
+def read(path: Path) -> Record:
+    """What a picture's file says about itself.
+
+    Raises:
+        ReadError: There is no such file, it is no picture, is broken, or says nothing.
+    """
+    try:
+        with path.open("rb") as file:
+            head = file.read(8)
+    except OSError as error:
+        raise ReadError(f"cannot read {path}: {error.strerror or error}") from None
+    if head == _HEAD_PNG:
+        from distal.images.png import head_of as png_head  # noqa: PLC0415 (needs Pillow)
+
+        kind, (size, bits, found) = "png", png_head(path)
+    elif head[:4] == _HEAD_EXR:
+        from distal.images.exr import head_of as exr_head  # noqa: PLC0415 (knows this module)
+
+        kind, (size, bits, found) = "exr", exr_head(path)
+    else:
+        raise ReadError(f"{path} is neither a PNG nor an EXR")
+    if not found.get("distal:source-hash"):
+        raise ReadError(
+            f"{path} does not say how it was made: not a picture of distal's, or its metadata "
+            "was stripped"
+        )
+    try:
+        origin = provenance(found)
+        rendered = _size(found.get("distal:size"), size)
+    except ReadError as error:
+        raise ReadError(f"cannot rebuild {path}: {error}") from None
+    return Record(origin, rendered, size, found.get("distal:version", ""), kind, bits)
+
+
+def _size(text: str | None, otherwise: tuple[int, int]) -> tuple[int, int]:
+    if text is None:
+        return otherwise
+    found = re.fullmatch(r"([0-9]{1,6})x([0-9]{1,6})", text)
+    if found is None:
+        raise ReadError("what it says about itself is garbled")
+    return int(found[1]), int(found[2])
+
+
+def _number(given: Any) -> float:
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise TypeError("a number is wanted")
+    value = float(given)
+    if not math.isfinite(value):
+        raise ValueError("a finite number is wanted")
+    return value
+
+
+def _numbers(given: Any, count: int) -> tuple[float, ...]:
+    if not isinstance(given, list) or len(given) != count:
+        raise ValueError(f"{count} numbers are wanted")
+    return tuple(map(_number, given))
+
+
+def _pair(given: Any, first: Callable[[Any], _First]) -> tuple[_First, float]:
+    if not isinstance(given, list) or len(given) != 2:
+        raise ValueError("a pair is wanted")
+    return first(given[0]), _number(given[1])
+
+
+def _flag(text: str) -> bool:
+    if text not in ("true", "false"):
+        raise ValueError("true or false is wanted")
+    return text == "true"
+
+
+def _values(given: Any) -> dict[str, Any]:
+    """Values of parameters: numbers, words, or lists of numbers."""
+    if not isinstance(given, dict):
+        raise TypeError("values by name are wanted")
+    for value in given.values():
+        parts = value if isinstance(value, list) else [value]
+        if not all(isinstance(part, str | int | float) for part in parts):
+            raise TypeError("a parameter's value is a number, a word or a list")
+    return given
+
+
+def _places(given: Any) -> tuple[str, ...]:
+    if not isinstance(given, list) or not all(isinstance(place, str) for place in given):
+        raise TypeError("a list of files is wanted")
+    if len(given) > _MOST_NEIGHBOURS or len(set(given)) != len(given):
+        raise ValueError("each file is named once")
+    return tuple(given)

@@ -1,0 +1,1 @@
+"""Fold: constants computed, expressions simplified."""

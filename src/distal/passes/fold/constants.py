@@ -1,0 +1,166 @@
+"""What is constant, and what an operation on constants gives.
+
+What flows in: expressions, and what is known of immutable locals. What flows out: components of
+constants, rounded to the module's precision, and expressions made of such components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Set
+
+from distal.ir.nodes import (
+    Binary,
+    Builtin,
+    Cast,
+    Compare,
+    Compose,
+    Const,
+    Expr,
+    Field,
+    PerFrame,
+    Read,
+    Resource,
+    Splat,
+    Swizzle,
+    Unary,
+    Uniform,
+)
+from distal.ir.types import Kind, Matrix, Scalar, Type, Vector, component_count, kind_of
+from distal.passes.fold.arithmetic import COMPARE, Arithmetic, NotFoldableError, Number
+from distal.passes.fold.builtins import Components, fold_builtin
+
+
+def constant(type: Type, values: Components) -> Expr:
+    """The expression of a scalar, vector or matrix with these components."""
+    kind = kind_of(type)
+    assert kind is not None
+    scalars = [Const(v, Scalar(kind)) for v in values]
+    match type:
+        case Scalar():
+            return scalars[0]
+        case Matrix(size):
+            columns = (values[i : i + size] for i in range(0, len(values), size))
+            return Compose(tuple(constant(Vector(kind, size), c) for c in columns), type)
+        case _:
+            return (
+                Splat(scalars[0], type) if len(set(scalars)) == 1 else Compose(tuple(scalars), type)
+            )
+
+
+class Constants:
+    """Constant expressions of one function.
+
+    ``known`` maps the Read of an immutable local to its value; it may grow between calls.
+    ``mutable`` holds the names of locals that an Assign changes.
+    """
+
+    def __init__(
+        self, arithmetic: Arithmetic, known: Mapping[Expr, Expr], mutable: Set[str]
+    ) -> None:
+        self._math = arithmetic
+        self._known = known
+        self._mutable = mutable
+
+    def is_trivial(self, e: Expr) -> bool:
+        """True for what is free to name again: constants, uniforms, what never changes, parts."""
+        while isinstance(e, Swizzle | Field):
+            e = e.base
+        if isinstance(e, Splat):
+            e = e.value
+        if isinstance(e, Read):
+            return e.name not in self._mutable
+        return isinstance(e, Const | Uniform | PerFrame | Resource)
+
+    def components(self, e: Expr) -> Components | None:
+        """The components of a constant scalar, vector or matrix, rounded; else None."""
+        match e:
+            case Const(value):
+                return (self._math.round(value),) if isinstance(value, float) else (value,)
+            case Splat(value, type):
+                inner = self.components(value)
+                return inner and inner * component_count(type)
+            case Compose(parts):
+                found: list[Number] = []
+                for part in parts:
+                    inner = self.components(part)
+                    if inner is None:
+                        return None
+                    found.extend(inner)
+                return tuple(found)
+            case Read():
+                bound = self._known.get(e)
+                return None if bound is None else self.components(bound)
+            case _:
+                return None
+
+    def same(self, e: Expr) -> Number | None:
+        """The one value of all components of a constant, else None."""
+        try:
+            found = self.components(e)
+        except NotFoldableError:
+            return None
+        if found is None or any(c != found[0] for c in found):
+            return None
+        return found[0]
+
+    def folded(self, e: Expr) -> Expr | None:
+        """The value of an operation on constants only."""
+        match e:
+            case Unary(unary_op, operand, type):
+                return self._each(type, operand, lambda k, a: self._math.unary(unary_op, a, k))
+            case Cast(operand, type):
+                target = kind_of(type)
+                assert target is not None
+                return self._each(type, operand, lambda k, a: self._math.cast(a, k, target))
+            case Binary(op, lhs, rhs, type):
+                kind = kind_of(type)
+                pair = self._pair(lhs, rhs)
+                if pair is None or kind is None:
+                    return None
+                return constant(
+                    type,
+                    tuple(self._math.binary(op, a, b, kind) for a, b in zip(*pair, strict=True)),
+                )
+            case Compare(compare_op, lhs, rhs, type):
+                pair = self._pair(lhs, rhs)
+                if pair is None:
+                    return None
+                test = COMPARE[compare_op]
+                return constant(type, tuple(test(a, b) for a, b in zip(*pair, strict=True)))
+            case Builtin(name, args, type):
+                values = []
+                for arg in args:
+                    inner = self.components(arg)
+                    if inner is None:
+                        return None
+                    values.append(inner)
+                types = [a.type for a in args]
+                return constant(type, fold_builtin(name, values, types, type, self._math))
+            case _:
+                return None
+
+    def _each(
+        self, type: Type, operand: Expr, apply: Callable[[Kind, Number], Number]
+    ) -> Expr | None:
+        kind = kind_of(operand.type)
+        values = self.components(operand)
+        if values is None or kind is None:
+            return None
+        return constant(type, tuple(apply(kind, a) for a in values))
+
+    def _pair(self, lhs: Expr, rhs: Expr) -> tuple[Components, Components] | None:
+        left = self.components(lhs)
+        right = None if left is None else self.components(rhs)
+        return None if left is None or right is None else (left, right)
+
+
+def is_plain(e: Expr) -> bool:
+    """True for what is free to name again where it stands: a leaf, or components of one.
+
+    Unlike ``Constants.is_trivial`` it lets pass a local that may change later.
+    """
+    while isinstance(e, Swizzle | Field):
+        e = e.base
+    if isinstance(e, Splat):
+        e = e.value
+    return isinstance(e, Const | Uniform | PerFrame | Read | Resource)

@@ -1,0 +1,193 @@
+"""Fold: constants computed, trivial locals forwarded, dead and unreachable code dropped.
+
+What flows in: any module after specialise. What flows out: the same functions, simpler. A name of
+the author's stays, unless its local is only another name for something as short (a constant, a
+parameter, a uniform, components of one), or nothing reads it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from distal.ir.nodes import (
+    Assign,
+    Break,
+    Const,
+    Continue,
+    Expr,
+    Field,
+    For,
+    Function,
+    If,
+    Index,
+    Let,
+    Module,
+    Read,
+    Return,
+    Stmt,
+    Swizzle,
+    Unary,
+    UnaryOp,
+    Var,
+    While,
+)
+from distal.ir.types import BOOL
+from distal.ir.walk import children, rebuild, root_of, statements_in
+from distal.passes.context import Context
+from distal.passes.dead_code import remove_dead
+from distal.passes.fold.arithmetic import Arithmetic
+from distal.passes.fold.rules import Rules
+from distal.passes.reachable import drop_unused
+
+
+def run(module: Module, context: Context) -> Module:
+    """Fold every function."""
+    functions = tuple(fold_function(f, context.precision) for f in module.functions)
+    return drop_unused(replace(module, functions=functions))
+
+
+def fold_function(function: Function, precision: int) -> Function:
+    """One function, folded until nothing is left to gain."""
+    body = function.body
+    while True:
+        folded = _Folder(body, precision).block(body)
+        folded = remove_dead(folded)
+        if folded == body:
+            return function if folded is function.body else replace(function, body=folded)
+        body = folded
+
+
+def fold_expression(e: Expr, precision: int) -> Expr:
+    """An expression folded by itself; it must not read a Var."""
+    return _Folder((), precision).expr(e)
+
+
+class _Folder:
+    def __init__(self, body: tuple[Stmt, ...], precision: int) -> None:
+        self._mutable = {
+            root_of(s.target).name for s in statements_in(body) if isinstance(s, Assign)
+        }
+        self._known: dict[Expr, Expr] = {}
+        self._rules = Rules(Arithmetic(precision), self._known, self._mutable)
+        # Rewritten nodes. A trivial local's Read stands here too, as what it forwards to.
+        self._done: dict[Expr, Expr] = {}
+
+    def expr(self, root: Expr) -> Expr:
+        """Fold an expression bottom up, without recursion: sums of a thousand terms are deep."""
+        done = self._done
+        stack = [root]
+        while stack:
+            e = stack[-1]
+            if e in done:
+                stack.pop()
+                continue
+            operands = children(e)
+            waiting = [c for c in operands if c not in done]
+            if waiting:
+                stack.extend(reversed(waiting))
+                continue
+            done[e] = self._rules.simplify(rebuild(e, tuple([done[c] for c in operands])))
+            stack.pop()
+        return done[root]
+
+    def target(self, target: Expr) -> Expr:
+        """An Assign's target keeps its form; only indices are folded."""
+        if isinstance(target, Read):
+            return target
+        assert isinstance(target, Swizzle | Index | Field)
+        base = self.target(target.base)
+        operands = (base, self.expr(target.index)) if isinstance(target, Index) else (base,)
+        return rebuild(target, operands)
+
+    def block(self, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+        """Fold a block; nothing is kept after what never goes on."""
+        result: list[Stmt] = []
+        for stmt in body:
+            for folded in self._statement(stmt):
+                result.append(folded)
+                if never_goes_on(folded):
+                    return tuple(result)
+        return tuple(result)
+
+    def _statement(self, stmt: Stmt) -> tuple[Stmt, ...]:
+        span = stmt.span
+        match stmt:
+            case Let(name, value):
+                return self._bind(name, self.expr(value), stmt)
+            case Var(name, value) if name not in self._mutable:
+                return self._bind(name, self.expr(value), stmt)
+            case Var(name, value):
+                return (Var(name, self.expr(value), span=span),)
+            case Assign(target, value):
+                return (Assign(self.target(target), self.expr(value), span=span),)
+            case Return(value):
+                return (Return(self.expr(value), span=span),)
+            case If():
+                return self._if(stmt)
+            case For():
+                return self._for(stmt)
+            case While(condition, body):
+                condition = self.expr(condition)
+                if isinstance(condition, Const) and not condition.value:
+                    return ()
+                return (While(condition, self.block(body), span=span),)
+            case Break() | Continue():
+                return (stmt,)
+
+    def _bind(self, name: str, value: Expr, stmt: Let | Var) -> tuple[Stmt, ...]:
+        read = Read(name, value.type)
+        if self._rules.is_trivial(value):
+            self._done[read] = value
+            return ()
+        self._known[read] = value
+        return (Let(name, value, span=stmt.span),)
+
+    def _if(self, stmt: If) -> tuple[Stmt, ...]:
+        condition = self.expr(stmt.condition)
+        if isinstance(condition, Const):
+            return self.block(stmt.then if condition.value else stmt.otherwise)
+        then, otherwise = self.block(stmt.then), self.block(stmt.otherwise)
+        if not then and not otherwise:
+            return ()
+        if not then:
+            condition = self._rules.simplify(Unary(UnaryOp.NOT, condition, BOOL))
+            then, otherwise = otherwise, ()
+        return (If(condition, then, otherwise, span=stmt.span),)
+
+    def _for(self, stmt: For) -> tuple[Stmt, ...]:
+        start, stop = self.expr(stmt.start), self.expr(stmt.stop)
+        if isinstance(start, Const) and isinstance(stop, Const):
+            rounds = len(range(int(start.value), int(stop.value), stmt.step))
+            if rounds == 0:
+                return ()
+        body = self.block(stmt.body)
+        return (For(stmt.name, start, stop, stmt.step, body, span=stmt.span),) if body else ()
+
+
+def never_goes_on(stmt: Stmt) -> bool:
+    """True when the statement after this one is never reached."""
+    match stmt:
+        case Return() | Break() | Continue():
+            return True
+        case If(_, then, otherwise):
+            return bool(then and otherwise) and (
+                never_goes_on(then[-1]) and never_goes_on(otherwise[-1])
+            )
+        case While(Const(True), body):
+            return not _leaves(body)
+        case Let() | Var() | Assign() | For() | While():
+            return False
+
+
+def _leaves(body: tuple[Stmt, ...]) -> bool:
+    """True when a Break in this block leaves the loop whose body it is."""
+    for stmt in body:
+        match stmt:
+            case Break():
+                return True
+            case If(_, then, otherwise):
+                if _leaves(then) or _leaves(otherwise):
+                    return True
+            case _:
+                pass
+    return False

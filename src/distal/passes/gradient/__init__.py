@@ -1,0 +1,1 @@
+"""Gradient: forward-mode derivatives of functions."""

@@ -1,0 +1,233 @@
+"""Replace each ``Gradient`` by a call of a derivative function made from the function's own code.
+
+What flows in: a module whose functions are all bound. What flows out: one without Gradient. The
+derivative is exact (forward mode): beside each value that depends on the point, the derivative
+function computes how it changes along each of the point's axes, all in one evaluation
+(``dual``). Functions are treated callees first, so that the gradient of a function that itself
+takes a gradient is the gradient of what this pass made of it.
+
+A derivative function is made once for each way its arguments change: a parameter is still, changes
+by a constant (the seeds: most primitives are called with the point shifted), or by anything.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import TypeAlias, assert_never
+
+from distal.ir.nodes import (
+    Call,
+    Compose,
+    Construct,
+    Expr,
+    Function,
+    FunctionRef,
+    Gradient,
+    Module,
+    Param,
+    Read,
+)
+from distal.ir.tangents import (
+    LETTERS,
+    Lanes,
+    Tangent,
+    filled,
+    from_lanes,
+    is_constant,
+    lanes_of,
+    seeds,
+)
+from distal.ir.types import FLOAT, Kind, Type, tuple_type, vector_of
+from distal.ir.walk import expressions_in, map_expressions, rewrite
+from distal.passes.call_order import in_call_order
+from distal.passes.context import Context
+from distal.passes.gradient.activity import Activity
+from distal.passes.gradient.dual import DualBody, Returned, Version, tangent_name
+from distal.passes.naming import Names, local_names
+
+
+class _Form(Enum):
+    """What a derivative function returns; the value is the suffix of its name."""
+
+    DUAL = "dual"  # a tuple: the value, then the tangents that are not still
+    GRADIENT = "gradient"  # the gradient at the point
+    BOTH = "value_and_gradient"  # the tuple (value, gradient)
+
+
+class _Anything(Enum):
+    """The mark of a tangent that is passed as an argument."""
+
+    ANYTHING = "anything"
+
+
+# For each parameter and direction: None (still), a constant tangent, or ANYTHING; the latter for
+# each component where some are still.
+_Change: TypeAlias = Expr | _Anything | tuple[_Anything | None, ...] | None
+_Key: TypeAlias = tuple[str, _Form, tuple[tuple[_Change, ...], ...]]
+
+
+def run(module: Module, context: Context) -> Module:
+    """Replace every Gradient."""
+    if not any(isinstance(e, Gradient) for f in module.functions for e in expressions_in(f.body)):
+        return module
+    derived = _Derived(module)
+    for function in module.functions:
+        derived.add(_without_gradients(function, derived))
+    functions = in_call_order(derived.functions.values(), module.entry)
+    return replace(module, functions=functions)
+
+
+def _without_gradients(function: Function, derived: _Derived) -> Function:
+    memo: dict[Expr, Expr] = {}
+
+    def replaced(e: Expr) -> Expr:
+        if not isinstance(e, Gradient):
+            return e
+        assert isinstance(e.function, FunctionRef)
+        name = derived.gradient(e.function.name, e.point.type, with_value=e.with_value)
+        return Call(name, (e.point, *e.function.captures), e.type, span=e.span)
+
+    body = map_expressions(function.body, lambda e: rewrite(e, replaced, memo))
+    return replace(function, body=body)
+
+
+@dataclass(slots=True)
+class _Made:
+    """A finished derivative function."""
+
+    name: str
+    directions: int  # along which its result changes
+
+
+class _Derived:
+    """The functions so far, free of Gradient, and the derivative functions made of them."""
+
+    def __init__(self, module: Module) -> None:
+        self.functions: dict[str, Function] = {}
+        self._names = Names(f.name for f in module.functions)
+        self._activity = Activity(self.functions)
+        self._made: dict[_Key, _Made] = {}
+
+    def add(self, function: Function) -> None:
+        """Take in a function whose callees are here already."""
+        self.functions[function.name] = function
+
+    def gradient(self, name: str, point: Type, *, with_value: bool) -> str:
+        """The function that gives the gradient of ``name`` along its first parameter."""
+        axes = seeds(point)
+        still = (None,) * len(axes)
+        others = self.functions[name].params[1:]
+        form = _Form.BOTH if with_value else _Form.GRADIENT
+        return self._version(name, form, (axes, *(still for _ in others))).name
+
+    def dual(self, name: str, tangents: tuple[Lanes, ...]) -> Version:
+        """The derivative function for a call, its result's directions, and what to pass."""
+        key = tuple(tuple(map(_change, along)) for along in tangents)
+        made = self._version(name, _Form.DUAL, key)
+        passed = [
+            part
+            for along, changes in zip(tangents, key, strict=True)
+            for tangent, change in zip(along, changes, strict=True)
+            for part in _passed(tangent, change)
+        ]
+        return Version(made.name, made.directions, tuple(passed))
+
+    def _version(self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]) -> _Made:
+        key = (name, form, changes)
+        found = self._made.get(key)
+        if found is None:
+            found = self._made[key] = self._make(name, form, changes)
+        return found
+
+    def _make(self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]) -> _Made:
+        original = self.functions[name]
+        masks = tuple(
+            sum(1 << k for k, change in enumerate(along) if change is not None) for along in changes
+        )
+        activity = self._activity.of(name, masks)
+        names = Names(local_names(original))
+        extra: list[Param] = []
+        tangents: dict[str, Lanes] = {}
+        for param, along in zip(original.params, changes, strict=True):
+            tangents[param.name] = _parameter_tangents(param, along, names, extra)
+        count = len(changes[0])
+        body = DualBody(self.dual, names, activity, tangents, count)
+        result, returned = _returned(original.result, form, activity.result, count)
+        new = self._names.fresh(f"{name}_{form.value}")
+        self.functions[new] = replace(
+            original,
+            name=new,
+            params=(*original.params, *extra),
+            result=result,
+            body=body.function_body(original.body, returned),
+        )
+        return _Made(new, activity.result)
+
+
+def _change(tangent: Tangent) -> _Change:
+    if tangent is None or is_constant(tangent):
+        return tangent
+    lanes = lanes_of(tangent)
+    if lanes is None:
+        return _Anything.ANYTHING
+    return tuple(None if lane is None else _Anything.ANYTHING for lane in lanes)
+
+
+def _passed(tangent: Tangent, change: _Change) -> tuple[Expr, ...]:
+    """What a call passes of a tangent, after what the derivative function knows of it."""
+    if tangent is None or not isinstance(change, _Anything | tuple):
+        return ()
+    if isinstance(change, tuple):
+        return tuple(lane for lane in lanes_of(tangent) or () if lane is not None)
+    return (tangent,)
+
+
+def _parameter_tangents(
+    param: Param, along: tuple[_Change, ...], names: Names, extra: list[Param]
+) -> Lanes:
+    """A parameter's tangents; those that are passed become parameters in ``extra``."""
+    found: list[Tangent] = []
+    for k, change in enumerate(along):
+        wish = tangent_name(param.name, k, len(along))
+        if isinstance(change, _Anything):
+            found.append(_parameter(wish, param.type, names, extra))
+        elif isinstance(change, tuple):
+            lanes = (
+                None if lane is None else _parameter(f"{wish}_{letter}", FLOAT, names, extra)
+                for lane, letter in zip(change, LETTERS, strict=False)
+            )
+            found.append(from_lanes(tuple(lanes), param.type))
+        else:
+            found.append(change)
+    return tuple(found)
+
+
+def _parameter(wish: str, type: Type, names: Names, extra: list[Param]) -> Expr:
+    name = names.fresh(wish)
+    extra.append(Param(name, type))
+    return Read(name, type)
+
+
+def _returned(value_type: Type, form: _Form, directions: int, count: int) -> tuple[Type, Returned]:
+    """The result type of a derivative function, and how it is made at each return."""
+    point = vector_of(Kind.FLOAT, count)
+
+    def gradient(tangents: Lanes) -> Expr:
+        parts = tuple(filled(t, FLOAT) for t in tangents)
+        return parts[0] if count == 1 else Compose(parts, point)
+
+    match form:
+        case _Form.DUAL:
+            kept = [k for k in range(count) if directions >> k & 1]
+            items = tuple_type((value_type,) * (1 + len(kept)))
+            return items, lambda value, tangents: Construct(
+                (value, *(filled(tangents[k], value_type) for k in kept)), items
+            )
+        case _Form.GRADIENT:
+            return point, lambda _, tangents: gradient(tangents)
+        case _Form.BOTH:
+            both = tuple_type((FLOAT, point))
+            return both, lambda value, tangents: Construct((value, gradient(tangents)), both)
+        case _:
+            assert_never(form)

@@ -1,0 +1,1 @@
+"""Inline: calls replaced by the callee's statements."""

@@ -1,0 +1,171 @@
+"""The module put together after its per-frame work was taken out of the pixel code.
+
+What flows in: the module before, its rewritten pixel functions and the per-frame values they
+read. What flows out: the module after, simplified: parameters that nothing reads any more are
+gone, values have their names, and what does not travel is computed where it is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from distal.ir.nodes import Call, Expr, Function, Let, Module, PerFrame, Read, Stmt
+from distal.ir.walk import (
+    expressions_in,
+    map_expressions,
+    map_statement,
+    names_read,
+    rewrite,
+    substitute,
+)
+from distal.passes.fold.fold import fold_function
+from distal.passes.naming import Names, local_names, module_names
+from distal.passes.per_frame.values import Slots, reads
+from distal.passes.reachable import called_in, callees, closure, drop_unused
+
+
+def finished(
+    before: Module, pixels: tuple[Function, ...], slots: Slots, limit: int | None, precision: int
+) -> Module:
+    """The module, with at most ``limit`` components of per-frame values for the pixels."""
+    pixels = _without_unread_params(before.entry, pixels, precision)
+    wanted = reads(e for f in pixels for e in expressions_in(f.body))
+    chosen = slots.chosen(wanted, limit)
+    entries = slots.program(wanted)
+    values = {name: value for name, _, value in entries}
+    renamed, frame_functions = _frame_functions(before, pixels, values)
+    values = {name: _with_callees(value, renamed) for name, value in values.items()}
+    pixels = tuple(_with_steps(f, values, chosen) for f in pixels)
+    placed = {f.name for f in frame_functions}
+    needed = _needed(chosen, values, frozenset())
+    module = replace(
+        before,
+        functions=(*frame_functions, *(f for f in pixels if f.name not in placed)),
+        frame=tuple((name, value) for name, value in values.items() if name in needed),
+    )
+    return _named(drop_unused(module), {name: wish for name, wish, _ in entries})
+
+
+def _without_unread_params(
+    entry: str, functions: tuple[Function, ...], precision: int
+) -> tuple[Function, ...]:
+    """Each function folded, without parameters that it does not read; calls accordingly."""
+    kept: dict[str, list[int]] = {}
+    result: list[Function] = []
+    memo: dict[Expr, Expr] = {}
+
+    def shorter(e: Expr) -> Expr:
+        if not isinstance(e, Call) or len(kept[e.function]) == len(e.args):
+            return e
+        args = tuple(e.args[i] for i in kept[e.function])
+        return Call(e.function, args, e.type, span=e.span)
+
+    for function in functions:
+        body = map_expressions(function.body, lambda e: rewrite(e, shorter, memo))
+        function = fold_function(replace(function, body=body), precision)
+        read = names_read(function.body)
+        kept[function.name] = [
+            i
+            for i, param in enumerate(function.params)
+            if param.name in read or function.name == entry
+        ]
+        params = tuple(function.params[i] for i in kept[function.name])
+        result.append(replace(function, params=params))
+    return tuple(result)
+
+
+def _frame_functions(
+    before: Module, pixels: tuple[Function, ...], values: Mapping[str, Expr]
+) -> tuple[dict[str, str], list[Function]]:
+    """The functions that per-frame values call, and new names of those that pixels run changed.
+
+    A pixel function may have lost parameters, or read per-frame values that are not there yet.
+    """
+    needed = closure(before.functions, called_in(*values.values()))
+    pixel = {f.name: f for f in pixels}
+    names = Names(module_names(before))
+    renamed: dict[str, str] = {}
+    result: list[Function] = []
+    for function in before.functions:
+        if function.name not in needed:
+            continue
+        twin = pixel.get(function.name)
+        if twin is not None and twin.params == function.params:
+            is_same = not reads(expressions_in(twin.body))
+            if is_same and not callees(function) & renamed.keys():
+                result.append(twin)
+                continue
+        if twin is not None:
+            renamed[function.name] = names.fresh(f"{function.name}_per_frame")
+        body = map_expressions(function.body, lambda e: _with_callees(e, renamed))
+        name = renamed.get(function.name, function.name)
+        result.append(replace(function, name=name, body=body))
+    return renamed, result
+
+
+def _with_callees(e: Expr, renamed: Mapping[str, str]) -> Expr:
+    def change(n: Expr) -> Expr:
+        if isinstance(n, Call) and n.function in renamed:
+            return Call(renamed[n.function], n.args, n.type, span=n.span)
+        return n
+
+    return rewrite(e, change, {}) if renamed else e
+
+
+def _needed(roots: set[str], values: Mapping[str, Expr], given: frozenset[str]) -> set[str]:
+    """The values among and below ``roots``, not looking below those that are given."""
+    found: set[str] = set()
+    stack = list(roots)
+    while stack:
+        name = stack.pop()
+        if name not in found and name not in given:
+            found.add(name)
+            stack.extend(reads((values[name],)))
+    return found
+
+
+def _with_steps(function: Function, values: Mapping[str, Expr], chosen: set[str]) -> Function:
+    """The function with values that do not travel computed at its top."""
+    rest = reads(expressions_in(function.body)) - chosen
+    if not rest:
+        return function
+    needed = _needed(rest, values, frozenset(chosen))
+    local: dict[Expr, Expr] = {}
+    steps: list[Stmt] = []
+    for name, value in values.items():
+        if name in needed:
+            steps.append(Let(name, substitute(value, local, {}), span=function.span))
+            local[PerFrame(name, value.type)] = Read(name, value.type)
+    memo: dict[Expr, Expr] = {}
+    body = map_expressions(function.body, lambda e: substitute(e, local, memo))
+    return replace(function, body=(*steps, *body))
+
+
+def _named(module: Module, wishes: Mapping[str, str | None]) -> Module:
+    """The module with marks replaced by names, the author's where there are any and free."""
+    names = Names({*module_names(module), *(n for f in module.functions for n in local_names(f))})
+    final: dict[str, str] = {}
+    for mark, wish in wishes.items():
+        final[mark] = names.fresh(wish) if wish else names.numbered("frame")
+    memo: dict[Expr, Expr] = {}
+
+    def change(e: Expr) -> Expr:
+        if isinstance(e, PerFrame):
+            return PerFrame(final[e.name], e.type)
+        if isinstance(e, Read) and e.name in final:
+            return Read(final[e.name], e.type)
+        return e
+
+    def statement(stmt: Stmt) -> Stmt:
+        if isinstance(stmt, Let) and stmt.name in final:
+            value = rewrite(stmt.value, change, memo)
+            return Let(final[stmt.name], value, span=stmt.span)
+        return map_statement(stmt, lambda e: rewrite(e, change, memo), block)
+
+    def block(body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+        return tuple(map(statement, body))
+
+    functions = tuple(replace(f, body=block(f.body)) for f in module.functions)
+    frame = tuple((final[name], rewrite(value, change, memo)) for name, value in module.frame)
+    return replace(module, functions=functions, frame=frame)

@@ -1,0 +1,226 @@
+"""Frequency: what is the same in every pixel is computed once a frame.
+
+What flows in: a module without function values. What flows out: the same functions, reading
+values of ``Module.frame`` where they computed something that only uniforms and constants decide.
+
+It works across functions, and keeps them:
+
+- a parameter that is the same per-frame value at every call is replaced by that value;
+- in a function, work on parameters that are per frame at every call becomes a parameter itself,
+  computed by the callers, and so on up to the entry: ``turn(p, 0.8 * time)``, which takes a sine
+  and a cosine, becomes ``turn(p, c, s)`` when other calls turn by another angle;
+- what then depends on uniforms and constants only becomes a value of ``Module.frame``. Values
+  that no function reads are steps of later values.
+
+Work is taken out of branches too: once a frame it costs next to nothing, and nothing traps.
+
+The vertex stage can hand on 15 vectors of four. Where that is not room enough, the values that
+save most for each component travel, and the others are computed at the top of each function that
+reads them. Nothing is dropped without a word: ``Module.frame`` says what travels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from distal.ir.nodes import Call, Construct, Expr, Field, Function, Module, Param, Read, Uniform
+from distal.ir.target import FramePlace
+from distal.ir.types import Struct, Type
+from distal.ir.walk import children, nodes_in, rebuild
+from distal.passes.context import Context
+from distal.passes.cost import Costs, function_costs
+from distal.passes.naming import Names, local_names
+from distal.passes.per_frame.choice import Picking
+from distal.passes.per_frame.finish import finished
+from distal.passes.per_frame.forms import FlowWalk, Forming, Here, hoistable_calls
+from distal.passes.per_frame.values import (
+    WORTH_A_SLOT,
+    Slots,
+    Wish,
+    is_carried,
+    is_exploded,
+    suggestion,
+)
+
+VERTEX_ROOM: Final = 60  # components: WebGL 2 promises 15 vectors between the stages
+
+
+def run(module: Module, context: Context) -> Module:
+    """Move per-frame work into the per-frame part, where the target has one."""
+    place = context.target.frame
+    if place is FramePlace.NONE:
+        return module
+    hoisting = _Hoisting(module, context)
+    functions = hoisting.functions()
+    limit = VERTEX_ROOM if place is FramePlace.VERTEX else None
+    return finished(module, functions, hoisting.slots, limit, context.precision)
+
+
+@dataclass(slots=True)
+class _Calls:
+    """What the calls of a function in pixel code hand on."""
+
+    # For each parameter its forms in the callers; None once a caller has none.
+    args: list[list[Expr] | None]
+    rate: int = 0  # how often it runs for one pixel, roughly
+    # Parameters added for work that the callers do: form over the parameters -> name.
+    added: dict[Expr, str] = field(default_factory=dict)
+
+    def forms(self, params: tuple[Param, ...]) -> dict[str, Expr]:
+        """The form of each parameter that is per frame at every call."""
+        found: dict[str, Expr] = {}
+        for param, forms in zip(params, self.args, strict=True):
+            if forms and _may_travel(param.type):
+                agreed = len(set(forms)) == 1 and not _leaves(forms[0], Read)
+                found[param.name] = forms[0] if agreed else Read(param.name, param.type)
+        return found
+
+
+def _leaves(form: Expr, *classes: type) -> bool:
+    return any(isinstance(n, classes) for n in nodes_in(form))
+
+
+def _may_travel(type: Type) -> bool:
+    return is_carried(type) or is_exploded(type)
+
+
+class _Hoisting:
+    """The pass over one module: callers first to learn, callees first to rewrite."""
+
+    def __init__(self, module: Module, context: Context) -> None:
+        self._module = module
+        self.costs = Costs(function_costs(module.functions))
+        self.forming = Forming(context.precision, hoistable_calls(module.functions))
+        self.slots = Slots(self.costs)
+        self.keeps_constants = not context.target.inline
+        self.params = {f.name: f.params for f in module.functions}
+        self.calls: dict[str, _Calls] = {}
+
+    def functions(self) -> tuple[Function, ...]:
+        """The functions that pixels run, rewritten."""
+        entry = self._module.function(self._module.entry)
+        self.calls[entry.name] = _Calls([None] * len(entry.params), 1)
+        for function in reversed(self._module.functions):
+            if function.name in self.calls:
+                self._learn(function)
+        return tuple(
+            _Rewriting(self, f).function() for f in self._module.functions if f.name in self.calls
+        )
+
+    def _learn(self, function: Function) -> None:
+        """See what the calls that stay in a function's pixel code hand on."""
+        picking = Picking(function, self.costs)
+        heat = self.calls[function.name].rate
+
+        def visit(e: Expr, here: Here) -> Expr:
+            for call in picking.calls(e, here):
+                known = self.calls.setdefault(call.function, _Calls([[] for _ in call.args]))
+                known.rate += heat * here.rate
+                for i, arg in enumerate(call.args):
+                    form, forms = here.form(arg), known.args[i]
+                    if form is None or forms is None:
+                        known.args[i] = None
+                    else:
+                        forms.append(form)
+            return e
+
+        FlowWalk(function, self.forms_of(function), self.forming, visit).run()
+
+    def forms_of(self, function: Function) -> dict[str, Expr]:
+        """The forms of a function's parameters."""
+        return self.calls[function.name].forms(function.params)
+
+
+class _Rewriting:
+    """One function's pixel code, its per-frame work taken out."""
+
+    def __init__(self, hoisting: _Hoisting, function: Function) -> None:
+        self._hoisting = hoisting
+        self._function = function
+        self._picking = Picking(function, hoisting.costs)
+        self._calls = hoisting.calls[function.name]
+        self._params = hoisting.forms_of(function)
+        self._names = Names(local_names(function))
+        self._memo: dict[Expr, Expr] = {}
+
+    def function(self) -> Function:
+        """The function with the parameters that its work became."""
+        walk = FlowWalk(self._function, self._params, self._hoisting.forming, self._visit)
+        rewritten = walk.run()
+        added = tuple(Param(name, form.type) for form, name in self._calls.added.items())
+        return replace(rewritten, params=(*rewritten.params, *added))
+
+    def _visit(self, root: Expr, here: Here) -> Expr:
+        self._memo = {}
+        if here.name is not None and self._picking.picks(root, here):
+            return self._computed(root, here, Wish(here.name, 2))
+        return self._rewritten(root, here)
+
+    def _computed(self, e: Expr, here: Here, wish: Wish | None = None) -> Expr:
+        form = here.form(e)
+        assert form is not None
+        return self._carried(form, wish or suggestion(form), here.rate * self._calls.rate)
+
+    def _rewritten(self, e: Expr, here: Here) -> Expr:
+        done = self._memo.get(e)
+        if done is None:
+            done = self._memo[e] = self._node(e, here)
+        return done
+
+    def _node(self, e: Expr, here: Here) -> Expr:
+        if self._picking.picks(e, here):
+            if isinstance(e, Read):
+                return self._computed(e, here, Wish(e.name, 1 if e.name in self._params else 2))
+            return self._computed(e, here)
+        if isinstance(e, Read):
+            return self._param(e)
+        changed = rebuild(e, tuple([self._rewritten(c, here) for c in children(e)]))
+        if isinstance(e, Call) and isinstance(changed, Call):
+            return self._call(e, changed.args, here)
+        return changed
+
+    def _param(self, e: Read) -> Expr:
+        """A parameter that is one cheap per-frame value at every call is that value."""
+        form = self._params.get(e.name)
+        if form is None or form is e or not is_carried(e.type):
+            return e
+        if self._hoisting.keeps_constants and not _leaves(form, Uniform):
+            # A number an author hands on reads better as an argument.
+            return e
+        # Never a call: what it calls may stand after this function.
+        return self._carried(form, Wish(e.name, 1), self._calls.rate)
+
+    def _call(self, call: Call, args: tuple[Expr, ...], here: Here) -> Expr:
+        """A call that stays, with the work that its callee left to it."""
+        callee = self._hoisting.calls[call.function]
+        if not callee.added:
+            return Call(call.function, args, call.type, span=call.span)
+        forms: dict[str, Expr] = {}
+        for param, arg in zip(self._hoisting.params[call.function], call.args, strict=True):
+            form = here.form(arg)
+            if form is not None:
+                forms[param.name] = form
+        rate = here.rate * self._calls.rate
+        work = tuple(
+            self._carried(self._hoisting.forming.replaced(form, forms), Wish(name, 1), rate)
+            for form, name in callee.added.items()
+        )
+        return Call(call.function, (*args, *work), call.type, span=call.span)
+
+    def _carried(self, form: Expr, wish: Wish, rate: int) -> Expr:
+        """A form as this function has it: from the frame, from its callers, or computed here."""
+        if isinstance(form.type, Struct):
+            parts = []
+            for field_name, type in form.type.fields:
+                part = self._hoisting.forming.simplified(Field(form, field_name, type))
+                parts.append(self._carried(part, wish.part(field_name), rate))
+            return Construct(tuple(parts), form.type)
+        if self._hoisting.costs.of(form) < WORTH_A_SLOT and not _leaves(form, Call):
+            return form
+        if not _leaves(form, Read):
+            return self._hoisting.slots.read(form, wish, rate)
+        name = self._calls.added.get(form)
+        if name is None:
+            name = self._calls.added[form] = self._names.fresh(wish.name or "per_frame")
+        return Read(name, form.type)

@@ -1,0 +1,164 @@
+"""The per-frame part while it is gathered: its values, and which of them the target can carry.
+
+What flows in: forms (see ``per_frame_forms``) that the pixel code wants computed once a frame.
+What flows out: the ordered list of the module's per-frame values, each written over earlier ones.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+from distal.ir.nodes import Builtin, Call, Expr, Let, PerFrame, Read, Return, Stmt, Uniform
+from distal.ir.types import Matrix, Scalar, Struct, Type, Vector, component_count
+from distal.ir.walk import children, nodes_in, rebuild, substitute
+from distal.passes.cost import Costs, node_cost
+from distal.passes.naming import Names
+from distal.passes.share.split_deep import split_expression
+
+# The least cost of what is worth computing once a frame: a division, a square root, or four
+# sums. A value costs a register or a load in every pixel, so a product of two uniforms is not.
+WORTH_A_SLOT: Final = 4
+
+MARK: Final = "#"  # begins the names of values that have no settled name yet
+
+
+def is_carried(type: Type) -> bool:
+    """True for types that a per-frame value may have."""
+    return isinstance(type, Scalar | Vector | Matrix)
+
+
+def is_exploded(type: Type) -> bool:
+    """True for structs that are handed on field by field."""
+    return isinstance(type, Struct) and all(is_carried(t) or is_exploded(t) for _, t in type.fields)
+
+
+class Wish(NamedTuple):
+    """What a value should be called, and how good a name that is (see ``Slot.rank``)."""
+
+    name: str | None
+    rank: int = 0
+
+    def part(self, field: str) -> Wish:
+        """The wish for a field of the value."""
+        return Wish(f"{self.name}_{field}" if self.name else field, self.rank)
+
+
+def suggestion(form: Expr) -> Wish:
+    """``cos_angle`` for a built-in or a function of one named thing."""
+    if isinstance(form, Builtin | Call):
+        leaves = {n.name for n in nodes_in(form) if isinstance(n, Read | Uniform)}
+        if len(leaves) == 1:
+            name = form.name if isinstance(form, Builtin) else form.function
+            return Wish(f"{name}_{leaves.pop()}")
+    return Wish(None)
+
+
+@dataclass(slots=True)
+class Slot:
+    """A value computed once a frame.
+
+    Attributes:
+        form: What it is.
+        name: What code that reads it calls it until all names are known.
+        wish: What it should be called, if there is a good name for it.
+        rank: How good: 2 for the author's name of the value itself, 1 for that of a parameter.
+        weight: What it saves: its cost, times how often pixels would compute it.
+    """
+
+    form: Expr
+    name: str
+    wish: str | None = None
+    rank: int = -1
+    weight: int = 0
+
+
+class Slots:
+    """All per-frame values of a module."""
+
+    def __init__(self, costs: Costs) -> None:
+        self.costs = costs
+        self._slots: dict[Expr, Slot] = {}
+
+    def read(self, form: Expr, wish: Wish, rate: int) -> Expr:
+        """A read of the value of that form."""
+        slot = self._slots.get(form)
+        if slot is None:
+            slot = self._slots[form] = Slot(form, f"{MARK}{len(self._slots)}")
+        if wish.name is not None and wish.rank > slot.rank:
+            slot.wish, slot.rank = wish
+        slot.weight += self.costs.of(form) * rate
+        return PerFrame(slot.name, form.type)
+
+    def chosen(self, wanted: set[str], limit: int | None) -> set[str]:
+        """The wanted values that find room: those that save most for each component."""
+        slots = [s for s in self._slots.values() if s.name in wanted]
+        if limit is None or sum(component_count(s.form.type) for s in slots) <= limit:
+            return {s.name for s in slots}
+        found: set[str] = set()
+        room = limit
+        for slot in sorted(slots, key=lambda s: -s.weight / component_count(s.form.type)):
+            size = component_count(slot.form.type)
+            if size <= room:
+                room -= size
+                found.add(slot.name)
+        return found
+
+    def program(self, wanted: set[str]) -> list[tuple[str, str | None, Expr]]:
+        """Name, wished name and value of everything that the wanted values need, in order."""
+        return _Program([s for s in self._slots.values() if s.name in wanted], self.costs).entries
+
+
+class _Program:
+    """Writes forms over each other, and over values that several of them share."""
+
+    def __init__(self, slots: list[Slot], costs: Costs) -> None:
+        self.entries: list[tuple[str, str | None, Expr]] = []
+        self._costs = costs
+        self._names = {s.form: s.name for s in slots}
+        self._wishes = {s.form: s.wish for s in slots}
+        self._done: dict[Expr, Expr] = {}
+        self._deep = Names(())
+        users: Counter[Expr] = Counter()
+        for e in nodes_in(*self._names):
+            users.update(set(children(e)))
+        self._shared = {e for e, count in users.items() if count > 1 and self._is_worth(e)}
+        for slot in slots:
+            for e in nodes_in(slot.form):
+                self._write(e)
+
+    def _is_worth(self, e: Expr) -> bool:
+        if not is_carried(e.type) or not children(e) or not node_cost(e, self._costs.calls):
+            return False
+        return self._costs.of(e) >= WORTH_A_SLOT
+
+    def _write(self, e: Expr) -> None:
+        if e in self._done:
+            return
+        value = rebuild(e, tuple([self._done[c] for c in children(e)]))
+        name = self._names.get(e)
+        if name is None and e in self._shared:
+            name = f"{MARK}shared{len(self.entries)}"
+        if name is not None:
+            self.entries.append((name, self._wishes.get(e), self._cut(value)))
+            value = PerFrame(name, e.type)
+        self._done[e] = value
+
+    def _cut(self, value: Expr) -> Expr:
+        """Values too deep for a shader compiler are written in several steps."""
+        before: list[Stmt] = []
+        value = split_expression(value, self._deep, before, Return(value))
+        steps: dict[Expr, Expr] = {}
+        for let in before:
+            assert isinstance(let, Let)
+            name = f"{MARK}deep{len(self.entries)}"
+            self.entries.append((name, None, substitute(let.value, steps, {})))
+            steps[Read(let.name, let.value.type)] = PerFrame(name, let.value.type)
+        return substitute(value, steps, {}) if steps else value
+
+
+def reads(roots: Iterable[Expr]) -> set[str]:
+    """The per-frame values that expressions read."""
+    return {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}

@@ -1,0 +1,1 @@
+"""Share: common subexpressions computed once; deep expressions split."""

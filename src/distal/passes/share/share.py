@@ -1,0 +1,291 @@
+"""Share: what is computed more than once is computed once, into a Let.
+
+What flows in: any module after inline. What flows out: the same values with common
+subexpressions bound, what does not change in a loop bound before it, and no expression deeper
+than a shader compiler takes.
+
+A value is bound in the outermost block where it exists and where it would have been computed
+anyway: nothing moves out of a branch, out of a loop that may have no round, or before an exit
+that may skip it. What a Select or ``and`` may skip is bound only when it is cheap. Names of the
+author stay: a shared value that the author named keeps that name, others are called ``shared_0``,
+``shared_1`` ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+from distal.ir.nodes import (
+    Assign,
+    Compose,
+    Construct,
+    Expr,
+    Field,
+    Function,
+    Index,
+    Let,
+    Logical,
+    Module,
+    Read,
+    Select,
+    Stmt,
+    Swizzle,
+)
+from distal.ir.types import is_static
+from distal.ir.walk import children, expressions, map_indices, map_statement, nodes_in, rebuild
+from distal.passes.context import Context
+from distal.passes.cost import Costs, function_costs, node_cost
+from distal.passes.naming import Names, local_names, module_names
+from distal.passes.places import (
+    Place,
+    Site,
+    Sites,
+    cleared,
+    first_position,
+    in_loop,
+    is_certain,
+    within,
+)
+from distal.passes.share.split_deep import split_deep
+from distal.passes.versions import Versions, plain
+
+WORTH_A_NAME: Final = 3  # the least cost: a sum is as short as the name for it
+WORTH_LEAVING_A_LOOP: Final = 4
+CHEAP: Final = 40  # the most that may be computed in vain
+MOST_ROUNDS: Final = 3  # a Let that left a loop may let others leave
+
+
+def run(module: Module, context: Context) -> Module:
+    """Share within every function."""
+    costs = function_costs(module.functions)
+    taken = set(module_names(module))
+    functions = tuple(share_function(f, costs, taken) for f in module.functions)
+    return replace(module, functions=functions)
+
+
+def share_function(function: Function, calls: Mapping[str, int], taken: set[str]) -> Function:
+    """One function; ``taken`` holds names that new Lets must not hide."""
+    names = Names(taken | set(local_names(function)))
+    for _ in range(MOST_ROUNDS):
+        sharing = _Sharing(function, calls)
+        function = sharing.function(names)
+        if not sharing.left_a_loop:
+            break
+    return replace(function, body=split_deep(function.body, names))
+
+
+@dataclass(eq=False, slots=True)
+class _Binding:
+    """A value computed before a statement; ``let`` is the author's own, moved there."""
+
+    value: Expr
+    place: Place
+    position: int
+    let: Let | None
+    name: str = ""
+
+
+class _Sharing:
+    def __init__(self, function: Function, calls: Mapping[str, int]) -> None:
+        self._function = function
+        self._versions = Versions(function)
+        self._costs = Costs(calls)
+        # Where each node is computed, as its users so far say; every node, operands first.
+        self._sites: dict[Expr, dict[Site, int]] = {}
+        self._heights: dict[Expr, int] = {}
+        self._homes: dict[Expr, Place] = {}
+        self._lets: dict[Expr, list[tuple[Place, int]]] = {}
+        self._replaced: dict[tuple[Expr, Site], _Binding] = {}
+        self._before: dict[tuple[Place, int], list[_Binding]] = {}
+        self._moved: set[tuple[Place, int]] = set()
+        self.left_a_loop = False
+
+    def function(self, names: Names) -> Function:
+        """The function with shared values bound."""
+        root = self._versions.root
+        self._collect(root)
+        # Users before operands: an operand of a shared value is used where that is bound.
+        for e in sorted(self._heights, key=self._heights.__getitem__, reverse=True):
+            sites = self._sites.get(e)
+            if sites and children(e):
+                self._place(e, self._homes[e], sites)
+                self._hand_down(e, sites)
+        self._name(root, names)
+        body = self._block(root)
+        return self._function if body == self._function.body else replace(self._function, body=body)
+
+    # Where every expression is computed
+
+    def _collect(self, place: Place) -> None:
+        for position, stmt in enumerate(place.body):
+            inner = place.inner.get(position, ())
+            head = inner[0] if inner and inner[0].is_head else None
+            site = Site(place, position) if head is None else Site(head, 0)
+            for root in _computed(stmt):
+                self._learn(root)
+                self._use(root, site, 1)
+            if isinstance(stmt, Let):
+                self._lets.setdefault(stmt.value, []).append((place, position))
+            for below in head.inner[0] if head is not None else inner:
+                self._collect(below)
+
+    def _learn(self, root: Expr) -> None:
+        """Heights, and the innermost place that something in the expression belongs to."""
+        heights, homes, top = self._heights, self._homes, self._versions.root
+        for e in nodes_in(root):
+            if e in heights:
+                continue
+            height, home = 0, top
+            if isinstance(e, Read):
+                home = self._versions.births[e.name]
+            for c in children(e):
+                height = max(height, heights[c] + 1)
+                if homes[c].depth > home.depth:
+                    home = homes[c]
+            heights[e], homes[e] = height, home
+
+    def _use(self, e: Expr, site: Site, uses: int) -> None:
+        sites = self._sites.setdefault(e, {})
+        sites[site] = min(2, sites.get(site, 0) + uses)
+
+    def _hand_down(self, e: Expr, sites: Sites) -> None:
+        """The operands are computed where ``e`` is: where it is bound, or where it is used."""
+        bound: set[_Binding] = set()
+        for site, uses in sites.items():
+            binding = self._replaced.get((e, site))
+            if binding is not None:
+                if binding in bound:
+                    continue
+                bound.add(binding)
+                site, uses = Site(binding.place, binding.position), 1
+            for operand, lazy in _operands(e):
+                self._use(operand, site._replace(lazy=site.lazy or lazy), uses)
+
+    # Where a value is bound
+
+    def _place(self, e: Expr, place: Place, sites: Sites) -> None:
+        """Bind ``e`` in ``place`` if that pays and costs nothing in vain, else further inside."""
+        once = sum(sites.values())
+        if once < 2 and not any(in_loop(place, s) for s in sites):
+            return
+        if not _may_be_bound(e, self._costs):
+            return
+        cost = self._costs.of(e)
+        if cost < (WORTH_A_NAME if once > 1 else WORTH_LEAVING_A_LOOP):
+            return
+        counted = cleared(sites) if cost <= CHEAP else sites
+        start = first_position(place, sites)
+        if not place.is_head and is_certain(place, counted, start):
+            self._bind(e, place, start, sites)
+            return
+        for inner, some in within(place, sites)[1].items():
+            self._place(e, inner, some)
+
+    def _bind(self, e: Expr, place: Place, position: int, sites: Sites) -> None:
+        let = None
+        for home, at in self._lets.get(e, ()):
+            if Site(home, at) in sites:
+                named = home.body[at]
+                assert isinstance(named, Let)
+                let = named
+                self._moved.add((home, at))
+                self.left_a_loop |= home is not place
+                break
+        binding = _Binding(e, place, position, let)
+        for site in sites:
+            self._replaced[e, site] = binding
+        self._before.setdefault((place, position), []).append(binding)
+
+    # The new body
+
+    def _name(self, place: Place, names: Names) -> None:
+        """Name the bindings in the order they will stand in."""
+        for position in range(len(place.body)):
+            bindings = self._before.get((place, position), [])
+            bindings.sort(key=lambda b: self._heights[b.value])
+            for binding in bindings:
+                binding.name = binding.let.name if binding.let else names.numbered("shared")
+            for inner in place.inner.get(position, ()):
+                for below in inner.inner[0] if inner.is_head else (inner,):
+                    self._name(below, names)
+
+    def _block(self, place: Place) -> tuple[Stmt, ...]:
+        result: list[Stmt] = []
+        for position, stmt in enumerate(place.body):
+            site = Site(place, position)
+            for binding in self._before.get((place, position), ()):
+                value = plain(self._rewritten(binding.value, site, is_bound_here=True))
+                span = binding.let.span if binding.let else stmt.span
+                result.append(Let(binding.name, value, span=span))
+            if (place, position) in self._moved:
+                continue
+            inner = place.inner.get(position, ())
+            if inner and inner[0].is_head:
+                site, inner = Site(inner[0], 0), inner[0].inner[0]
+            result.append(self._statement(stmt, site, inner))
+        return tuple(result)
+
+    def _statement(self, stmt: Stmt, site: Site, inner: tuple[Place, ...]) -> Stmt:
+        blocks = iter(inner)
+
+        def expr(e: Expr) -> Expr:
+            return plain(self._rewritten(e, site))
+
+        if isinstance(stmt, Assign):
+            return Assign(map_indices(stmt.target, expr), expr(stmt.value), span=stmt.span)
+        return map_statement(stmt, expr, lambda _: self._block(next(blocks)))
+
+    def _rewritten(self, root: Expr, site: Site, is_bound_here: bool = False) -> Expr:
+        """The expression with bound values read; without recursion, sums are deep."""
+        done: dict[tuple[Expr, bool], Expr] = {}
+        stack: list[tuple[Expr, bool]] = [(root, site.lazy)]
+        while stack:
+            key = stack[-1]
+            e, lazy = key
+            if key in done:
+                stack.pop()
+                continue
+            binding = self._replaced.get((e, site._replace(lazy=lazy)))
+            if binding is not None and not (is_bound_here and e is root):
+                done[key] = Read(binding.name, e.type)
+                continue
+            below = [(operand, lazy or skipped) for operand, skipped in _operands(e)]
+            waiting = [k for k in below if k not in done]
+            if waiting:
+                stack.extend(waiting)
+                continue
+            done[key] = rebuild(e, tuple([done[k] for k in below]))
+        return done[root, site.lazy]
+
+
+def _computed(stmt: Stmt) -> tuple[Expr, ...]:
+    """What a statement computes: its expressions, of an Assign's target only the indices."""
+    if not isinstance(stmt, Assign):
+        return expressions(stmt)
+    found: list[Expr] = []
+    target = stmt.target
+    while isinstance(target, Swizzle | Index | Field):
+        if isinstance(target, Index):
+            found.append(target.index)
+        target = target.base
+    return (*found, stmt.value)
+
+
+def _operands(e: Expr) -> list[tuple[Expr, bool]]:
+    """The operands, each with whether it may be skipped."""
+    match e:
+        case Select(condition, yes, no):
+            return [(condition, False), (yes, True), (no, True)]
+        case Logical(_, lhs, rhs):
+            return [(lhs, False), (rhs, True)]
+        case _:
+            return [(c, False) for c in children(e)]
+
+
+def _may_be_bound(e: Expr, costs: Costs) -> bool:
+    """A part of a value is as good as a name for it; what is put together may get one."""
+    if is_static(e.type):
+        return False
+    return isinstance(e, Compose | Construct) or node_cost(e, costs.calls) > 0

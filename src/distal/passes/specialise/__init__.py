@@ -1,0 +1,1 @@
+"""Specialise: functions bound to the functions, textures and constants they are passed."""

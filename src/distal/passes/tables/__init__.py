@@ -1,0 +1,1 @@
+"""Tables: large arrays of constants stored in buffers."""

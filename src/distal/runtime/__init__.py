@@ -1,0 +1,1 @@
+"""The runtime: calls of scene functions and pictures, from Python values to a device and back."""

@@ -1,0 +1,299 @@
+"""Python values as arguments of scene functions, and results as Python values.
+
+What flows in: what a person passes to a ``@func``: numbers, vectors, lists, arrays of points. What
+flows out: an overload's types, and arrays with one row for each point; and back. Knows no device.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import namedtuple
+from collections.abc import Mapping, Sequence
+from itertools import product
+from operator import itemgetter
+from typing import Any, TypeVar, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
+from distal.frontend.signatures.signatures import MISSING, Header
+from distal.ir.types import (
+    FLOAT,
+    VEC2,
+    VEC3,
+    VEC4,
+    Array,
+    Buffer,
+    FunctionType,
+    Kind,
+    Matrix,
+    Scalar,
+    Struct,
+    Texture,
+    Type,
+    Vector,
+)
+from distal.lang.values import VALUE_CLASSES, MatrixValue, VectorValue
+
+_KINDS = {Kind.FLOAT: "fiub", Kind.INT: "iu", Kind.UINT: "iu", Kind.BOOL: "b"}
+
+
+def bind(
+    function: str, defaults: Mapping[str, Any], args: Sequence[Any], kwargs: Mapping[str, Any]
+) -> list[Any]:
+    """The value of each parameter, in order, defaults filled in.
+
+    ``defaults`` are by name, in order; ``MISSING`` where there is none.
+
+    Raises:
+        TypeError: The call does not fit the definition; worded as Python words it.
+    """
+    if len(args) > len(defaults):
+        raise TypeError(f"{function}() takes {len(defaults)} arguments but {len(args)} were given")
+    given = dict(zip(defaults, args, strict=False))
+    for name, value in kwargs.items():
+        if name in given:
+            raise TypeError(f"{function}() got multiple values for argument '{name}'")
+        if name not in defaults:
+            raise TypeError(f"{function}() got an unexpected keyword argument '{name}'")
+        given[name] = value
+    missing = [n for n, default in defaults.items() if n not in given and default is MISSING]
+    if missing:
+        raise TypeError(f"{function}() misses its arguments: {', '.join(missing)}")
+    return [given.get(name, default) for name, default in defaults.items()]
+
+
+def choose_types(
+    header: Header, values: Sequence[Any], dtype: np.dtype[Any]
+) -> tuple[tuple[Type, ...], list[Any]] | None:
+    """The parameter types under which every value fits and the values as ``lanes``, or None.
+
+    A generic parameter tries its type variable's types in order.
+    """
+    variables: list[TypeVar] = []
+    for slot in header.slots:
+        if isinstance(slot.annotation, TypeVar) and slot.annotation not in variables:
+            variables.append(slot.annotation)
+    constraints = [v.__constraints__ or (FLOAT, VEC2, VEC3, VEC4) for v in variables]
+    for choice in product(*constraints):
+        bindings = {v: to_type(c) for v, c in zip(variables, choice, strict=True)}
+        try:
+            types = tuple(to_type(s.annotation, bindings) for s in header.slots)
+        except (AnnotationError, UnboundVariableError):
+            return None
+        rows = rows_of(values, types, dtype)
+        if rows is not None:
+            return types, rows
+    return None
+
+
+def rows_of(values: Sequence[Any], types: Sequence[Type], dtype: np.dtype[Any]) -> list[Any] | None:
+    """The values as ``lanes``; None where one, or an array of such, is not of its type."""
+    try:
+        return [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
+    except (TypeError, ValueError, OverflowError):
+        return None
+
+
+def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
+    """The value with a leading axis of points (1 where one value serves all).
+
+    Scalars (n,), vectors (n, size), matrices (n, rows, columns), arrays (n, length, ...); a struct
+    is a tuple of its fields.
+
+    Raises:
+        TypeError: The value is not of the type.
+    """
+    match type:
+        case Scalar(kind):
+            return _numbers(value, (), kind, dtype)
+        case Vector(kind, size):
+            return _numbers(value, (size,), kind, dtype)
+        case Matrix(size):
+            if isinstance(value, MatrixValue):
+                value = np.array([tuple(c) for c in value]).T
+            return _numbers(value, (size, size), Kind.FLOAT, dtype)
+        case Array(element, length):
+            return _array(value, element, length, dtype)
+        case Struct(_, fields):
+            if not dataclasses.is_dataclass(value) and not isinstance(value, tuple):
+                raise TypeError(f"{value!r} is no {type}")
+            parts = value if isinstance(value, tuple) else [getattr(value, n) for n, _ in fields]
+            return tuple(lanes(v, t, dtype) for v, (_, t) in zip(parts, fields, strict=True))
+        case Texture() | Buffer() | FunctionType():
+            raise TypeError(f"only scene code passes {type}")
+        case _:
+            assert_never(type)
+
+
+def is_double(value: Any) -> bool:
+    """Whether the person passed numbers of 64 bits, also inside a struct."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return any(is_double(getattr(value, field.name)) for field in dataclasses.fields(value))
+    if isinstance(value, tuple):
+        return any(map(is_double, value))
+    return getattr(value, "dtype", None) == np.float64
+
+
+def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
+    if not shape and isinstance(value, tuple | VectorValue):
+        # As in scene code, a tuple is a vector; one number for each point is a list or an array.
+        raise TypeError(f"{value!r} is a vector")
+    if isinstance(value, VectorValue):
+        value = tuple(value)
+    array = np.asarray(value)
+    if array.dtype.kind not in _KINDS[kind]:
+        raise TypeError(f"{array.dtype} is not {kind.value}")
+    if array.dtype.kind == "b" and kind is not Kind.BOOL:
+        raise TypeError(f"a bool is not {kind.value}")
+    if array.shape == shape:
+        array = array[None]
+    elif array.shape[1:] != shape or array.ndim != len(shape) + 1:
+        raise TypeError(f"shape {array.shape} is not {shape} or (n, *{shape})")
+    return _converted(array, kind, dtype)
+
+
+def _converted(array: NDArray[Any], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
+    match kind:
+        case Kind.FLOAT:
+            return np.ascontiguousarray(array, dtype)
+        case Kind.BOOL:
+            return np.ascontiguousarray(array)
+        case Kind.INT | Kind.UINT:
+            wanted = np.dtype(np.int32 if kind is Kind.INT else np.uint32)
+            if array.size:
+                limits = np.iinfo(wanted)
+                if array.min() < limits.min or array.max() > limits.max:
+                    raise OverflowError(f"a value does not fit {kind.value}")
+            return np.ascontiguousarray(array, wanted)
+        case _:
+            assert_never(kind)
+
+
+def _array(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
+    if isinstance(element, Scalar | Vector):
+        shape = (length,) if isinstance(element, Scalar) else (length, element.size)
+        if isinstance(value, list | tuple):
+            value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
+        return _numbers(value, shape, element.kind, dtype)
+    if not isinstance(value, list | tuple) or len(value) != length:
+        raise TypeError(f"not {length} values")
+    elements = [lanes(v, element, dtype) for v in value]
+    return _stacked(elements, count(elements) or 1)
+
+
+def _stacked(elements: Sequence[Any], points: int) -> Any:
+    """Elements side by side along the second axis; of structs, field by field."""
+    if isinstance(elements[0], tuple):
+        return tuple(_stacked(field, points) for field in zip(*elements, strict=True))
+    shape = (points, *elements[0].shape[1:])
+    return np.stack([np.broadcast_to(e, shape) for e in elements], axis=1)
+
+
+def _element(result: Any, position: int) -> Any:
+    """One element of the array that every row holds."""
+    if isinstance(result, tuple):
+        return tuple(_element(part, position) for part in result)
+    return result[:, position]
+
+
+def count(values: Sequence[Any]) -> int | None:
+    """How many points the arguments are for; None when none has a row for each of several.
+
+    Raises:
+        ValueError: Two arguments have different numbers of points.
+    """
+    sizes = {leaf.shape[0] for value in values for leaf in leaves(value)} - {1}
+    if len(sizes) > 1:
+        listed = " and ".join(map(str, sorted(sizes)))
+        raise ValueError(f"the arguments have different numbers of points: {listed}")
+    return sizes.pop() if sizes else None
+
+
+def leaves(value: Any) -> list[NDArray[Any]]:
+    """The arrays that a value consists of."""
+    if isinstance(value, tuple):
+        return [leaf for part in value for leaf in leaves(part)]
+    return [value]
+
+
+def is_many(value: Any, type: Type) -> bool:
+    """Whether the person passed one value for each point (also when that is a single point)."""
+    match type:
+        case Scalar():
+            return np.ndim(value) == 1
+        case Vector():
+            return not isinstance(value, VectorValue) and np.ndim(value) == 2
+        case Matrix():
+            return not isinstance(value, MatrixValue) and np.ndim(value) == 3
+        case Struct(_, fields):
+            if isinstance(value, tuple):
+                parts = list(value)
+            else:
+                parts = [getattr(value, n) for n, _ in fields]
+            return any(is_many(v, t) for v, (_, t) in zip(parts, fields, strict=True))
+        case Array(Scalar() | Vector() as element, _):
+            if isinstance(value, list | tuple):
+                value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
+            return np.ndim(value) == (2 if isinstance(element, Scalar) else 3)
+        case Array(element, _):
+            return any(is_many(v, element) for v in value)
+        case _:
+            return False
+
+
+def single(result: Any, type: Type) -> Any:
+    """The one value of a result for one point, as a plain Python value."""
+    match type:
+        case Scalar():
+            return result[0].item()
+        case Vector():
+            return VALUE_CLASSES[type](*result[0].tolist())
+        case Matrix():
+            return VALUE_CLASSES[type](
+                *(VALUE_CLASSES[Vector(Kind.FLOAT, type.size)](*c) for c in result[0].T.tolist())
+            )
+        case Struct(_, fields):
+            return with_names(
+                tuple(single(r, t) for r, (_, t) in zip(result, fields, strict=True)), type
+            )
+        case Array(element, length):
+            return [single(_element(result, i), element) for i in range(length)]
+        case _:
+            raise AssertionError(f"{type} is no result")
+
+
+def with_names(result: Any, type: Type) -> Any:
+    """A struct's values with its fields as attributes; anything else as it is."""
+    if not isinstance(type, Struct) or type.is_tuple:
+        return result
+    names = [name for name, _ in type.fields]
+    # A field called _x is no mistake in scene code, only in a namedtuple: added under its own name.
+    named = namedtuple(type.name, names, rename=True)  # type: ignore[misc]  # a name made here
+    for position, name in enumerate(names):
+        if name not in named._fields:
+            setattr(named, name, property(itemgetter(position)))
+    return named(*result)
+
+
+def empty(type: Type, dtype: np.dtype[Any]) -> Any:
+    """The result for no points at all."""
+    match type:
+        case Scalar(kind):
+            return np.empty(0, _dtype(kind, dtype))
+        case Vector(kind, size):
+            return np.empty((0, size), _dtype(kind, dtype))
+        case Matrix(size):
+            return np.empty((0, size, size), dtype)
+        case Array(element, length):
+            return _stacked([empty(element, dtype)] * length, 0)
+        case Struct(_, fields):
+            return tuple(empty(t, dtype) for _, t in fields)
+        case _:
+            raise AssertionError(f"{type} is no result")
+
+
+def _dtype(kind: Kind, dtype: np.dtype[Any]) -> np.dtype[Any]:
+    plain = {Kind.INT: np.int32, Kind.UINT: np.uint32, Kind.BOOL: np.bool_}
+    return dtype if kind is Kind.FLOAT else np.dtype(plain[kind])

@@ -1,0 +1,1 @@
+"""Checks of scenes: validation, warnings, measured bounds, and what one pixel saw."""

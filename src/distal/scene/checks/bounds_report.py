@@ -1,0 +1,106 @@
+"""What every shape of a tree promises, as numbers: its slope, its divisor, its box.
+
+What flows in: a tree. What flows out: one row for each node, computed in one call.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from distal.fields.guarantees import ended
+from distal.frontend import Assembly
+from distal.ir.build import compose, index, number, swizzle
+from distal.ir.build import field as field_of
+from distal.ir.nodes import Construct, Expr, Param, Read, Return
+from distal.ir.types import FLOAT, INT, VEC3, Array, Vector, tuple_type
+from distal.lang.composed import Composed
+from distal.lang.runtime_hook import executor
+from distal.scene.lowering.bounds import Promise, RememberedPromises
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body, Values
+
+
+@dataclass(frozen=True, slots=True)
+class Promised:
+    """What a shape promises at one time, for one set of parameters.
+
+    Attributes:
+        slope: Bound on |gradient|.
+        divisor: What marchers divide by.
+        low: Lower corner of its box; a flat shape's third number is 0.
+        high: Upper corner.
+    """
+
+    slope: float
+    divisor: float
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+    @property
+    def finite(self) -> bool:
+        """Whether the box ends on all sides."""
+        return all(map(np.isfinite, (*self.low, *self.high)))
+
+
+def survey(root: Node, params: Mapping[str, Any], time: float) -> dict[int, Promised]:
+    """What each node of a tree promises, by the id of the node."""
+    nodes = list(root.walk())
+    which = np.arange(len(nodes), dtype=np.int32)
+    asked = _Survey(root, nodes)
+    # Interpreted: machine code for the promises of a thousand shapes takes half a minute to make.
+    rows = executor().call(asked, (which,), {}, params=params, time=time, device="reference")
+    slopes, divisors, lows, highs = (np.asarray(part, np.float64) for part in rows)
+    return {
+        id(node): Promised(
+            ended(slopes[i]),
+            ended(divisors[i]),
+            tuple(map(ended, lows[i])),
+            tuple(map(ended, highs[i])),
+        )
+        for i, node in enumerate(nodes)
+    }
+
+
+class _Survey(Composed):
+    """The promise of the node of a number."""
+
+    def __init__(self, root: Node, nodes: Sequence[Node]) -> None:
+        self._root, self._nodes = root, nodes
+        self.name = f"promises of {root.name}"
+        self.signature = (("i", INT),)
+        self.result = tuple_type((FLOAT, FLOAT, VEC3, VEC3))
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function of the number."""
+        body = Body(taken={"i"})
+        values = Values(assembly)
+        promises = RememberedPromises(values)
+        promises.of(body, self._root, values.all(self._root))
+        rows = [_row(promises.found[id(node)]) for node in self._nodes]
+        which = Read("i", INT)
+        picked: list[Expr] = []
+        # One list for each column: a chain of a thousand ifs would be too deep for the passes.
+        for name, column in zip(
+            ("slope", "divisor", "low", "high"), zip(*rows, strict=True), strict=True
+        ):
+            whole = Construct(column, Array(column[0].type, len(column)))
+            picked.append(index(body.let(name, whole), which))
+        body.statements.append(Return(Construct(tuple(picked), self.result)))
+        params = (Param("i", INT),)
+        return assembly.define("promises", params, self.result, body.statements)
+
+
+def _row(promise: Promise) -> tuple[Expr, ...]:
+    corners = (field_of(promise.bounds, name) for name in ("low", "high"))
+    return (promise.slope, promise.divisor, *map(_in_space, corners))
+
+
+def _in_space(corner: Expr) -> Expr:
+    assert isinstance(corner.type, Vector)
+    if corner.type is VEC3:
+        return corner
+    return compose(VEC3, swizzle(corner, "x"), swizzle(corner, "y"), number(0.0))

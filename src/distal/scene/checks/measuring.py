@@ -1,0 +1,184 @@
+"""How steep a field really is, and whether it keeps within its box: measured at random points.
+
+What flows in: a shape, its box, a seed. What flows out: figures. A measurement finds mistakes; it
+proves nothing: what is steep in a place too small to be met stays unseen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.scene.checks.bounds_report import Promised
+from distal.scene.objects.field import Field
+
+Points: TypeAlias = NDArray[np.float64]
+
+POINTS: Final = 4096
+# Points around the steepest ones found, nearer in each round.
+SEARCHED: Final = 32
+AROUND: Final = 24
+ROUNDS: Final = 4
+# How far around its box a shape is looked at, in sizes of the box.
+MARGIN: Final = 0.5
+# Where a shape has no end it is looked at within this.
+REACH: Final = 4.0
+# A point is on the surface if its foot is, within this share of the box.
+FOOT: Final = 2e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Figures of a field, measured.
+
+    Attributes:
+        points: How many points were asked.
+        median: Of |gradient|.
+        most_of_99: What 99 % of |gradient| stay within.
+        steepest: The largest |gradient|.
+        steepest_at: Where.
+        largest_change: The largest |f(p) - f(q)| / |p - q|.
+        change_between: The p and q of it.
+        on_foot: Share of points p for which p - f * gradient lies on the surface: 1 where f is the
+            distance, but for points next to kinks.
+        outside_box: A point inside the shape and outside its box, or None.
+        undefined_at: A point where the value or the gradient is no number, or None.
+    """
+
+    points: int
+    median: float
+    most_of_99: float
+    steepest: float
+    steepest_at: tuple[float, ...]
+    largest_change: float
+    change_between: tuple[tuple[float, ...], tuple[float, ...]]
+    on_foot: float
+    outside_box: tuple[float, ...] | None
+    undefined_at: tuple[float, ...] | None
+
+    @property
+    def slope(self) -> float:
+        """The steepest that was found, either way."""
+        return max(self.steepest, self.largest_change)
+
+
+class _Asked:
+    """A shape for one time and one set of parameters, asked in 64 bits."""
+
+    def __init__(self, shape: Field, params: Mapping[str, Any], time: float) -> None:
+        self._shape, self._params, self._time = shape, params, time
+        self.dimensions = 2 if shape.flat else 3
+
+    def value(self, p: Points) -> Points:
+        return np.asarray(self._shape(p, params=self._params, time=self._time))
+
+    def gradient(self, p: Points) -> Points:
+        return np.asarray(self._shape.gradient(p, params=self._params, time=self._time))
+
+    def steepness(self, p: Points) -> Points:
+        return np.asarray(np.linalg.norm(self.gradient(p), axis=1))
+
+
+def measure(
+    shape: Field, promised: Promised, params: Mapping[str, Any], time: float, seed: int = 0
+) -> Measured:
+    """Measure a shape in and around its box."""
+    asked = _Asked(shape, params, time)
+    n = asked.dimensions
+    random = np.random.default_rng(seed)
+    low, high = _looked_at(promised, n)
+    size = float(np.max(high - low))
+    grown = MARGIN * np.maximum(high - low, 0.1 * size)
+    p = random.uniform(low - grown, high + grown, (POINTS, n))
+    values, slopes = asked.value(p), asked.gradient(p)
+    fine = np.isfinite(values) & np.isfinite(slopes).all(axis=1)
+    undefined = None if fine.all() else _point(p[~fine][0])
+    p, values, slopes = p[fine], values[fine], slopes[fine]
+    if not len(p):
+        nowhere = (0.0,) * n
+        pair = (nowhere, nowhere)
+        return Measured(0, 0.0, 0.0, 0.0, nowhere, 0.0, pair, 0.0, None, undefined)
+    # Half of all are drawn to the surface, where marchers ask most.
+    steep = np.linalg.norm(slopes, axis=1)
+    foot = p - values[:, None] * slopes / np.maximum(steep**2, 1e-12)[:, None]
+    near = foot[::2] + random.normal(0.0, 0.01 * size, foot[::2].shape)
+    near = near[(np.abs(near) < 10.0 * REACH + 10.0 * np.abs(high).max() + size).all(axis=1)]
+    asked_at = np.concatenate([p, near])
+    steepness = np.concatenate([steep, _finite(asked.steepness(near))])
+    at, steepest = _steepest(asked, asked_at, steepness, size, random)
+    pair, change = _largest_change(asked, np.concatenate([asked_at, at[None]]), size, random)
+    beyond = ((asked_at < low - 1e-3 * size) | (asked_at > high + 1e-3 * size)).any(axis=1)
+    outside = beyond & (np.concatenate([values, asked.value(near)]) < 0.0)
+    return Measured(
+        len(asked_at),
+        float(np.median(steepness)),
+        float(np.quantile(steepness, 0.99)),
+        steepest,
+        _point(at),
+        change,
+        pair,
+        _on_foot(asked, p, values, slopes, size),
+        _point(asked_at[outside][0]) if promised.finite and outside.any() else None,
+        undefined,
+    )
+
+
+def _looked_at(promised: Promised, n: int) -> tuple[Points, Points]:
+    low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
+    ends_below, ends_above = np.isfinite(low), np.isfinite(high)
+    cut = np.where(ends_below, low, np.minimum(np.where(ends_above, high, 0.0), 0.0) - REACH)
+    top = np.where(ends_above, high, np.maximum(np.where(ends_below, low, 0.0), 0.0) + REACH)
+    return cut, np.maximum(top, cut + 1e-6)
+
+
+def _steepest(
+    asked: _Asked, p: Points, steepness: Points, size: float, random: np.random.Generator
+) -> tuple[Points, float]:
+    """The steepest place near the steepest ones found: a search that draws closer each round."""
+    for round in range(ROUNDS):
+        best = p[np.argsort(steepness)[-SEARCHED:]]
+        reach = 0.1 * size * 0.2**round
+        around = random.normal(0.0, reach, (len(best), AROUND, p.shape[1]))
+        more = (best[:, None] + around).reshape(-1, p.shape[1])
+        p = np.concatenate([best, more])
+        steepness = _finite(asked.steepness(p))
+    at = int(np.argmax(steepness))
+    return p[at], float(steepness[at])
+
+
+def _largest_change(
+    asked: _Asked, p: Points, size: float, random: np.random.Generator
+) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], float]:
+    """The most that the value changes between two points, for what lies between them.
+
+    Half of the pairs lie along the gradient, where the value changes fastest.
+    """
+    away = random.normal(0.0, 1.0, p.shape)
+    along = _finite(asked.gradient(p))
+    away[::2] = np.where(np.linalg.norm(along[::2], axis=1)[:, None] > 0, along[::2], away[::2])
+    away /= np.maximum(np.linalg.norm(away, axis=1), 1e-12)[:, None]
+    # From a ten-thousandth of the box, where 64 bits still tell values apart, to a tenth.
+    reach = size * 10.0 ** random.uniform(-4.0, -1.0, (len(p), 1))
+    q = p + reach * away
+    apart = np.linalg.norm(q - p, axis=1)
+    change = _finite(np.abs(asked.value(q) - asked.value(p)) / apart)
+    at = int(np.argmax(change))
+    return (_point(p[at]), _point(q[at])), float(change[at])
+
+
+def _on_foot(asked: _Asked, p: Points, values: Points, slopes: Points, size: float) -> float:
+    foot = p - values[:, None] * slopes
+    off = np.abs(asked.value(foot))
+    return float(np.mean(off <= FOOT * size))
+
+
+def _finite(values: Points) -> Points:
+    return np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _point(p: Points) -> tuple[float, ...]:
+    return tuple(float(c) for c in p)

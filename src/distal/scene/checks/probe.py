@@ -1,0 +1,217 @@
+"""What one pixel of a scene's picture saw: its ray, the march, the shape and the material it met.
+
+What flows in: a scene and a pixel. What flows out: a ``Probed``, in plain values and with the
+tree's own nodes. One small program over the scene's functions, with the march of the picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from distal.frontend import Assembly
+from distal.ir.build import compare, number, select
+from distal.ir.nodes import CompareOp, Expr, Param, Read, Return
+from distal.ir.types import VEC2
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.runtime_hook import executor
+from distal.render.look_along import Seen, look_along
+from distal.scene.checks.validation import claims_told, place_json
+from distal.scene.lowering.attributes import Material, Part, Site
+from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.shapes import Composer
+from distal.scene.scene import Scene
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body
+
+# A material's numbers, as ``render.material.Surface`` has them.
+_NUMBERS = ("diffuse", "specular", "transmission", "ior", "roughness", "metal", "fresnel")
+_COLORS = ("color", "emission", "absorption")
+
+
+@dataclass(frozen=True, slots=True)
+class Probed:
+    """What a pixel saw.
+
+    Attributes:
+        pixel: Column and row, from the upper left.
+        size: Of the picture, in pixels.
+        seen: The numbers of ``render.look_along.Seen``.
+        ended: How the march ended: "hit", "left the box", "left the scene", "passed the box" or
+            "ran out of steps".
+        path: The shape that was met, and what it is part of, from the whole inwards; empty where
+            nothing was met.
+        material: What paints it, or None.
+        slope: What the whole promises.
+    """
+
+    pixel: tuple[int, int]
+    size: tuple[int, int]
+    seen: Any
+    ended: str
+    path: tuple[Node, ...]
+    material: Any
+    slope: float
+
+    @property
+    def hit(self) -> bool:
+        """Whether a surface was met."""
+        return bool(self.seen.found)
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values: the schema of ``docs/guide/checking.md``."""
+        seen = self.seen
+        made: dict[str, Any] = {
+            "version": 1,
+            "pixel": list(self.pixel),
+            "size": list(self.size),
+            "ray": {"origin": _plain(seen.origin), "direction": _plain(seen.direction)},
+            "steps": int(seen.steps),
+            "hit": self.hit,
+            "ended": self.ended,
+            "shape": None,
+            "material": None,
+        }
+        if self.hit:
+            made |= {
+                "distance": float(seen.t),
+                "inside": bool(seen.side < 0.0),
+                "point": _plain(seen.p),
+                "value": float(seen.value),
+                "normal": _plain(seen.normal),
+                "gradient": float(seen.steepness),
+                "slope": self.slope,
+                "shape": _shape_json(self.path),
+                "material": _material_json(self.material, seen.surface),
+            }
+        return made
+
+
+def probe(
+    scene: Scene,
+    pixel: tuple[int, int],
+    size: tuple[int, int] = (640, 480),
+    params: Mapping[str, Any] | None = None,
+    time: float = 0.0,
+) -> Probed:
+    """What a pixel saw.
+
+    Args:
+        scene: The scene.
+        pixel: Column and row from 0; rows count from the top, as in a picture's array.
+        size: Width and height of the picture in pixels.
+        params: Values of parameters by name; the others have their defaults.
+        time: Seconds.
+
+    Raises:
+        ValueError: The picture has no such pixel.
+    """
+    (x, y), (width, height) = pixel, size
+    if not (0 <= x < width and 0 <= y < height):
+        raise ValueError(f"a picture of {width}x{height} has no pixel {x},{y}")
+    program = _Program(scene)
+    place = (x + 0.5, height - y - 0.5)
+    resolution = (float(width), float(height))
+    seen = executor().call(program, (place, resolution), {}, params=params, time=time)
+    slope = float(executor().call(scene.shape._promised, (), {}, params=params, time=time)[0])
+    path: tuple[Node, ...] = ()
+    material = None
+    if seen.found:
+        path = _path(scene.shape.node, program.parts[round(seen.part)])
+        material = program.paints[round(seen.paint)]
+    return Probed(pixel, size, seen, _ended(scene, seen), path, material, slope)
+
+
+def _ended(scene: Scene, seen: Any) -> str:
+    if seen.found:
+        return "hit"
+    if seen.span.x > seen.span.y or seen.span.y < 0.0:
+        return "passed the box"
+    if seen.steps >= scene.steps:
+        return "ran out of steps"
+    return "left the box" if seen.span.y < 1e9 else "left the scene"
+
+
+def _path(root: Node, leaf: Node) -> tuple[Node, ...]:
+    """The way down from the whole to a part; the first of several."""
+    above: dict[int, Node] = {}
+    for node in root.walk():
+        for child in node.children:
+            above.setdefault(id(child), node)
+    found = [leaf]
+    while found[-1] is not root:
+        found.append(above[id(found[-1])])
+    return tuple(reversed(found))
+
+
+class _Program(Composed):
+    """What a place in a picture sees; once composed it has the shapes and materials by number."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self.name = f"probe of {scene.name}"
+        self.signature = (("coord", VEC2), ("resolution", VEC2))
+        self.parts: Sequence[Node] = ()
+        self.paints: Sequence[Any] = ()
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function that gives a ``Seen``."""
+        body = Body(taken={"coord", "resolution"})
+        made = Picturing(assembly, self._scene)
+        resolution = Read("resolution", VEC2)
+        given = made.given(body, resolution)
+        given |= {"coord": Read("coord", VEC2), "resolution": resolution}
+        part, paint = Part(made.composer), _Paint(made.composer, self._scene.material)
+        given["part"] = made.known_of_place("part", part)
+        given["paint"] = made.known_of_place("paint", paint)
+        self.parts, self.paints = part.nodes, paint.materials
+        self.result = assembly.struct(Seen)
+        body.statements.append(Return(made.composer.call(look_along, given)))
+        params = tuple(Param(name, type) for name, type in self.signature)
+        return assembly.define("probe", params, self.result, body.statements)
+
+    def functions(self) -> Iterable[Func]:
+        """The functions that the scene is made of."""
+        return self._scene.functions()
+
+
+class _Paint(Material):
+    """Which material a place shows, as a number; of a blend, the one that shows more."""
+
+    def __init__(self, composer: Composer, default: Any) -> None:
+        super().__init__(composer, default)
+        self.materials: list[Any] = []
+
+    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """The one of which more shows."""
+        return select(compare(CompareOp.GT, share, number(0.5)), b, a)
+
+    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+        self.materials.append(material)
+        return number(float(len(self.materials) - 1))
+
+
+# Plain values
+
+
+def _plain(value: Iterable[float]) -> list[float]:
+    return [float(c) for c in value]
+
+
+def _shape_json(path: Sequence[Node]) -> dict[str, Any]:
+    leaf = path[-1]
+    return {
+        "name": leaf.name,
+        "kind": leaf.rule.name,
+        "claims": claims_told(leaf),
+        "path": [node.name for node in path],
+        "place": place_json(leaf.place),
+    }
+
+
+def _material_json(material: Any, surface: Any) -> dict[str, Any]:
+    made: dict[str, Any] = {"name": material.call.what, "place": place_json(material.call.place)}
+    made |= {name: _plain(getattr(surface, name)) for name in _COLORS}
+    return made | {name: float(getattr(surface, name)) for name in _NUMBERS}

@@ -1,0 +1,384 @@
+"""What a tree of shapes claims, where its slope comes from, and whether measurements agree.
+
+What flows in: a shape. What flows out: a ``Checkup``: a row for each shape, findings, each with its
+place in the author's file, and the same as plain values for editors (``Checkup.as_json``).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, Final
+
+from distal.diagnostics import Diagnostic, Span
+from distal.fields.boxes import given_slope
+from distal.fields.guarantees import EXACT, Claim, Operator, Primitive
+from distal.scene.checks.bounds_report import Promised, survey
+from distal.scene.checks.measuring import Measured, measure
+from distal.scene.objects.field import Field
+from distal.scene.tree.node import Node
+
+# Measuring a shape may compile its function; beyond so many only those that matter most are.
+MOST_MEASURED: Final = 24
+# Promises are computed in 32 bits, and 64 bits do not tell nearer values of a kink apart.
+ROUNDING: Final = 1e-4
+# A share of points next to kinks has its foot elsewhere, though the distance is exact.
+ON_FOOT: Final = 0.98
+_UNBOUNDED_BLENDS: Final = ("exponential", "root", "sigmoid")
+
+
+class Severity(Enum):
+    """How grave a finding is: an error is a claim that does not hold."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing to know of a shape.
+
+    Attributes:
+        code: What kind of finding, for editors: "slope-exceeded", "outside-box" …
+        shape: The number of the shape in ``Checkup.shapes``.
+    """
+
+    severity: Severity
+    code: str
+    shape: int
+    told: Diagnostic
+
+    def __str__(self) -> str:
+        return self.told.told(self.severity.value)
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeRow:
+    """One shape of a tree; a shape that stands in several places has one row.
+
+    Attributes:
+        children: Numbers of the shapes that it is made of.
+        raised: The slope of its steepest child, where its own is larger; else None.
+        measured: Figures, where it was measured.
+    """
+
+    node: Node
+    children: tuple[int, ...]
+    promised: Promised
+    raised: float | None
+    measured: Measured | None
+
+
+@dataclass(frozen=True, slots=True)
+class Checkup:
+    """What is known of a tree; the first shape is the whole.
+
+    Attributes:
+        slope_from: Numbers of the shapes that raise the slope of the whole, the first one last.
+    """
+
+    shapes: tuple[ShapeRow, ...]
+    slope_from: tuple[int, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether no claim was found violated."""
+        return not any(f.severity is Severity.ERROR for f in self.findings)
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values: the schema of ``docs/guide/checking.md``."""
+        return {
+            "version": 1,
+            "holds": self.holds,
+            "slope_from": list(self.slope_from),
+            "shapes": [_shape_json(i, row) for i, row in enumerate(self.shapes)],
+            "findings": [
+                {
+                    "severity": f.severity.value,
+                    "code": f.code,
+                    "shape": f.shape,
+                    "message": f.told.message,
+                    "hint": f.told.hint,
+                    "place": place_json(f.told.span),
+                }
+                for f in self.findings
+            ],
+        }
+
+
+def check(
+    shape: Field, params: Mapping[str, Any] | None = None, time: float = 0.0, seed: int = 0
+) -> Checkup:
+    """Look a shape and all its parts over.
+
+    Args:
+        shape: The whole.
+        params: Values of parameters by name; the others have their defaults.
+        time: Seconds.
+        seed: What the random points start from.
+    """
+    given = dict(params or {})
+    nodes = list(shape.node.walk())
+    numbers = {id(node): i for i, node in enumerate(nodes)}
+    promised = survey(shape.node, given, time)
+    chosen = {id(n) for n in _worth_measuring(nodes, promised)}
+    rows = []
+    for node in nodes:
+        own = promised[id(node)]
+        measured = None
+        if id(node) in chosen:
+            measured = measure(Field._of(node), own, given, time, seed)
+        children = tuple(numbers[id(c)] for c in node.children)
+        rows.append(ShapeRow(node, children, own, _raised(node, promised), measured))
+    found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
+    order = {severity: i for i, severity in enumerate(Severity)}
+    found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
+    return Checkup(tuple(rows), _slope_from(rows), tuple(found))
+
+
+def _at_their_roots(found: Sequence[Finding], rows: Sequence[ShapeRow]) -> list[Finding]:
+    """Without the errors of shapes that only pass on what is wrong with a part of theirs."""
+    wrong = {(f.code, id(rows[f.shape].node)) for f in found if f.severity is Severity.ERROR}
+
+    def is_passed_on(f: Finding) -> bool:
+        below = list(rows[f.shape].node.walk())[1:]
+        return f.severity is Severity.ERROR and any((f.code, id(n)) in wrong for n in below)
+
+    return [f for f in found if not is_passed_on(f)]
+
+
+def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, Promised]) -> list[Node]:
+    """All shapes of a small tree; of a large one the whole, own functions, and what is steep."""
+    if len(nodes) <= MOST_MEASURED:
+        return list(nodes)
+
+    def rank(node: Node) -> int:
+        if node is nodes[0]:
+            return 0
+        if is_own(node):
+            return 1
+        raises = _raised(node, promised) is not None
+        return 2 if raises else 3 if node.label else 4
+
+    worth = [n for n in sorted(nodes, key=rank) if rank(n) < 4]
+    return worth[:MOST_MEASURED]
+
+
+def is_own(node: Node) -> bool:
+    """Whether a shape is an author's own function."""
+    return isinstance(node.rule, Primitive) and node.rule.slope is given_slope
+
+
+def _raised(node: Node, promised: Mapping[int, Promised]) -> float | None:
+    before = max((promised[id(c)].slope for c in node.children), default=1.0)
+    return before if promised[id(node)].slope > before * (1.0 + ROUNDING) else None
+
+
+def _slope_from(rows: Sequence[ShapeRow]) -> tuple[int, ...]:
+    """From the whole down along the steepest child: the shapes that make it steeper."""
+    at, found = 0, []
+    while True:
+        row = rows[at]
+        if row.raised is not None:
+            found.append(at)
+        if not row.children:
+            return tuple(found)
+        at = max(row.children, key=lambda c: rows[c].promised.slope)
+
+
+# Findings
+
+
+def _findings(i: int, row: ShapeRow, rows: Sequence[ShapeRow]) -> Iterator[Finding]:
+    def finding(severity: Severity, code: str, message: str, hint: str | None = None) -> Finding:
+        return Finding(severity, code, i, Diagnostic(message, row.node.place, hint))
+
+    if row.measured is not None:
+        yield from _violations(row, row.measured, finding)
+    if row.raised is not None:
+        message = (
+            f"{described(row.node)} raises the slope from {row.raised:.3g} "
+            f"to {row.promised.slope:.3g}"
+        )
+        if is_own(row.node) or isinstance(row.node.rule, Primitive):
+            message = f"{described(row.node)} has the slope {row.promised.slope:.3g}"
+        yield finding(Severity.NOTE, "slope-raised", message)
+    inner = [rows[c] for c in row.children]
+    if not row.promised.finite and all(r.promised.finite for r in inner):
+        yield _endless(row, finding)
+    if isinstance(row.node.rule, Operator):
+        yield from _of_operator(row, [r.node for r in inner], finding)
+
+
+def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[Finding]:
+    name, own = row.node.name, is_own(row.node)
+    severity = Severity.WARNING if row.node.estimate else Severity.ERROR
+    if measured.undefined_at is not None:
+        message = f"'{name}' is not a number at {shown_point(measured.undefined_at)}"
+        yield finding(
+            Severity.ERROR, "undefined", message, "look for a division by 0, a root below 0"
+        )
+    if measured.slope > row.promised.slope * (1.0 + ROUNDING) + ROUNDING:
+        message = f"'{name}' promises the slope {row.promised.slope:.4g}, but rises by "
+        if measured.steepest >= measured.largest_change:
+            message += f"{measured.steepest:.4g} per unit at {shown_point(measured.steepest_at)}"
+        else:
+            p, q = map(shown_point, measured.change_between)
+            message += f"{measured.largest_change:.4g} per unit from {p} to {q}"
+        hint = f"slope={_rounded_up(measured.slope)}" if own else None
+        yield finding(severity, "slope-exceeded", message, hint)
+    if measured.outside_box is not None:
+        message = f"'{name}' reaches outside its box, to {shown_point(measured.outside_box)}"
+        hint = "bounds=(low, high) hold all of it" if own else None
+        yield finding(Severity.ERROR, "outside-box", message, hint)
+    if row.node.claims >= EXACT and measured.on_foot < ON_FOOT:
+        share = f"{100.0 * (1.0 - measured.on_foot):.0f} %"
+        message = f"'{name}' claims to be the distance, but {share} of its values are not"
+        yield finding(Severity.ERROR, "not-exact", message, "exact=False" if own else None)
+
+
+def _endless(row: ShapeRow, finding: Any) -> Finding:
+    unknown = _without_growth(row.node)
+    if unknown is not None:
+        message = (
+            f"{described(row.node)} has no box: how fast '{unknown.name}' rises outside its "
+            "bounds is not known"
+        )
+        hint = f"growth=1 for '{unknown.name}' if it is at least the distance to its bounds"
+        grown: Finding = finding(Severity.WARNING, "no-growth", message, hint)
+        return grown
+    message = f"{described(row.node)} has no end: no box keeps rays from looking for it"
+    if is_own(row.node):
+        hint = "bounds=((x, y, z), (x, y, z)) say where it ends"
+        found: Finding = finding(Severity.WARNING, "no-box", message, hint)
+    else:
+        found = finding(Severity.NOTE, "no-box", message)
+    return found
+
+
+def _without_growth(node: Node) -> Node | None:
+    """The author's function because of which an operator that moves the surface out has no box."""
+    rule = node.rule
+    if not isinstance(rule, Operator) or rule.bounds is None:
+        return None
+    asked = rule.bounds.python_function.__annotations__
+    if not any(name.startswith("side_growth") for name in asked):
+        return None
+    for part in node.walk():
+        silent = isinstance(part.rule, Primitive) and part.rule.growth is None
+        if silent and is_own(part) and Claim.EXACT_OUTSIDE not in part.claims:
+            return part
+    return None
+
+
+def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator[Finding]:
+    rule = row.node.rule
+    if rule.name.split()[-1] in _UNBOUNDED_BLENDS and len(inner) > 1:
+        message = f"{rule.name} changes shapes everywhere, not only where they meet"
+        yield finding(
+            Severity.WARNING, "blend-everywhere", message, "blend='cubic' keeps far parts"
+        )
+    lost = [c for c in Claim if c not in row.node.claims and all(c in n.claims for n in inner)]
+    # Where the slope is 1 the value never exceeds the distance, whoever claims it.
+    lost = [c for c in lost if c is not Claim.LOWER_BOUND or row.promised.slope > 1.0 + ROUNDING]
+    if lost:
+        words = {Claim.LOWER_BOUND: "a lower bound"}
+        told = ", ".join(words.get(c, c.value) for c in lost)
+        message = f"{described(row.node)} is no longer {told}"
+        yield finding(Severity.NOTE, "claim-lost", message)
+
+
+# Words
+
+
+def described(node: Node) -> str:
+    """A shape as its author made it: "twist(rate=3)"."""
+    told = []
+    promises = ("slope", "low", "high") if is_own(node) else ()
+    for name, value in node.numbers.items():
+        plain = value.plain
+        if name not in promises and plain is not None:
+            told.append(f"{name}={_shown(plain)}")
+    told += [f"{n}={v}" for n, v in node.constants.items() if isinstance(v, bool | int)]
+    own = f"{node.rule.name}({', '.join(told)})" if told else node.rule.name
+    return f"'{node.label}' ({own})" if node.label else own
+
+
+def _shown(plain: float | tuple[float, ...]) -> str:
+    return shown_point(plain) if isinstance(plain, tuple) else f"{plain:.4g}"
+
+
+def shown_point(p: Sequence[float]) -> str:
+    """A point as people write it."""
+    return f"({', '.join(f'{c:.4g}' for c in p)})"
+
+
+def _rounded_up(slope: float) -> str:
+    """A little more than a measured slope, with two digits."""
+    digits = max(1 - math.floor(math.log10(slope)), 0)
+    return f"{math.ceil(1.03 * slope * 10**digits) / 10**digits:.{digits}f}"
+
+
+# Plain values
+
+
+def place_json(span: Span | None) -> dict[str, Any] | None:
+    """A place with lines and columns from 1, as editors count."""
+    if span is None:
+        return None
+    return {
+        "file": span.file,
+        "line": span.line,
+        "column": span.col + 1,
+        "end_line": span.end_line or span.line,
+        "end_column": span.end_col + 1,
+    }
+
+
+def _shape_json(i: int, row: ShapeRow) -> dict[str, Any]:
+    node, promised = row.node, row.promised
+    n = 2 if node.flat else 3
+    return {
+        "id": i,
+        "name": node.name,
+        "kind": node.rule.name,
+        "own_function": is_own(node),
+        "flat": node.flat,
+        "children": list(row.children),
+        "place": place_json(node.place),
+        "claims": claims_told(node),
+        "slope": _plain(promised.slope),
+        "slope_before": None if row.raised is None else _plain(row.raised),
+        "estimate": node.estimate,
+        "bounds": {
+            "low": [_plain(c) for c in promised.low[:n]],
+            "high": [_plain(c) for c in promised.high[:n]],
+        },
+        "measured": None if row.measured is None else _measured_json(row.measured),
+    }
+
+
+def claims_told(node: Node) -> list[str]:
+    """A shape's claims in words, in a settled order."""
+    return [c.value for c in Claim if c in node.claims]
+
+
+def _measured_json(measured: Measured) -> dict[str, Any]:
+    return {
+        "points": measured.points,
+        "gradient_median": _plain(measured.median),
+        "gradient_99": _plain(measured.most_of_99),
+        "gradient_max": _plain(measured.steepest),
+        "gradient_max_at": [_plain(c) for c in measured.steepest_at],
+        "change_max": _plain(measured.largest_change),
+        "change_max_between": [[_plain(c) for c in p] for p in measured.change_between],
+    }
+
+
+def _plain(value: float) -> float | None:
+    """Six digits, which is what is meant; None for infinity, which JSON lacks."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None

@@ -1,0 +1,189 @@
+"""Doubts about a scene that is drawn: own functions that break their word, pictures that are black.
+
+What flows in: a scene, the values of its parameters, the picture. What flows out: a warning at the
+author's line, or an error where nothing can be seen. A few hundred places are asked: enough for
+the mistakes that spoil a picture. ``checkup`` looks more closely, when it is asked to.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Any, Final
+from weakref import WeakSet
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import Span
+from distal.fields.boxes import given_slope
+from distal.fields.guarantees import ENDLESS, Primitive
+from distal.frontend import Assembly
+from distal.ir.build import field as field_of
+from distal.ir.build import number
+from distal.ir.nodes import Call, Return
+from distal.ir.types import FLOAT, VEC2
+from distal.lang.composed import Composed
+from distal.lang.runtime_hook import executor
+from distal.scene.checks.bounds_report import survey
+from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.shapes import ZERO_CELL
+from distal.scene.lowering.slope_limit import may_be_endless, refuse_steepness
+from distal.scene.objects.field import Field
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node
+
+Points = NDArray[np.float64]
+
+PLACES: Final = 512
+# Where a function says nothing of its box it is looked at within this.
+REACH: Final = 2.0
+# Differences are taken over this share of the box.
+STEP: Final = 1e-4
+# A slope written with two digits is meant well.
+SLACK: Final = 1.05
+
+_looked_at: WeakSet[Node] = WeakSet()
+
+
+def doubt_functions(shape: Field, params: Mapping[str, Any], time: float) -> None:
+    """Look once at every function of the author's in a shape.
+
+    Raises:
+        SceneValueError: One gives no number anywhere.
+    """
+    for node in shape.node.walk():
+        own = isinstance(node.rule, Primitive) and node.rule.slope is given_slope
+        if own and node not in _looked_at:
+            _look(node, params, time)
+            _looked_at.add(node)
+
+
+def check_slopes(shape: Field, params: Mapping[str, Any], time: float) -> None:
+    """Refuse a shape in which parameters or the time take an operator's bound on its slope.
+
+    Where nothing moves, the operator was looked at when it was made.
+
+    Raises:
+        SceneValueError: At the innermost such operator.
+    """
+    risky = [n for n in shape.node.walk() if may_be_endless(n) and _moves(n)]
+    if not risky:
+        return
+    promised = survey(shape.node, _read(shape, params), time)
+    # Parents come first: the last one is the innermost.
+    for node in reversed(risky):
+        if not promised[id(node)].slope < ENDLESS:
+            boxes = [promised[id(child)] for child in node.children]
+            refuse_steepness(node, [(box.low, box.high) for box in boxes])
+
+
+def _moves(node: Node) -> bool:
+    """Whether a number in a tree follows parameters or the time."""
+    return any(n.plain is None for part in node.walk() for n in part.numbers.values())
+
+
+def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
+    shape: Field = Field._of(node)
+    known = _read(shape, params)
+
+    def value(p: Points) -> Points:
+        found = executor().call(shape, (p,), {}, params=known, time=time, device="reference")
+        return np.asarray(found, np.float64)
+
+    low, high = _box(node)
+    p = np.random.default_rng(0).uniform(low, high, (PLACES, len(low)))
+    values = value(p)
+    if not np.isfinite(values).any():
+        hint = f"look at its values: Shape.from_function({node.name}, …)(points)"
+        refuse(f"'{node.name}' gives no number at any of {PLACES} places", hint, node.place)
+    if not np.isfinite(values).all():
+        at = _shown(p[~np.isfinite(values)][0])
+        _warn(f"'{node.name}' gives no number at {at}; rays that come there see nothing", node)
+    _look_at_slope(node, value, p, values, float(np.max(high - low)))
+
+
+def _read(obj: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the parameters' values, by name or label, that an object reads."""
+    asked = {key for p in executor().parameters(obj) for key in (p.name, p.label)}
+    return {name: value for name, value in params.items() if name in asked}
+
+
+def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float) -> None:
+    claimed = node.numbers["slope"].plain
+    if not isinstance(claimed, float):  # it may follow parameters: the checkup computes it
+        return
+    h = STEP * size
+    # Along the direction in which the value changes fastest, the change is at most the slope.
+    way = np.stack([value(p + h * axis) - here for axis in np.eye(p.shape[1])], axis=1)
+    way = np.nan_to_num(way, posinf=0.0, neginf=0.0)
+    way /= np.maximum(np.linalg.norm(way, axis=1), 1e-30)[:, None]
+    change = np.nan_to_num(np.abs(value(p + h * way) - here) / h, posinf=0.0)
+    at = int(np.argmax(change))
+    if change[at] > SLACK * claimed:
+        found = f"'{node.name}' changes by {change[at]:.3g} for a unit of way near {_shown(p[at])}"
+        mend = f"rays may pass through it; give slope={1.05 * change[at]:.2g} or more"
+        _warn(f"{found}, and its slope promises {claimed:g} at most: {mend}", node)
+
+
+def _box(node: Node) -> tuple[Points, Points]:
+    n = 2 if node.flat else 3
+    corners = [node.numbers[c].plain if c in node.numbers else None for c in ("low", "high")]
+    if corners[0] is None or corners[1] is None:
+        return np.full(n, -REACH), np.full(n, REACH)
+    return np.array(corners[0], np.float64), np.array(corners[1], np.float64)
+
+
+def doubt_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
+    """Say what a picture without any light may come from.
+
+    Raises:
+        SceneValueError: The camera is inside a solid.
+    """
+    if picture.linear is None or shows(picture.linear[..., :3]):
+        return
+    eye = _Eye(scene)
+    shut = scene.renderer != "refracted"  # through glass a camera may look out
+    if shut and executor().call(eye, (), {}, params=_read(eye, params), time=time) < 0.0:
+        refuse(
+            f"the camera is inside '{scene.shape.name}', and all around it is dark",
+            "move the camera, or look at the shape with view='slice'",
+            scene.place,
+        )
+    _warn("the picture is black: no light comes from what the camera sees", scene)
+
+
+def shows(values: NDArray[np.float32]) -> bool:
+    """Whether anything in a picture is above or below 0; most show it in a few pixels."""
+    return bool(values[::16, ::16].any() or values.any())
+
+
+class _Eye(Composed):
+    """The distance of a scene's shape at its camera, as a function of nothing."""
+
+    name, signature, result = "eye", (), FLOAT
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+
+    def compose(self, assembly: Assembly) -> str:
+        """The distance where the ray in the middle of the picture begins."""
+        made = Picturing(assembly, self._scene)
+        node = self._scene.shape.node
+        field = made.composer.field(node, made.composer.values.all(node), ZERO_CELL)
+        site = {"uv": number(0.0, VEC2), "resolution": number(1.0, VEC2)}
+        origin = field_of(self._scene.camera.emit(made.composer, site), "origin")
+        value = Call(field.name, (origin, *field.captures), FLOAT)
+        return assembly.define("eye", (), FLOAT, (Return(value),), self._scene.place)
+
+
+def _warn(message: str, of: Any) -> None:
+    place: Span | None = of.place
+    if place is None:
+        warnings.warn(message, stacklevel=2)
+    else:
+        warnings.warn_explicit(message, UserWarning, place.file, place.line)
+
+
+def _shown(p: Points) -> str:
+    return f"({', '.join(f'{c:.3g}' for c in p)})"

@@ -1,0 +1,1 @@
+"""Lowering: trees of shapes, and scenes, to functions of the IR."""

@@ -1,0 +1,222 @@
+"""What is known of a place beside its distance: its material, and which part it belongs to.
+
+What flows in: nodes, and a kind of attribute: what a leaf gives, how two are joined. What flows
+out: an expression. Each is computed once for each hit, so nothing is shared between subtrees.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any
+
+from distal.fields.guarantees import Operator, Primitive
+from distal.ir.build import builtin, compare, number, select
+from distal.ir.nodes import CompareOp, Expr, Gradient
+from distal.render.material import mix_surfaces
+from distal.scene.lowering.shapes import Composer
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body
+
+
+class Attribute(ABC):
+    """A kind of attribute."""
+
+    def __init__(self, composer: Composer) -> None:
+        self.composer = composer
+
+    @abstractmethod
+    def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """What the subtree gives as a whole, or None to look into it."""
+
+    @abstractmethod
+    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """Two joined, where a blend shows ``share`` (0 to 1) of b."""
+
+    @abstractmethod
+    def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """What a face shows that the subtree cut; None: what is cut shows itself."""
+
+
+class Site:
+    """Where an attribute is asked."""
+
+    def __init__(self, p: Expr, cell: Expr, values: Sequence[Expr]) -> None:
+        self.p = p
+        self.cell = cell
+        self.values = values
+
+
+def attribute(body: Body, kind: Attribute, node: Node, site: Site) -> Expr:
+    """The attribute of the place of a subtree that is nearest to a point."""
+    return _visit(body, kind, node, site, measured=False)[1]
+
+
+def _visit(
+    body: Body, kind: Attribute, node: Node, site: Site, *, measured: bool
+) -> tuple[Expr | None, Expr]:
+    """A subtree's attribute, and its distance where that is wanted."""
+    composer = kind.composer
+    whole = kind.leaf(body, node, site)
+    if whole is not None:
+        d = composer.distance(body, node, site.p, site.cell, site.values) if measured else None
+        return d, whole
+    rule = node.rule
+    assert isinstance(rule, Operator)
+    given, shares = composer.given(body, node, site.p, site.cell, site.values)
+    if rule.around is not None:
+        return _around(body, kind, node, site, given, measured=measured)
+    p, cell = composer.moved(body, rule, given)
+    sites = [Site(p, cell, share) for share in shares]
+    joins = rule.combine is not None and len(sites) > 1
+    first = node.children[0]
+    d, result = _visit(body, kind, first, sites[0], measured=measured or joins)
+    if joins:
+        assert d is not None
+        d, result = _joined(body, kind, node, sites, given, (d, result))
+    if measured and rule.finish is not None:
+        assert d is not None
+        d = body.let("d", composer.call(rule.finish, {**given, "d": d}))
+    return d, result
+
+
+def _around(
+    body: Body,
+    kind: Attribute,
+    node: Node,
+    site: Site,
+    given: dict[str, Expr],
+    *,
+    measured: bool,
+) -> tuple[Expr | None, Expr]:
+    composer, rule, child = kind.composer, node.rule, node.children[0]
+    assert isinstance(rule, Operator) and rule.around is not None
+    _, (values,) = composer.values.split(node, site.values)
+    given["field"] = composer.field(child, values, site.cell)
+    p, cell = site.p, site.cell
+    if rule.site is not None:
+        p, cell = composer.site(body, composer.call(rule.site, given), site.cell)
+    _, result = _visit(body, kind, child, Site(p, cell, values), measured=False)
+    return body.let("d", composer.call(rule.around, given)) if measured else None, result
+
+
+def _joined(
+    body: Body,
+    kind: Attribute,
+    node: Node,
+    sites: Sequence[Site],
+    given: dict[str, Expr],
+    first: tuple[Expr, Expr],
+) -> tuple[Expr, Expr]:
+    rule, composer = node.rule, kind.composer
+    assert isinstance(rule, Operator) and rule.combine is not None
+    cuts = rule.name.startswith("difference")
+    a, result = first
+    for child, site in zip(node.children[1:], sites[1:], strict=True):
+        if cuts:
+            b = composer.distance(body, child, site.p, site.cell, site.values)
+            other = kind.cutter(body, child, site)
+        else:
+            found, other = _visit(body, kind, child, site, measured=True)
+            assert found is not None
+            b = found
+        pair = {**given, "a": a, "b": b}
+        if other is not None and other is not result:
+            share = composer.call(rule.mix, pair) if rule.mix is not None else _nearer(a, b)
+            result = body.let("shown", kind.blended(result, other, body.let("share", share)))
+        a = body.let("d", composer.call(rule.combine, pair))
+    return a, result
+
+
+def _nearer(a: Expr, b: Expr) -> Expr:
+    return select(compare(CompareOp.LT, b, a), number(1.0), number(0.0))
+
+
+def _more_shown(a: Expr, b: Expr, share: Expr) -> Expr:
+    return select(compare(CompareOp.GT, share, number(0.5)), b, a)
+
+
+def paints(node: Node) -> bool:
+    """Whether anything in a subtree is painted."""
+    return any(n.material is not None or n.cut_material is not None for n in node.walk())
+
+
+class Material(Attribute):
+    """What a place looks like: a ``Surface``."""
+
+    def __init__(self, composer: Composer, default: Any) -> None:
+        super().__init__(composer)
+        self._default = default
+        self._painted: dict[int, bool] = {}
+
+    def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The paint of a subtree; the default where nothing in it is painted."""
+        material = node.material
+        if material is None and (isinstance(node.rule, Primitive) or not self._paints(node)):
+            material = self._default
+        return None if material is None else self._shown(body, material, node, site)
+
+    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """Every number of both mixed."""
+        return self.composer.call(mix_surfaces, {"a": a, "b": b, "t": share})
+
+    def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The cutter's ``cut_material``."""
+        material = node.cut_material
+        return None if material is None else self._shown(body, material, node, site)
+
+    def _paints(self, node: Node) -> bool:
+        found = self._painted.get(id(node))
+        if found is None:
+            found = self._painted[id(node)] = paints(node)
+        return found
+
+    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+        given = {"p": site.p, "cell": site.cell}
+        if "n" in material.uses:
+            field = self.composer.field(node, site.values, site.cell)
+            slope = Gradient(field, site.p, False, site.p.type)
+            given["n"] = body.let("n", builtin("normalize", slope))
+        surface: Expr = material.emit(self.composer, given)
+        return body.let("shown", surface)
+
+
+class MaterialNumber(Material):
+    """Which material a place shows, as a number from 1 on, in the order of the author's tree."""
+
+    def __init__(self, composer: Composer, default: Any) -> None:
+        super().__init__(composer, default)
+        self.materials: list[Any] = []
+
+    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """The one of which more shows."""
+        return _more_shown(a, b, share)
+
+    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+        if not any(known is material for known in self.materials):
+            self.materials.append(material)
+        found = next(i for i, known in enumerate(self.materials, 1) if known is material)
+        return number(float(found))
+
+
+class Part(Attribute):
+    """Which leaf of the tree a place belongs to, as a number."""
+
+    def __init__(self, composer: Composer) -> None:
+        super().__init__(composer)
+        self.nodes: list[Node] = []
+
+    def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The next number for a library shape."""
+        if not isinstance(node.rule, Primitive):
+            return None
+        self.nodes.append(node)
+        return number(float(len(self.nodes) - 1))
+
+    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
+        """The one of which more shows."""
+        return _more_shown(a, b, share)
+
+    def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+        """The cutter's own part: it made the face."""
+        return attribute(body, self, node, site)

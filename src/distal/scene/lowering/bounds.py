@@ -1,0 +1,236 @@
+"""What a tree promises: a bound on its slope, a safe divisor for marching, a box, its growth.
+
+What flows in: nodes and the rules of their rows. What flows out: expressions of numbers alone,
+which every target computes once a frame: parameters move them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, assert_never
+
+from distal.fields.boxes import everywhere, everywhere2, hull, hull2
+from distal.fields.guarantees import UNBOUNDED, Bounds2, Claim, Growth, Operator, Primitive, Rule
+from distal.ir.build import builtin, multiply
+from distal.ir.build import number as constant_number
+from distal.ir.nodes import Const, Expr
+from distal.lang.functions import Func
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body, Values
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """What is known of a subtree.
+
+    Attributes:
+        slope: Bound on |gradient| everywhere.
+        divisor: What to divide the value by for a step that never passes the surface.
+        bounds: ``Bounds`` or ``Bounds2`` around surface and inside.
+        growth: How far from the box a point may be, for each unit of its value.
+        side_growth: The same for each side of the box.
+    """
+
+    slope: Expr
+    divisor: Expr
+    bounds: Expr
+    growth: Expr
+    side_growth: Expr
+
+
+ONE: Final = constant_number(1.0)
+UNKNOWN: Final = constant_number(UNBOUNDED)
+
+
+class Promises:
+    """Composes the promises of subtrees."""
+
+    def __init__(self, values: Values) -> None:
+        self._values = values
+        self._call = values.assembly.call
+
+    def of(self, body: Body, node: Node, values: Sequence[Expr]) -> Promise:
+        """The promise of a subtree with these numbers."""
+        own, shares = self._values.split(node, values)
+        rule = node.rule
+        if isinstance(rule, Primitive):
+            return self.of_primitive(body, rule, own, flat=node.flat)
+        inner = [
+            self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
+        ]
+        return self.of_operator(body, rule, inner, own)
+
+    def of_operator(
+        self, body: Body, rule: Operator, inner: Sequence[Promise], own: Mapping[str, Expr]
+    ) -> Promise:
+        """The promise of an operator on shapes with these promises."""
+        if len(inner) == 1:
+            return self._one(body, rule, inner[0], own)
+        if rule.bounds is None and rule.slope is None:
+            return self._halved(body, rule, inner, own)
+        result = inner[0]
+        for other in inner[1:]:
+            result = self._two(body, rule, result, other, own)
+        return result
+
+    def _halved(
+        self, body: Body, rule: Operator, inner: Sequence[Promise], own: Mapping[str, Expr]
+    ) -> Promise:
+        """Many joined, the halves first: a chain of hundreds would be as deep as it is long."""
+        if len(inner) == 1:
+            return inner[0]
+        middle = len(inner) // 2
+        a = self._halved(body, rule, inner[:middle], own)
+        return self._two(body, rule, a, self._halved(body, rule, inner[middle:], own), own)
+
+    def given(self, body: Body, node: Node, shares: Sequence[Sequence[Expr]]) -> dict[str, Expr]:
+        """What the children promise, under the names that an operator's functions ask for."""
+        inner = [
+            self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
+        ]
+        return _named(inner[0], inner[1] if len(inner) > 1 else None)
+
+    def of_primitive(
+        self, body: Body, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
+    ) -> Promise:
+        """The promise of a primitive with these numbers."""
+        slope = self._number(body, "slope", rule.slope, own)
+        whole = everywhere2 if flat else everywhere
+        bounds = body.let("bounds", self._call(rule.bounds or whole, own))
+        lower = Claim.LOWER_BOUND in rule.claims
+        growth, side_growth = self._growth_of_leaf(body, rule, own)
+        return Promise(slope, ONE if lower else slope, bounds, growth, side_growth)
+
+    def _growth_of_leaf(
+        self, body: Body, rule: Primitive, own: Mapping[str, Expr]
+    ) -> tuple[Expr, Expr]:
+        if rule.growth is None:
+            known = Claim.EXACT_OUTSIDE in rule.claims or rule.bounds is None
+            return (ONE, ONE) if known else (UNKNOWN, UNKNOWN)
+        growth = self._number(body, "growth", rule.growth, own)
+        if rule.side_growth is None:
+            return growth, growth
+        return growth, self._number(body, "side_growth", rule.side_growth, own)
+
+    def _number(self, body: Body, name: str, rule: Rule, given: Mapping[str, Expr]) -> Expr:
+        if isinstance(rule, Func):
+            return body.let(name, self._call(rule, given))
+        return constant_number(rule)
+
+    def _one(self, body: Body, rule: Operator, child: Promise, own: Mapping[str, Expr]) -> Promise:
+        given = {**own, **_named(child, None)}
+        slope = self._slope(body, rule, child.slope, given)
+        bounds = child.bounds
+        if rule.bounds is not None:
+            bounds = body.let("bounds", self._call(rule.bounds, given))
+        kept = Claim.LOWER_BOUND in rule.keeps
+        growth, side_growth = self._growth(body, rule, (child,), bounds, given)
+        return Promise(slope, child.divisor if kept else slope, bounds, growth, side_growth)
+
+    def _two(
+        self, body: Body, rule: Operator, a: Promise, b: Promise, own: Mapping[str, Expr]
+    ) -> Promise:
+        larger = body.let("slope", builtin("max", a.slope, b.slope))
+        side_growth = _larger(body, "side_growth", a.side_growth, b.side_growth)
+        given = {**own, **_named(a, b), "side_growth": side_growth}
+        given["growth"] = _larger(body, "growth", a.growth, b.growth)
+        slope = self._slope(body, rule, larger, given)
+        flat = a.bounds.type is self._values.assembly.struct(Bounds2)
+        around = rule.bounds or (hull2 if flat else hull)
+        bounds = body.let("bounds", self._call(around, given))
+        divisor = slope
+        if Claim.LOWER_BOUND in rule.keeps:
+            divisor = body.let("divisor", builtin("max", a.divisor, b.divisor))
+        growth, side_growth = self._growth(body, rule, (a, b), bounds, given)
+        return Promise(slope, divisor, bounds, growth, side_growth)
+
+    def _growth(
+        self,
+        body: Body,
+        rule: Operator,
+        inner: Sequence[Promise],
+        bounds: Expr,
+        given: Mapping[str, Expr],
+    ) -> tuple[Expr, Expr]:
+        """The growth of an operator's result, and that of its sides."""
+        growth, side_growth = given["growth"], given["side_growth"]
+        match rule.growth:
+            case Growth.KEPT:
+                return growth, side_growth
+            case Growth.FIRST:
+                return inner[0].growth, inner[0].side_growth
+            case Growth.TURNED:
+                return growth, growth
+            case Growth.CORNERED:
+                flat = bounds.type is self._values.assembly.struct(Bounds2)
+                return _corner_growth(body, side_growth, 2 if flat else 3), side_growth
+            case Growth.HELD:
+                return ONE, ONE
+            case Growth.UNKNOWN:
+                return UNKNOWN, UNKNOWN
+            case Func():
+                found = self._number(body, "growth", rule.growth, given)
+                return found, found
+            case _:
+                assert_never(rule.growth)
+
+    def _slope(self, body: Body, rule: Operator, child: Expr, given: Mapping[str, Expr]) -> Expr:
+        if rule.slope is None:
+            return child
+        if isinstance(rule.slope, Func):
+            return body.let("slope", self._call(rule.slope, given))
+        return body.let("slope", multiply(child, constant_number(rule.slope)))
+
+
+class RememberedPromises(Promises):
+    """Promises of one function: that of every node is made once, and kept."""
+
+    def __init__(self, values: Values) -> None:
+        super().__init__(values)
+        self.found: dict[int, Promise] = {}
+
+    def of(self, body: Body, node: Node, values: Sequence[Expr]) -> Promise:
+        """The promise of a subtree, made once."""
+        known = self.found.get(id(node))
+        if known is None:
+            known = self.found[id(node)] = super().of(body, node, values)
+        return known
+
+
+def _named(a: Promise, b: Promise | None) -> dict[str, Expr]:
+    if b is None:
+        return {
+            "slope": a.slope,
+            "bounds": a.bounds,
+            "growth": a.growth,
+            "side_growth": a.side_growth,
+        }
+    return {
+        "slope_a": a.slope,
+        "slope_b": b.slope,
+        "bounds_a": a.bounds,
+        "bounds_b": b.bounds,
+        "growth_a": a.growth,
+        "growth_b": b.growth,
+        "side_growth_a": a.side_growth,
+        "side_growth_b": b.side_growth,
+    }
+
+
+def _larger(body: Body, name: str, a: Expr, b: Expr) -> Expr:
+    """The larger of two; nothing to compute where both are constants, as for exact shapes."""
+    if a is b:
+        return a
+    if isinstance(a, Const) and isinstance(b, Const):
+        return a if a.value >= b.value else b
+    return body.let(name, builtin("max", a, b))
+
+
+def _corner_growth(body: Body, side_growth: Expr, dimensions: int) -> Expr:
+    """How far from the box a point is that is as far past each side; infinity stays."""
+    root = constant_number(math.sqrt(dimensions))
+    if isinstance(side_growth, Const):
+        return constant_number(min(side_growth.value * math.sqrt(dimensions), UNBOUNDED))
+    return body.let("growth", builtin("min", multiply(side_growth, root), UNKNOWN))

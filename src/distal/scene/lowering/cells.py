@@ -1,0 +1,39 @@
+"""Refusing paint that tells cells apart where there is only one.
+
+What flows in: a shape's tree. What flows out: an error where a material asks for the cell of a
+repetition, but paints the repetition as a whole: every copy would look like the first.
+"""
+
+from __future__ import annotations
+
+from distal.fields.guarantees import Operator
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node
+
+
+def check_cells(root: Node) -> None:
+    """Refuse materials of cells that stand outside the repetition they are meant for.
+
+    Raises:
+        CompileError: At the line where the material was made.
+    """
+    seen: set[tuple[int, bool]] = set()
+    stack = [(root, False)]
+    while stack:
+        node, told = stack.pop()
+        if (id(node), told) in seen:
+            continue
+        seen.add((id(node), told))
+        for material in (node.material, node.cut_material):
+            if material is not None and not told and "cell" in material.uses and _repeats(node):
+                refuse(
+                    "this material tells cells apart, but it paints what is repeated already",
+                    "paint first, then repeat: shape.paint(by_cell()).repeat(2.0)",
+                    material.call.place or node.place,
+                )
+        inner = told or (isinstance(node.rule, Operator) and node.rule.repeats)
+        stack.extend((child, inner) for child in node.children)
+
+
+def _repeats(node: Node) -> bool:
+    return any(isinstance(n.rule, Operator) and n.rule.repeats for n in node.walk())

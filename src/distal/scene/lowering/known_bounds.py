@@ -1,0 +1,155 @@
+"""What shapes promise as plain numbers, known as soon as they are made.
+
+What flows in: a node. What flows out: its slope, box and growth for the parameters' defaults. Each
+operator is computed from the numbers of its children, once for each node, by a function that all
+operators of its kind share: making a shape composes and compiles nothing of what is below it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+from weakref import WeakKeyDictionary
+
+from distal.fields.guarantees import Bounds, Bounds2, Primitive
+from distal.frontend import Assembly
+from distal.ir.build import field as field_of
+from distal.ir.nodes import Construct, Expr, Param, Read, Return
+from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
+from distal.lang.composed import Composed
+from distal.lang.expressions import Expression
+from distal.lang.resources import Buffer, TextureValue
+from distal.lang.runtime_hook import executor
+from distal.scene.lowering.bounds import Promise, Promises
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body, Values
+
+# Functions of operators and primitives are kept; those with data of their own are too many to be.
+MOST_KEPT: Final = 512
+_PARTS: Final = ("slope", "divisor", "low", "high", "growth", "side_growth")
+
+
+@dataclass(frozen=True, slots=True)
+class KnownPromise:
+    """A promise as plain numbers; see ``promises.Promise``."""
+
+    slope: float
+    divisor: float
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    growth: float
+    side_growth: float
+
+
+_known: WeakKeyDictionary[Node, KnownPromise] = WeakKeyDictionary()
+_steps: dict[Any, _Step] = {}
+
+
+def known_promise(node: Node) -> KnownPromise:
+    """What a node promises for the parameters' defaults at time 0.
+
+    Raises:
+        ModuleNotFoundError: NumPy is not installed, without which nothing is computed.
+    """
+    # Children first, without recursion: chains are longer than Python's stack is deep.
+    for part in reversed(list(node.walk())):
+        if part not in _known:
+            _known[part] = _computed(part)
+    return _known[node]
+
+
+def _computed(node: Node) -> KnownPromise:
+    inner = [known_promise(child) for child in node.children]
+    if len(inner) < 2:
+        return _call(node, inner)
+    # Many are joined two by two, as they are in a program.
+    result = inner[0]
+    for other in inner[1:]:
+        result = _call(node, [result, other])
+    return result
+
+
+def _call(node: Node, inner: Sequence[KnownPromise]) -> KnownPromise:
+    import numpy as np  # noqa: PLC0415  # only what runs scene code needs it
+
+    args: list[Any] = []
+    for promise in inner:
+        args += [getattr(promise, part) for part in _PARTS]
+    args += [_plain(number.value) for number in node.numbers.values()]
+    doubles = tuple(np.asarray(arg, np.float64)[None] for arg in args)
+    found = executor().call(_step_of(node, len(inner)), doubles, {}, device="reference")
+    # A shape without numbers is a function of nothing: its results have no axis of rows.
+    first = [np.asarray(part, np.float64)[0 if doubles else ...].tolist() for part in found]
+    slope, divisor, low, high, growth, side_growth = first
+    return KnownPromise(slope, divisor, tuple(low), tuple(high), growth, side_growth)
+
+
+def _plain(value: Any) -> Any:
+    if not isinstance(value, Expression):
+        return value
+    found = executor().value(value, {}, 0.0)
+    return found if isinstance(found, float) else tuple(found)
+
+
+def _step_of(node: Node, count: int) -> _Step:
+    """The function of a node's kind."""
+    data = any(isinstance(v, Buffer | TextureValue) for v in node.constants.values())
+    choices = tuple((n, getattr(v, "value", v)) for n, v in node.constants.items())
+    types = tuple((n, number.type) for n, number in node.numbers.items())
+    key = (node.rule, count, node.flat, types, choices)
+    if data:
+        return _Step(node, count)
+    found = _steps.get(key)
+    if found is None:
+        if len(_steps) >= MOST_KEPT:
+            _steps.clear()
+        found = _steps[key] = _Step(node, count)
+    return found
+
+
+class _Step(Composed):
+    """The promise of a primitive of its numbers; of an operator of its children's promises."""
+
+    def __init__(self, node: Node, count: int) -> None:
+        flat_inner = [child.flat for child in node.children[:count]]
+        own = {name: number.type for name, number in node.numbers.items()}
+        self.name = f"promise of {node.rule.name}"
+        self._rule, self._constants = node.rule, node.constants
+        self._flat, self._flat_inner, self._own = node.flat, flat_inner, own
+        inner = [p for i, flat in enumerate(flat_inner) for p in _signature(f"_{i}", flat)]
+        self.signature = (*inner, *own.items())
+        self.result = tuple_type(tuple(type for _, type in _signature("", node.flat)))
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function in a program."""
+        values = Values(assembly)
+        body = Body(taken={name for name, _ in self.signature})
+        own: Mapping[str, Expr] = {name: Read(name, type) for name, type in self._own.items()}
+        own = {**own, **values.of_constants(self._constants, self.name)}
+        inner = [_read(assembly, f"_{i}", flat) for i, flat in enumerate(self._flat_inner)]
+        promises = Promises(values)
+        if isinstance(self._rule, Primitive):
+            found = promises.of_primitive(body, self._rule, own, flat=self._flat)
+        else:
+            found = promises.of_operator(body, self._rule, inner, own)
+        bounds = body.let("bounds", found.bounds)
+        low, high = field_of(bounds, "low"), field_of(bounds, "high")
+        parts = (found.slope, found.divisor, low, high, found.growth, found.side_growth)
+        body.statements.append(Return(Construct(parts, self.result)))
+        params = [Param(name, type) for name, type in self.signature]
+        return assembly.define("promise", params, self.result, body.statements)
+
+
+def _signature(suffix: str, flat: bool) -> list[tuple[str, Type]]:
+    corner = VEC2 if flat else VEC3
+    types: tuple[Type, ...] = (FLOAT, FLOAT, corner, corner, FLOAT, FLOAT)
+    return [(f"child_{part}{suffix}", type) for part, type in zip(_PARTS, types, strict=True)]
+
+
+def _read(assembly: Assembly, suffix: str, flat: bool) -> Promise:
+    slope, divisor, low, high, growth, side_growth = (
+        Read(name, type) for name, type in _signature(suffix, flat)
+    )
+    box = Construct((low, high), assembly.struct(Bounds2 if flat else Bounds))
+    return Promise(slope, divisor, box, growth, side_growth)

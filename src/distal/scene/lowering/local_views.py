@@ -1,0 +1,241 @@
+"""A local of an ``@image`` as a picture of its own: an image's coordinate, its signal.
+
+What flows in: an author's image and the name of a local. What flows out: an image whose function is
+the author's, changed to return the color of the local's last value, whichever way it leaves.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Final
+
+from distal.frontend import Assembly, lower
+from distal.frontend.signatures.signatures import read_header
+from distal.ir.build import boolean, cast, field, number
+from distal.ir.nodes import (
+    Assign,
+    Call,
+    EntryKind,
+    Expr,
+    Field,
+    Function,
+    Let,
+    Param,
+    Read,
+    Return,
+    Stmt,
+    Var,
+)
+from distal.ir.types import BOOL, FLOAT, FRAME, INT, UINT, VEC2, VEC3, VEC4, Kind, Type
+from distal.ir.walk import expressions, map_statement, nodes_in, root_of, statements_in
+from distal.lang.composed import Composed
+from distal.lang.functions import Func, Image
+from distal.loading import hand_on
+from distal.render import local_views as library
+
+PREFIX: Final = "local:"
+VIEWS: Final = ("coordinate", "signal")
+_NUMBERS: Final = (FLOAT, INT, UINT, BOOL)
+SHOWN: Final[Mapping[Type, Func]] = {
+    **dict.fromkeys(_NUMBERS, library.shown_number),
+    VEC2: library.shown_coordinate,
+    VEC3: library.shown_vector,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A local of an image's function.
+
+    Attributes:
+        name: As the author writes it; a second one of the name has ``_2`` behind it.
+        type: Of a kind that can be shown.
+        varies: Whether it differs from pixel to pixel.
+    """
+
+    name: str
+    type: Type
+    varies: bool
+
+
+def view_of_image(image: Image, view: str) -> Composed:
+    """An image seen in another way.
+
+    Args:
+        image: An author's image.
+        view: "coordinate": its first vec2, or the pixel's own coordinate; "signal": its first
+            number that differs from pixel to pixel; "local:NAME": any local.
+
+    Raises:
+        ValueError: It has no such local; the text lists what can be shown.
+        CompileError: The image has mistakes.
+    """
+    found = locals_of(image)
+    if view == "coordinate":
+        vectors = [x for x in found if x.type is VEC2 and x.varies]
+        return LocalView(image, vectors[0]) if vectors else PixelCoordinate(image)
+    if view == "signal":
+        numbers = [x for x in found if x.type is FLOAT and x.varies]
+        if numbers:
+            return LocalView(image, numbers[0])
+        message = f"'{image.name}' has no number that differs from pixel to pixel"
+        raise ValueError(f"{message}\n{_listed(found)}")
+    if not view.startswith(PREFIX):
+        known = ", ".join(("color", *VIEWS, f"{PREFIX}NAME"))
+        raise ValueError(f"an @image has no view '{view}'; views: {known}\n{_listed(found)}")
+    name = view.removeprefix(PREFIX)
+    named = [x for x in found if x.name == name]
+    if not named:
+        message = f"'{image.name}' has no local '{name}' that can be shown"
+        raise ValueError(f"{message}\n{_listed(found)}")
+    return LocalView(image, named[0])
+
+
+def locals_of(image: Image) -> list[Local]:
+    """The locals of an image's own function that can be shown, in the order of the source."""
+    module = lower(image)
+    function = module.function(module.entry)
+    written = set(image.python_function.__code__.co_varnames)
+    varying = _varying(function)
+    found: dict[str, Local] = {}
+    for stmt in statements_in(function.body):
+        if isinstance(stmt, Let | Var) and stmt.value.type in SHOWN and _is_own(stmt.name, written):
+            found[stmt.name] = Local(stmt.name, stmt.value.type, stmt.name in varying)
+    return list(found.values())
+
+
+def _is_own(name: str, written: set[str]) -> bool:
+    """Whether the author wrote a local, and not the compiler, for a part of an expression."""
+    plain = {w.strip("_") for w in written}
+    return name in plain or re.sub(r"_\d+$", "", name) in plain
+
+
+def _varying(function: Function) -> set[str]:
+    """The locals that depend on which pixel it is: the frame's coordinate flows into them."""
+    varying: set[str] = set()
+    size = -1
+    while len(varying) > size:  # values that flow around a loop need another round
+        size = len(varying)
+        for stmt in statements_in(function.body):
+            if isinstance(stmt, Let | Var | Assign):
+                name = root_of(stmt.target).name if isinstance(stmt, Assign) else stmt.name
+                if any(_is_varying(e, varying) for x in expressions(stmt) for e in nodes_in(x)):
+                    varying.add(name)
+    return varying
+
+
+def _is_varying(e: Expr, varying: set[str]) -> bool:
+    if isinstance(e, Field) and e.base.type is FRAME:
+        return e.name == "coord"
+    if isinstance(e, Call):
+        return any(argument.type is FRAME for argument in e.args)
+    return isinstance(e, Read) and e.name in varying
+
+
+def _listed(found: Iterable[Local]) -> str:
+    rows = [f"  {PREFIX}{x.name}  {x.type}" for x in found]
+    if not rows:
+        return "it has no locals that can be shown: numbers, vec2, vec3"
+    return "\n".join(("what it can show:", *rows))
+
+
+class _ImageView(Composed):
+    """What views of an image share."""
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+
+    def __init__(self, image: Image, what: str) -> None:
+        hand_on(image, self)
+        self.name = f"{image.name} ({what})"
+        self._image = image
+
+    def functions(self) -> Iterable[Func]:
+        """The image itself."""
+        return (self._image,)
+
+
+class PixelCoordinate(_ImageView):
+    """Where a pixel lies, as a color."""
+
+    def __init__(self, image: Image) -> None:
+        super().__init__(image, "coordinate")
+
+    def compose(self, assembly: Assembly) -> str:
+        """The function of the frame."""
+        frame = Read("frame", FRAME)
+        given = {n: field(frame, n) for n in ("coord", "resolution")}
+        place = assembly.call(library.pixel_place, given)
+        color = assembly.call(SHOWN[VEC2], {"value": place, "reached": boolean(True)})
+        return assembly.define("coordinate", (Param("frame", FRAME),), VEC4, (Return(color),))
+
+
+class LocalView(_ImageView):
+    """A local of an image as a color."""
+
+    def __init__(self, image: Image, local: Local) -> None:
+        super().__init__(image, local.name)
+        self._local = local
+
+    def compose(self, assembly: Assembly) -> str:
+        """The image's own function with other returns."""
+        slot = read_header(self._image.overloads[0]).slots[0].name
+        call: Any = assembly.call(self._image, {slot: Read(slot, FRAME)})
+        function = assembly.function(call.function)
+        local = self._local
+        value = Read(_free("shown", function), local.type)
+        reached = Read(_free("reached", function), BOOL)
+        plain: Expr = value
+        if local.type in _NUMBERS:
+            plain = cast(value, Kind.FLOAT)
+        color = assembly.call(SHOWN[local.type], {"value": plain, "reached": reached})
+        body = tuple(_watched(function.body, local.name, (value, reached), color))
+        declared = (
+            Var(value.name, number(0, local.type)),
+            Var(reached.name, boolean(False)),
+        )
+        name = f"{function.name}_{local.name}"
+        return assembly.define(name, function.params, VEC4, (*declared, *body), function.span)
+
+
+def _free(wish: str, function: Function) -> str:
+    """A name that no local of a function has."""
+    taken = {p.name for p in function.params}
+    taken |= {s.name for s in statements_in(function.body) if hasattr(s, "name")}
+    name, n = wish, 2
+    while name in taken:
+        name, n = f"{wish}_{n}", n + 1
+    return name
+
+
+def _watched(
+    body: tuple[Stmt, ...], name: str, kept: tuple[Read, Read], color: Expr
+) -> Iterator[Stmt]:
+    """A block that keeps each value a local gets, and returns the color of the last one."""
+    ahead = {id(s.span) for s in statements_in(body) if isinstance(s, Assign) and _gives(s, name)}
+    for stmt in body:
+        if isinstance(stmt, Return):
+            yield Return(color, span=stmt.span)
+            continue
+        yield map_statement(
+            stmt, lambda e: e, lambda inner: tuple(_watched(inner, name, kept, color))
+        )
+        # A local whose first value stands in an inner block is declared before it with a zero.
+        hoisted = isinstance(stmt, Var) and stmt.name == name and id(stmt.span) in ahead
+        if _gives(stmt, name) and not hoisted:
+            value, reached = kept
+            yield Assign(value, Read(name, value.type), span=stmt.span)
+            yield Assign(reached, boolean(True), span=stmt.span)
+
+
+def _gives(stmt: Stmt, name: str) -> bool:
+    match stmt:
+        case Let(found) | Var(found):
+            return found == name
+        case Assign(target):
+            return root_of(target).name == name
+        case _:
+            return False

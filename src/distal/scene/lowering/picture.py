@@ -1,0 +1,257 @@
+"""A scene's function from a pixel to its light, put together.
+
+What flows in: a scene. What flows out: functions in a program: distance, surface, lights, what is
+around, rays, and one that joins them by a renderer of the library. Everything that a renderer may
+ask for is known by name; it takes what it names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, cast
+
+from distal.frontend import Assembly
+from distal.ir.build import add, boolean, compare, field, integer, number
+from distal.ir.nodes import CompareOp, Expr, FunctionRef, If, Param, Read, Return
+from distal.ir.types import FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.lang.functions import Func
+from distal.render import bounce, film, layers, legend, settings, steer, tonemap, views
+from distal.render.camera import Ray
+from distal.render.lights import no_light
+from distal.scene import steering
+from distal.scene.lowering.attributes import Attribute, Material, MaterialNumber, Site, attribute
+from distal.scene.lowering.shapes import ZERO_CELL, Composer
+from distal.scene.tree.calls import expression_of
+from distal.scene.tree.values import Body
+
+if TYPE_CHECKING:
+    from distal.scene.scene import Scene
+
+# How normals are found, in the order of ``render.normals``.
+NORMALS: Final = ("exact", "six_taps", "tetrahedron", "forward")
+
+RENDERERS: Final[dict[str, Func]] = {
+    "plain": bounce.seen_plain,
+    "mirrored": bounce.seen_mirrored,
+    "refracted": bounce.seen_refracted,
+}
+# Of tables of different functions the type checker knows no more than that they hold objects.
+LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
+VIEWS: Final = cast(Mapping[str, Func], views.VIEWS)
+
+
+class Picturing:
+    """Puts one scene's functions into one program."""
+
+    def __init__(self, assembly: Assembly, scene: Scene) -> None:
+        self._assembly = assembly
+        self._scene = scene
+        self._node = scene.shape.node
+        self.composer = Composer(assembly, [self._node])
+        self._numbers = {
+            name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
+        }
+
+    def main(
+        self, view: str, *, transparent: bool, sampled: bool, encoded: bool, steered: bool = False
+    ) -> str:
+        """The function of the frame that gives a pixel."""
+        frame = Read("frame", FRAME)
+        body = Body(taken={"frame"})
+        resolution = field(frame, "resolution")
+        given: dict[str, Expr] = {
+            "coord": field(frame, "coord"),
+            "resolution": resolution,
+            "camera": self._steered(resolution) if steered else self._camera(resolution),
+            "radiance": self._radiance(self._shown(view), resolution),
+            "transparent": boolean(transparent),
+            "samples": self._assembly.number("Samples", INT, 1) if sampled else integer(1),
+        }
+        color = body.let("color", self.composer.call(film.exposed, given))
+        if view == "steps":
+            given["color"] = color
+            given["most"] = integer(self._scene.steps)
+            color = body.let("color", self.composer.call(legend.with_legend, given))
+        if encoded:
+            color = self.displayed(color)
+        body.statements.append(Return(color))
+        params = (Param("frame", FRAME),)
+        return self._assembly.define("picture", params, VEC4, body.statements, self._scene.place)
+
+    def layer(self, name: str, *, steered: bool) -> str:
+        """The function of the frame that gives a layer's values at a pixel's middle."""
+        frame = Read("frame", FRAME)
+        resolution = field(frame, "resolution")
+        given: dict[str, Expr] = {
+            "coord": field(frame, "coord"),
+            "resolution": resolution,
+            "camera": self._steered(resolution) if steered else self._camera(resolution),
+            "radiance": self._radiance(LAYERS[name], resolution),
+        }
+        value = self.composer.call(layers.through_middle, given)
+        params = (Param("frame", FRAME),)
+        return self._assembly.define("layer", params, VEC4, (Return(value),), self._scene.place)
+
+    def displayed(self, color: Expr) -> Expr:
+        """Linear light encoded for display."""
+        given = {
+            "color": color,
+            "exposure": self._numbers["exposure"],
+            "tone_map": integer(tonemap.NAMES.index(self._scene.tone_map)),
+        }
+        return self.composer.call(tonemap.display, given)
+
+    def given(self, body: Body, resolution: Expr) -> dict[str, Expr]:
+        """Everything that a renderer may ask for, by name."""
+        composer, scene, node = self.composer, self._scene, self._node
+        values = composer.values.all(node)
+        promise = composer.promises.of(body, node, values)
+        given: dict[str, Expr] = {
+            **self._numbers,
+            "resolution": resolution,
+            "divisor": promise.divisor,
+            "slope": promise.slope,
+            "field": composer.field(node, values, ZERO_CELL),
+            "surface": self.surface(),
+            "lights": self._lights(),
+            "ambient": self._ambient(),
+            "background": self._background(),
+            "camera": self._camera(resolution),
+            "steps": integer(scene.steps),
+            "bounces": integer(scene.bounces),
+            "hybrid": boolean(scene.march == "heightfield"),
+            "normals": integer(NORMALS.index(scene.normals)),
+            "light_count": integer(len(self._samples())),
+            "shadow_steps": integer(max(64, 2 * scene.steps // 5) if scene.shadows else 0),
+        }
+        room = {"bounds": promise.bounds}
+        given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
+        given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
+        given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
+        given["look"] = body.let("look", composer.call(settings.look, given))
+        return given
+
+    def _function(
+        self,
+        name: str,
+        params: Sequence[tuple[str, Type]],
+        make: Callable[[Body, Mapping[str, Expr]], Expr],
+        captured: Sequence[Expr] = (),
+    ) -> FunctionRef:
+        """A function of its own, as a value; ``captured`` are given to its last parameters."""
+        body = Body(taken={n for n, _ in params})
+        result = make(body, {n: Read(n, t) for n, t in params})
+        body.statements.append(Return(result))
+        declared = tuple(Param(n, t) for n, t in params)
+        defined = self._assembly.define(name, declared, result.type, body.statements)
+        free = tuple(t for _, t in params[: len(params) - len(captured)])
+        return FunctionRef(defined, tuple(captured), FunctionType(free, result.type))
+
+    def _shown(self, view: str) -> Func:
+        """What follows a ray for a view."""
+        return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
+
+    def _radiance(self, shown: Func, resolution: Expr) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            asked = {**self.given(body, given["resolution"]), **given}
+            if shown is views.view_slice:
+                asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
+                asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
+            if shown is layers.layer_material:
+                kind = MaterialNumber(self.composer, self._scene.material)
+                asked["identity"] = self.known_of_place("material_number", kind)
+            return self.composer.call(shown, asked)
+
+        params = (("ray", self._assembly.struct(Ray)), ("resolution", VEC2))
+        return self._function("radiance", params, make, (resolution,))
+
+    def surface(self) -> FunctionRef:
+        """What a place looks like: ``(p) -> Surface``."""
+        return self.known_of_place("surface", Material(self.composer, self._scene.material))
+
+    def known_of_place(self, name: str, kind: Attribute) -> FunctionRef:
+        """An attribute of the place of the scene that is nearest to a point, as a function."""
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            site = Site(given["p"], ZERO_CELL, self.composer.values.all(self._node))
+            return attribute(body, kind, self._node, site)
+
+        return self._function(name, (("p", VEC3),), make)
+
+    def _samples(self) -> list[Any]:
+        return [light.sample for light in self._scene.lights if light.sample is not None]
+
+    def _lights(self) -> FunctionRef:
+        """The light of a number, as a place sees it: one place asks for all, in a loop."""
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            site = {"p": given["p"]}
+            calls = [light.emit(self.composer, site) for light in self._samples()]
+            if not calls:
+                return self.composer.call(no_light, {})
+            for i, call in enumerate(calls[:-1]):
+                chosen = compare(CompareOp.EQ, given["i"], integer(i))
+                body.statements.append(If(chosen, (Return(call),), ()))
+            last: Expr = calls[-1]
+            return last
+
+        return self._function("light", (("i", INT), ("p", VEC3)), make)
+
+    def _ambient(self) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            total: Expr = number(0.0, VEC3)
+            for light in self._scene.lights:
+                if light.ambient is not None:
+                    part = light.ambient.emit(self.composer, {"n": given["n"]})
+                    total = body.let("total", add(total, part))
+            return total
+
+        return self._function("ambient", (("n", VEC3),), make)
+
+    def _background(self) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            return self._scene.background.emit(self.composer, given)
+
+        return self._function("background", (("direction", VEC3),), make)
+
+    def _steered(self, resolution: Expr) -> FunctionRef:
+        """The camera, moved by hand as the numbers of a ``Steering`` say."""
+
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            camera = self._scene.camera
+            asked = {**given, "camera": self._camera(given["resolution"]), "up": self._up()}
+            asked["pivot"] = camera.number(self.composer, "target") or self._pivot(body, asked)
+            for name, type, value in steering.NUMBERS:
+                asked[name] = self._assembly.number(f"{steering.PREFIX}{name}", type, value)
+            asked["rig"] = body.let("rig", self.composer.call(steer.rig, asked))
+            return self.composer.call(steer.steered_ray, asked)
+
+        params = (("uv", VEC2), ("resolution", VEC2))
+        return self._function("steered_ray", params, make, (resolution,))
+
+    def elevation(self) -> str:
+        """The function that gives how high the camera stands above what it looks at."""
+        given = {
+            "camera": self._camera(self._assembly.constant((1.0, 1.0), VEC2)),
+            "up": self._up(),
+        }
+        value = self.composer.call(steer.elevation, given)
+        return self._assembly.define("elevation", (), FLOAT, (Return(value),))
+
+    def _up(self) -> Expr:
+        """The axis that the camera stands upright along."""
+        found = self._scene.camera.number(self.composer, "up")
+        return self._assembly.constant((0.0, 1.0, 0.0), VEC3) if found is None else found
+
+    def _pivot(self, body: Body, given: Mapping[str, Expr]) -> Expr:
+        """What a camera without a target turns around."""
+        values = self.composer.values.all(self._node)
+        bounds = self.composer.promises.of(body, self._node, values).bounds
+        return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
+
+    def _camera(self, resolution: Expr) -> FunctionRef:
+        def make(body: Body, given: Mapping[str, Expr]) -> Expr:
+            return self._scene.camera.emit(self.composer, given)
+
+        params = (("uv", VEC2), ("resolution", VEC2))
+        return self._function("camera_ray", params, make, (resolution,))

@@ -1,0 +1,208 @@
+"""A shape's tree becomes functions of the IR.
+
+What flows in: nodes. What flows out: calls of the field library's functions, joined by the names of
+their parameters. Floats become number uniforms; a subtree that occurs again, with whatever numbers,
+becomes a function of its own that takes them. Knows nothing of materials (``attributes``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from distal.fields.guarantees import PROMISED, Operator, Primitive
+from distal.frontend import Assembly
+from distal.ir.build import field as field_of
+from distal.ir.build import number as constant_number
+from distal.ir.nodes import Call, Expr, FunctionRef, Param, Read, Return
+from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
+from distal.lang.functions import Func
+from distal.lang.resources import Buffer, TextureValue
+from distal.scene.lowering.bounds import Promises
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import Body, Values, plain_name
+
+# The cell of what lies in no repetition.
+ZERO_CELL: Final = constant_number(0.0, VEC3)
+
+
+class Composer:
+    """Makes the functions of one program's shapes."""
+
+    def __init__(self, assembly: Assembly, root_nodes: Sequence[Node]) -> None:
+        self.assembly = assembly
+        self.call = assembly.call
+        self.values = Values(assembly)
+        self.promises = Promises(self.values)
+        self._keys: dict[int, int] = {}
+        self._known_keys: dict[Any, int] = {}
+        self._functions: dict[tuple[int, str, int | None], str] = {}
+        self._uses_cell: dict[int, bool] = {}
+        self._count: dict[int, int] = {}
+        self._kinds: dict[int, set[int]] = {}
+        self._count_kinds(root_nodes)
+
+    # What is equal
+
+    def key(self, node: Node) -> int:
+        """Equal for subtrees that differ in the values of their numbers only."""
+        found = self._keys.get(id(node))
+        if found is None:
+            constants = tuple((n, _identity(v)) for n, v in node.constants.items())
+            numbers = tuple((n, number.type) for n, number in node.numbers.items())
+            whole = (id(node.rule), constants, numbers, *(self.key(c) for c in node.children))
+            found = self._known_keys.setdefault(whole, len(self._known_keys))
+            self._keys[id(node)] = found
+        return found
+
+    def _count_kinds(self, roots: Sequence[Node]) -> None:
+        """How often each kind of subtree is met; those within a repeated one count once."""
+        stack = list(roots)
+        while stack:
+            node = stack.pop()
+            key = self.key(node)
+            self._count[key] = self._count.get(key, 0) + 1
+            self._kinds.setdefault(key, set()).add(id(node))
+            if self._count[key] == 1:
+                stack.extend(node.children)
+
+    def uses_cell(self, node: Node) -> bool:
+        """Whether the subtree's distance depends on the cell of a repetition around it."""
+        found = self._uses_cell.get(id(node))
+        if found is None:
+            names = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
+            found = "cell" in names or any(map(self.uses_cell, node.children))
+            self._uses_cell[id(node)] = found
+        return found
+
+    # Distances
+
+    def field(self, node: Node, values: Sequence[Expr], cell: Expr) -> FunctionRef:
+        """A subtree's distance as a function of the point alone."""
+        name, captures = self._function(node, values, cell)
+        point = VEC2 if node.flat else VEC3
+        return FunctionRef(name, captures, FunctionType((point,), FLOAT))
+
+    def _function(
+        self, node: Node, values: Sequence[Expr], cell: Expr
+    ) -> tuple[str, tuple[Expr, ...]]:
+        """The function of a subtree: its name, and what to pass beside the point.
+
+        Where only this node is of its kind, the function reads its numbers itself.
+        """
+        key = self.key(node)
+        closed = len(self._kinds.get(key, ())) <= 1 and tuple(values) == self.values.all(node)
+        passed = () if closed else tuple(values)
+        uses_cell = self.uses_cell(node)
+        whole = (key, node.label, id(node) if closed else None)
+        if whole not in self._functions:
+            self._functions[whole] = self._define(node, passed, uses_cell)
+        return self._functions[whole], ((*passed, cell) if uses_cell else passed)
+
+    def _define(self, node: Node, passed: tuple[Expr, ...], uses_cell: bool) -> str:
+        point = VEC2 if node.flat else VEC3
+        names = fresh_names(node) if passed else []
+        params = [Param(n, v.type) for n, v in zip(names, passed, strict=True)]
+        values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
+        body = Body(taken={"p", "cell", *names})
+        cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
+        result = self._emit(body, node, Read("p", point), cell, values)
+        body.statements.append(Return(result))
+        params = [Param("p", point), *params, *([Param("cell", VEC3)] if uses_cell else [])]
+        wish = f"{plain_name(node.name)}_distance"
+        return self.assembly.define(wish, params, FLOAT, body.statements, node.place)
+
+    def distance(self, body: Body, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]) -> Expr:
+        """A subtree's distance at a point."""
+        shared = self._count.get(self.key(node), 0) > 1 and len(node.children) > 0
+        if not shared and not node.label:
+            return self._emit(body, node, p, cell, values)
+        name, passed = self._function(node, values, cell)
+        return body.let("d", Call(name, (p, *passed), FLOAT))
+
+    def _emit(self, body: Body, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]) -> Expr:
+        given, shares = self.given(body, node, p, cell, values)
+        rule = node.rule
+        if isinstance(rule, Primitive):
+            value = self.call(rule.distance, given)
+            if value.type is not FLOAT:
+                message = f"'{rule.name}' is no field: a distance is a float, not {value.type}"
+                refuse(message, None, node.place)
+            return body.let("d", value)
+        if rule.around is not None:
+            given["field"] = self.field(node.children[0], shares[0], cell)
+            return body.let("d", self.call(rule.around, given))
+        inner_p, inner_cell = self.moved(body, rule, given)
+        parts = [
+            self.distance(body, child, inner_p, inner_cell, share)
+            for child, share in zip(node.children, shares, strict=True)
+        ]
+        result = parts[0]
+        if rule.combine is not None:
+            for other in parts[1:]:
+                result = self.call(rule.combine, {**given, "a": result, "b": other})
+                result = body.let("d", result)
+        if rule.finish is not None:
+            result = body.let("d", self.call(rule.finish, {**given, "d": result}))
+        return result
+
+    def given(
+        self, body: Body, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+    ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
+        """What a node's functions may ask for by name, and the numbers of each child."""
+        own, shares = self.values.split(node, values)
+        given = {**own, "p": p, "cell": cell}
+        asked = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
+        if node.children and asked & PROMISED:
+            given |= self.promises.given(body, node, shares)
+        return given, shares
+
+    def moved(self, body: Body, rule: Operator, given: Mapping[str, Expr]) -> tuple[Expr, Expr]:
+        """The point and the cell that an operator's children are asked with."""
+        if rule.point is None:
+            return given["p"], given["cell"]
+        return self.site(body, self.call(rule.point, given), given["cell"])
+
+    def site(self, body: Body, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
+        """The point and the cell of a place that an operator gave."""
+        if isinstance(place.type, Struct):
+            site = body.let("site", place)
+            return field_of(site, "p"), field_of(site, "cell")
+        return body.let("q", place), cell
+
+
+def rule_functions(node: Node) -> tuple[Func, ...]:
+    """The functions of a node's row that are asked at points."""
+    rule = node.rule
+    if isinstance(rule, Primitive):
+        return (rule.distance,)
+    made = (rule.point, rule.finish, rule.combine, rule.mix, rule.around, rule.site)
+    return tuple(func for func in made if func is not None)
+
+
+def _identity(value: Any) -> Any:
+    if isinstance(value, bool | int):
+        return (type(value), value)
+    if isinstance(value, TextureValue | Buffer):
+        return id(value)
+    return (value.type, value.value)
+
+
+def fresh_names(node: Node) -> list[str]:
+    """Parameter names for all numbers of a subtree, told apart by a number."""
+    names: list[str] = []
+    taken = {"p", "cell"}
+
+    def visit(inner: Node) -> None:
+        for wish in inner.numbers:
+            name, n = wish, 2
+            while name in taken:
+                name, n = f"{wish}_{n}", n + 1
+            taken.add(name)
+            names.append(name)
+        for child in inner.children:
+            visit(child)
+
+    visit(node)
+    return names

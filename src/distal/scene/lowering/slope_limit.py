@@ -1,0 +1,61 @@
+"""Refusing shapes that no ray can be marched to: fields without a bound on their slope.
+
+What flows in: a shape's tree. What flows out: an error at the place where the bound was lost: a
+twist of something that has no end, say. An operator is refused when it is made, for the parameters'
+defaults; other values and times are looked at when it is drawn (``doubts``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NoReturn, TypeAlias
+
+from distal.fields.guarantees import ENDLESS, Operator
+from distal.scene.lowering.known_bounds import known_promise
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node
+
+# The low corner and the high one.
+Box: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
+
+
+def check_slope(node: Node) -> None:
+    """Refuse an operator that has no bound on its slope on the shapes that it is given.
+
+    Raises:
+        SceneValueError: At the operator's place.
+    """
+    if not may_be_endless(node):
+        return
+    try:
+        slope = known_promise(node).slope
+    except ModuleNotFoundError:  # without NumPy nothing is marched here, only compiled to text
+        return
+    if not slope < ENDLESS:
+        boxes = [known_promise(child) for child in node.children]
+        refuse_steepness(node, [(box.low, box.high) for box in boxes])
+
+
+def may_be_endless(node: Node) -> bool:
+    """Whether a node is an operator that has a slope on some shapes only."""
+    return isinstance(node.rule, Operator) and node.rule.needs is not None
+
+
+def refuse_steepness(node: Node, boxes: Sequence[Box]) -> NoReturn:
+    """Refuse an operator on children with these boxes, at its place."""
+    assert isinstance(node.rule, Operator)
+    message = f"{node.rule.name} gives this shape no bound on its slope"
+    hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(boxes)}"
+    refuse(message, hint, node.place)
+
+
+def _boxed(boxes: Sequence[Box]) -> str:
+    """The box that the rule judged, in words; none where it has no end, as the rule says that."""
+    if len(boxes) != 1 or any(abs(c) >= ENDLESS for corner in boxes[0] for c in corner):
+        return ""
+    low, high = map(_corner, boxes[0])
+    return f"; its box goes from {low} to {high}"
+
+
+def _corner(place: tuple[float, ...]) -> str:
+    return f"({', '.join(f'{c:.3g}' for c in place)})"

@@ -1,0 +1,1 @@
+"""The objects that an author creates: shapes, materials, patterns, lights, cameras, backgrounds."""

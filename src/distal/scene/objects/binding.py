@@ -1,0 +1,124 @@
+"""What an author gives for a row's numbers, and an author's own function as a row.
+
+What flows in: rows of the library, Python arguments. What flows out: checked numbers and constants,
+nodes. Knows nothing of the classes that authors see.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from distal.diagnostics import Span
+from distal.fields import boxes
+from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive
+from distal.frontend.signatures.signatures import read_header
+from distal.ir.types import FLOAT, VEC2, VEC3, Vector
+from distal.lang.functions import Func
+from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
+from distal.scene.tree.calls import result_of
+from distal.scene.tree.conversion import Number, shown
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node, Rule
+
+
+def bound(
+    rule: Rule, args: Sequence[Any], kwargs: Mapping[str, Any], place: Span | None
+) -> tuple[dict[str, Number], dict[str, Any]]:
+    """A rule's numbers and constants from what the author gave."""
+    given = arguments(
+        _functions(rule),
+        args,
+        kwargs,
+        what=rule.name,
+        limits=rule.limits,
+        requires=rule.requires,
+        place=place,
+        reserved=RESERVED_OF_SHAPES if isinstance(rule, Primitive) else RESERVED,
+    )
+    numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
+    constants = {name: value for name, value in given.items() if name not in numbers}
+    return numbers, constants
+
+
+def _functions(rule: Rule) -> tuple[Func, ...]:
+    if isinstance(rule, Primitive):
+        return (rule.distance,)
+    made = (rule.point, rule.combine, rule.around, rule.finish)
+    return tuple(func for func in made if func is not None)
+
+
+def own_node(
+    function: Any,
+    numbers: Mapping[str, Any],
+    place: Span | None,
+    *,
+    slope: Any,
+    bounds: Any,
+    exact: bool,
+    growth: Any,
+) -> Node:
+    """The node of an author's function."""
+    if not isinstance(function, Func):
+        refuse(
+            f"a shape is made from a @func, not from {function!r:.60}",
+            "write @func above it",
+            place,
+        )
+    flat = _is_flat(function, place)
+    name, box = function.name, None
+    gives = result_of(function)
+    if gives is not None and gives is not FLOAT:
+        hint = f"def {name}(p: {VEC2 if flat else VEC3}) -> float"
+        refuse(f"'{name}' is no field: a distance is a float, not {gives}", hint, place)
+    rule = Primitive(name, function, EXACT if exact else NOTHING)
+    own, constants = bound(rule, (), numbers, place)
+    found: dict[str, Any] = dict(own)
+    limits = {"slope": Limit.POSITIVE}
+    found |= arguments(
+        boxes.given_slope, (slope,), {}, what=name, limits=limits, place=place, reserved=()
+    )
+    if bounds is not None:
+        box = boxes.given_bounds2 if flat else boxes.given_bounds
+        corners = _corners(bounds, place)
+        found |= arguments(box, corners, {}, what=name, requires=_ordered, place=place)
+    rule = replace(rule, slope=boxes.given_slope, bounds=box)
+    if growth is not None:
+        found |= arguments(
+            boxes.given_growth, (growth,), {}, what=name, requires=_grows, place=place, reserved=()
+        )
+        rule = replace(rule, growth=boxes.given_growth)
+    return Node(rule, flat, (), found, constants, place)
+
+
+def _corners(bounds: Any, place: Span | None) -> tuple[Any, Any]:
+    try:
+        low, high = bounds
+    except (TypeError, ValueError):
+        hint = "bounds=((-1, -1, -1), (1, 1, 1))"
+        refuse(f"bounds are two corners, (low, high), not {bounds!r:.60}", hint, place)
+    return low, high
+
+
+def _ordered(low: tuple[float, ...], high: tuple[float, ...]) -> str | None:
+    if all(a < b for a, b in zip(low, high, strict=True)):
+        return None
+    return f"nothing lies between bounds {shown(low)} and {shown(high)}: the low corner comes first"
+
+
+def _grows(growth: float) -> str | None:
+    return None if growth >= 1.0 else "growth must be 1 or more"
+
+
+def _is_flat(function: Func, place: Span | None) -> bool:
+    slots = read_header(function.overloads[0]).slots
+    annotation = next((s.annotation for s in slots if s.name == "p"), None)
+    type = getattr(annotation, "__distal_type__", None)
+    if not isinstance(type, Vector) or type not in (VEC2, VEC3):
+        refuse(
+            f"'{function.name}' is no field: it needs a parameter p: vec3 (or vec2)",
+            f"def {function.name}(p: vec3) -> float",
+            place,
+        )
+    return type is VEC2

@@ -1,0 +1,255 @@
+"""Text as outlines: which font, which glyphs, where each stands.
+
+What flows in: a text, a font's name or file. What flows out: an ``Outline``. Glyphs stand side by
+side as the font's widths and its kerning say; there are no ligatures, and all runs from left to
+right. Without a font Pillow's own is taken, the same everywhere; where that lacks a letter, the
+first known font of the machine that has all.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+from collections.abc import Iterator
+from functools import lru_cache
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Final
+
+from distal.diagnostics import Span
+from distal.frontend.problems import did_you_mean
+from distal.packages import imported
+from distal.scene.objects.outlines import Edge, Outline, font_tools, made_of, outline_pen
+from distal.scene.tree.conversion import beside
+from distal.scene.tree.errors import SceneValueError, refuse, refuse_kind
+from distal.scene.tree.source_places import author_place
+
+ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
+SUFFIXES: Final = (".ttf", ".otf", ".ttc", ".otc")
+# Fonts with many letters, as they are called where they are common.
+KNOWN: Final = ("dejavusans", "notosansregular", "arialunicode", "arial", "segoeui", "helvetica")
+# Of the em square, where a font does not tell the height of its capital letters.
+CAPITALS: Final = 0.7
+
+
+def text_outline(
+    text: str,
+    *,
+    font: str | os.PathLike[str] | None = None,
+    size: float = 1.0,
+    align: str = "center",
+    line_spacing: float = 1.2,
+    place: Span | None = None,
+) -> Outline:
+    r"""The outline of a text, the middle of its capital letters at height 0.
+
+    Args:
+        text: What is written; "\n" starts a new line.
+        font: The font's file, or the name of an installed one; None for a plain one.
+        size: Of the font: capital letters are about 0.7 of it high.
+        align: Where x = 0 is in each line: "left", "center" or "right".
+        line_spacing: From line to line, in sizes.
+        place: The author's line.
+
+    Raises:
+        SceneValueError: There is nothing to see, no such font, or it lacks a letter.
+        SceneTypeError: It is no text.
+    """
+    place = place or author_place()
+    if not isinstance(text, str):
+        refuse_kind(f"a text is what is written, not {text!r:.40}", None, place)
+    if align not in ALIGNMENTS:
+        refuse(f"align is 'left', 'center' or 'right', not {align!r}", None, place)
+    for name, value in (("size", size), ("line_spacing", line_spacing)):
+        if not 0.0 < value < math.inf:
+            refuse(f"{name} must be above 0, not {value}", None, place)
+    rows = text.split("\n")
+    if not text.strip():
+        refuse("a text needs a letter", None, place)
+    face = _face(font, set("".join(rows)), place)
+    scale = size / face.units
+    middle = 0.5 * (face.capitals * scale - (len(rows) - 1) * line_spacing * size)
+    edges: list[Edge] = []
+    for i, row in enumerate(rows):
+        glyphs, width = face.laid_out(row, place)
+        origin = complex(-ALIGNMENTS[align] * width * scale, -i * line_spacing * size - middle)
+        edges += [tuple(origin + scale * p for p in edge) for edge in glyphs]
+    if not edges:
+        refuse("a text needs a letter that can be seen", None, place)
+    return made_of(edges, "this text", place)
+
+
+class Face:
+    """A font, opened.
+
+    Attributes:
+        units: How many make up its size.
+        capitals: The height of capital letters.
+    """
+
+    def __init__(self, font: Any) -> None:
+        self._glyphs = font.getGlyphSet()
+        self._names: dict[int, str] = font.getBestCmap() or {}
+        self._kerning = _Kerning(font)
+        self.units = float(font["head"].unitsPerEm)
+        sizes = font.get("OS/2")
+        self.capitals = float(getattr(sizes, "sCapHeight", 0) or CAPITALS * self.units)
+
+    def lacks(self, letters: set[str]) -> list[str]:
+        """The letters that it has no glyph for."""
+        return sorted(c for c in letters if ord(c) not in self._names)
+
+    def laid_out(self, row: str, place: Span | None) -> tuple[list[Edge], float]:
+        """The edges of a line from x = 0 on its base line, and its width."""
+        at = 0.0
+        edges: list[Edge] = []
+        before = None
+        for letter in row:
+            name = self._names[ord(letter)]
+            at += self._kerning.between(before, name) if before else 0.0
+            pen = outline_pen(self._glyphs, place)
+            self._glyphs[name].draw(pen)
+            edges += [tuple(at + p for p in edge) for edge in pen.finished()]
+            at += self._glyphs[name].width
+            before = name
+        return edges, at
+
+
+class _Kerning:
+    """How much nearer or farther two glyphs stand: by the new table's pairs, else the old one's."""
+
+    def __init__(self, font: Any) -> None:
+        self._new = list(_pair_tables(font["GPOS"].table)) if "GPOS" in font else []
+        self._old = font["kern"].kernTables if "kern" in font and not self._new else []
+
+    def between(self, first: str, second: str) -> float:
+        """In the font's units; the first table that knows the pair tells."""
+        for table in self._new:
+            if first in table.Coverage.glyphs:
+                value = _pair_value(table, first, second)
+                if value is not None:
+                    return float(getattr(value, "XAdvance", 0) or 0)
+        for table in self._old:
+            by = getattr(table, "kernTable", {}).get((first, second))
+            if by is not None:
+                return float(by)
+        return 0.0
+
+
+def _pair_tables(table: Any) -> Iterator[Any]:
+    """The tables of pairs that the feature "kern" names, in order."""
+    features = table.FeatureList.FeatureRecord if table.FeatureList else []
+    kerning = [f.Feature.LookupListIndex for f in features if f.FeatureTag == "kern"]
+    for index in sorted({index for indices in kerning for index in indices}):
+        for found in table.LookupList.Lookup[index].SubTable:
+            subtable = getattr(found, "ExtSubTable", found)
+            if type(subtable).__name__ == "PairPos":
+                yield subtable
+
+
+def _pair_value(table: Any, first: str, second: str) -> Any:
+    """What a table says of a pair whose first glyph it covers; None if nothing."""
+    if table.Format == 1:
+        pairs = table.PairSet[table.Coverage.glyphs.index(first)].PairValueRecord
+        return next((pair.Value1 for pair in pairs if pair.SecondGlyph == second), None)
+    before = table.ClassDef1.classDefs.get(first, 0)
+    after = table.ClassDef2.classDefs.get(second, 0)
+    # Class 0 is every glyph that the table does not name: a later table may know it.
+    return table.Class1Record[before].Class2Record[after].Value1 if after else None
+
+
+# Finding fonts
+
+
+def _face(font: str | os.PathLike[str] | None, letters: set[str], place: Span | None) -> Face:
+    """The font asked for, or one that has all the letters."""
+    face = _pillows_face() if font is None else _opened(_file_of(font, place), place)
+    missing = face.lacks(letters) if face else sorted(letters)
+    if face is not None and not missing:
+        return face
+    if font is None:
+        installed = _installed()
+        for name in KNOWN:
+            if name in installed:
+                other = _opened(installed[name], place)
+                if not other.lacks(letters):
+                    return other
+    shown = ", ".join(repr(c) for c in missing[:8])
+    has = "the font has" if font is not None else "no font that is known has"
+    refuse(f"{has} no {shown}", "name another with font=", place)
+
+
+def _file_of(font: str | os.PathLike[str], place: Span | None) -> str:
+    if not isinstance(font, str | os.PathLike):
+        refuse_kind(f"font is a file or a name, not {font!r:.40}", None, place)
+    wanted = os.fspath(font)
+    if wanted.lower().endswith(SUFFIXES):
+        found = os.fspath(beside(wanted, place))
+        if not os.path.isfile(found):
+            refuse(f"there is no font file '{wanted}'", None, place)
+        return found
+    installed = _installed()
+    plain = _plain(wanted)
+    for name in (plain, plain + "regular"):
+        if name in installed:
+            return installed[name]
+    hint = did_you_mean(plain, installed) or "give the font's file"
+    refuse(f"there is no font '{wanted}' on this machine", hint, place)
+
+
+def _plain(name: str) -> str:
+    """A font's name without what writings of it differ by."""
+    return "".join(c for c in name.lower() if c.isalnum())
+
+
+def _opened(file: str, place: Span | None) -> Face:
+    try:
+        return _open_file(file, os.stat(file).st_mtime_ns)
+    except SceneValueError:
+        raise
+    except Exception as error:  # fontTools meets broken files with any kind of error
+        refuse(f"the font '{os.path.basename(file)}' cannot be read: {error}", None, place)
+
+
+@lru_cache(maxsize=8)
+def _open_file(file: str, changed: int) -> Face:
+    data = BytesIO(Path(file).read_bytes())
+    return Face(font_tools("ttLib", None).TTFont(data, fontNumber=0))
+
+
+@lru_cache(maxsize=1)
+def _pillows_face() -> Face | None:
+    """The font inside Pillow, or None where Pillow was built without FreeType."""
+    images: Any = imported("PIL.ImageFont")
+    data = getattr(images.load_default(10), "font_bytes", None)
+    if not data:
+        return None
+    return Face(font_tools("ttLib", None).TTFont(BytesIO(data)))
+
+
+@lru_cache(maxsize=1)
+def _installed() -> dict[str, str]:
+    """The fonts of the machine: files by plain name, the first found of each."""
+    found: dict[str, str] = {}
+    for folder in _folders():
+        for file in sorted(folder.rglob("*")):
+            if file.suffix.lower() in SUFFIXES:
+                found.setdefault(_plain(file.stem), str(file))
+    return found
+
+
+def _folders() -> list[Path]:
+    home = Path.home()
+    if sys.platform == "win32":
+        windows = Path(os.environ.get("WINDIR", "C:/Windows"))
+        own = Path(os.environ.get("LOCALAPPDATA", home)) / "Microsoft" / "Windows"
+        places = [own / "Fonts", windows / "Fonts"]
+    elif sys.platform == "darwin":
+        places = [home / "Library/Fonts", Path("/Library/Fonts"), Path("/System/Library/Fonts")]
+    else:
+        data = os.environ.get("XDG_DATA_HOME") or home / ".local/share"
+        shared = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
+        roots = [Path(data), *map(Path, shared.split(":"))]
+        places = [*(root / "fonts" for root in roots), home / ".fonts"]
+    return [place for place in places if place.is_dir()]

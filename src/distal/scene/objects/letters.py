@@ -1,0 +1,74 @@
+"""Letters and drawings as flat shapes: ``Text`` and ``SvgPath``.
+
+What flows in: a text, or the text of an SVG path. What flows out: flat shapes, exact outside, to be
+extruded, engraved and combined like any other. Reading fonts and paths stands in ``lettering`` and
+``outlines``, loaded only when one is made.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+from typing import Any
+
+from distal.diagnostics import Span
+from distal.fields.flats.outlines import OUTLINE
+from distal.scene.objects.field import Field
+from distal.scene.objects.shape import Shape2D
+from distal.scene.tree.node import Node
+from distal.scene.tree.source_places import author_place
+
+
+class Text(Shape2D):
+    r"""Letters of a font, the middle of the capitals at height 0.
+
+    Args:
+        text: What is written; "\n" starts a new line.
+        font: The font's file, or the name of an installed one; None for a plain one.
+        size: Of the font: capital letters are about 0.7 of it high.
+        align: Where x = 0 is in each line: "left", "center" or "right".
+        line_spacing: From line to line, in sizes.
+
+    Raises:
+        CompileError: At the author's line: nothing to see, no such font, or a letter it lacks.
+    """
+
+    def __init__(
+        self,
+        text: str,
+        *,
+        font: str | os.PathLike[str] | None = None,
+        size: float = 1.0,
+        align: str = "center",
+        line_spacing: float = 1.2,
+    ) -> None:
+        place = author_place()
+        room = importlib.import_module("distal.scene.objects.lettering")
+        outline = room.text_outline(
+            text, font=font, size=size, align=align, line_spacing=line_spacing, place=place
+        )
+        Field.__init__(self, _node(outline, place, even_odd=False))
+
+
+class SvgPath(Shape2D):
+    """The area that an SVG path encloses, upright, its middle at the origin.
+
+    Args:
+        path: What stands in the attribute ``d``: "M 0 0 L 10 0 …".
+        size: The larger of width and height; None keeps the drawing's own units.
+        even_odd: Whether parts within parts are holes, whichever way they turn.
+
+    Raises:
+        CompileError: At the author's line, when the path cannot be read.
+    """
+
+    def __init__(self, path: str, *, size: float | None = None, even_odd: bool = False) -> None:
+        place = author_place()
+        room = importlib.import_module("distal.scene.objects.outlines")
+        outline = room.svg_path(path, size=size, place=place)
+        Field.__init__(self, _node(outline, place, even_odd=bool(even_odd)))
+
+
+def _node(outline: Any, place: Span | None, *, even_odd: bool) -> Node:
+    constants = {"lines": outline.lines, "curves": outline.curves, "even_odd": even_odd}
+    return Node(OUTLINE, True, (), {}, constants, place)

@@ -1,0 +1,442 @@
+"""Materials: what a shape looks like.
+
+What flows in: colours, weights and numbers, each plain, a parameter, changing with time, or a
+pattern. What flows out: a ``Material``, which gives its ``Surface`` at a place of the shape it
+paints. The formulas are scene code of ``render.material``; this module checks and remembers what a
+scene must know of a material to choose its renderer: whether rays bounce off it, or go into it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import FunctionType
+from typing import Any, Final
+
+from distal.diagnostics import Span
+from distal.fields.guarantees import Limit
+from distal.ir.nodes import Expr
+from distal.ir.types import FLOAT, VEC3, Struct
+from distal.lang import func, log, max, vec3
+from distal.lang.expressions import Expression, Symbolic
+from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
+from distal.lang.values import VectorValue
+from distal.render import material as library
+from distal.scene.tree.arguments import arguments
+from distal.scene.tree.calls import PLACE_NAMES, Composer, FunctionCall, Pattern
+from distal.scene.tree.conversion import Asked, Number, number, unwrapped
+from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.source_places import author_place
+
+_LIMITS: Final = {
+    "color": Limit.FRACTION,
+    "diffuse": Limit.FRACTION,
+    "specular": Limit.FRACTION,
+    "transmission": Limit.FRACTION,
+    "ior": Limit.POSITIVE,
+    "roughness": Limit.FRACTION,
+    "metal": Limit.FRACTION,
+    "fresnel": Limit.FRACTION,
+    "amount": Limit.FRACTION,
+    "absorption": Limit.NOT_NEGATIVE,
+}
+_COLORS: Final = ("color", "emission", "absorption")
+_WEIGHTS: Final = ("diffuse", "specular", "transmission")
+# Weights like 0.85, 0.05 and 0.1 add up to a little more than 1 in floats.
+_SLACK: Final = 1e-6
+# No glass is black: what it leaves of the light at least, so that its logarithm is finite.
+_DARKEST: Final = 1e-4
+
+
+class Material(Unchanging):
+    """What a shape looks like. It never changes once it is made.
+
+    ``diffuse``, ``specular`` and ``transmission`` share out the light that arrives, and add up to
+    at most 1. Each argument is a number (a colour), a parameter, an expression, or a pattern.
+
+    Args:
+        color: What it scatters, and a metal mirrors: "#rrggbb", or linear red, green, blue.
+        diffuse: Share of light scattered to all sides.
+        specular: Share of light mirrored.
+        transmission: Share of light let in.
+        ior: Index of refraction.
+        roughness: 0 mirrors sharply, 1 hardly at all.
+        metal: 1 colours what it mirrors, 0 mirrors white.
+        emission: Light that it gives off by itself, a colour.
+        absorption: What a unit of its inside takes from light, for each colour.
+        fresnel: Whether mirroring grows towards glancing angles as in glass; False keeps the
+            weights as they stand.
+
+    Raises:
+        ValueError: A number is out of its range, or the weights add up to more than 1.
+        TypeError: Something is of another kind.
+
+    Attributes:
+        call: The scene function ``(places…) -> Surface`` and what it is given.
+        reflects: Whether a ray may bounce off.
+        refracts: Whether a ray may go in.
+    """
+
+    __slots__ = ("__weakref__", "call", "reflects", "refracts")
+
+    call: FunctionCall
+    reflects: bool
+    refracts: bool
+
+    def __init__(
+        self,
+        color: Any = (1.0, 1.0, 1.0),
+        diffuse: Any = 1.0,
+        specular: Any = 0.0,
+        transmission: Any = 0.0,
+        ior: Any = 1.5,
+        roughness: Any = 0.0,
+        metal: Any = 0.0,
+        emission: Any = (0.0, 0.0, 0.0),
+        absorption: Any = (0.0, 0.0, 0.0),
+        *,
+        fresnel: Any = False,
+    ) -> None:
+        given = {
+            "color": color,
+            "diffuse": diffuse,
+            "specular": specular,
+            "transmission": transmission,
+            "ior": ior,
+            "roughness": roughness,
+            "metal": metal,
+            "emission": emission,
+            "absorption": absorption,
+            "fresnel": float(fresnel) if isinstance(fresnel, bool) else fresnel,
+        }
+        place = author_place()
+        call = _call("Material", surface, given, place)
+        reflects = _may_be(call.values["specular"]) or _may_be(call.values["fresnel"])
+        self._be(call, reflects, _may_be(call.values["transmission"]))
+
+    def _be(self, call: FunctionCall, reflects: bool, refracts: bool) -> None:
+        object.__setattr__(self, "call", call)
+        object.__setattr__(self, "reflects", reflects)
+        object.__setattr__(self, "refracts", refracts)
+
+    @classmethod
+    def of(cls, call: FunctionCall, *, reflects: bool, refracts: bool) -> Material:
+        """A material of a scene function that gives a ``Surface``."""
+        made = cls.__new__(cls)
+        made._be(call, reflects, refracts)
+        return made
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError("a material does not change; make another")
+
+    def __repr__(self) -> str:
+        return f"<material {self.call.what}>"
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """Which of "p", "n", "cell" it needs."""
+        return self.call.uses
+
+    def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
+        """Its ``Surface`` at a place; ``site`` has what it uses."""
+        return self.call.emit(composer, site)
+
+    def functions(self) -> Iterator[Func]:
+        """The functions that it calls."""
+        return self.call.functions()
+
+    def mix(self, other: Any, t: Any = 0.5) -> Material:
+        """This where ``t`` is 0, another material where it is 1, every number mixed between.
+
+        Args:
+            other: A material or a colour.
+            t: 0 to 1; a pattern too.
+        """
+        return mixed(self, as_material(other), t, "mix", author_place())
+
+
+@func
+def surface(
+    color: vec3,
+    diffuse: float,
+    specular: float,
+    transmission: float,
+    ior: float,
+    roughness: float,
+    metal: float,
+    emission: vec3,
+    absorption: vec3,
+    fresnel: float,
+) -> library.Surface:
+    """A surface of its numbers."""
+    return library.Surface(
+        color,
+        diffuse,
+        specular,
+        transmission,
+        ior,
+        roughness,
+        metal,
+        emission,
+        absorption,
+        fresnel,
+    )
+
+
+@func
+def grey(amount: float) -> vec3:
+    """An amount as a colour."""
+    return vec3(amount)
+
+
+def accept(value: Any, asked: Asked) -> Any:
+    """What stands for a pattern, a function or a material where a number could stand, else None."""
+    if isinstance(value, Func):
+        value = own_pattern(value, (), {}, asked.place)
+    if isinstance(asked.type, Struct):
+        return as_material(value, asked.place) if asked.type.name == "Surface" else None
+    if isinstance(value, Material):
+        refuse_kind(f"'{asked.label}' takes no material", place=asked.place)
+    if not isinstance(value, Pattern):
+        return None
+    if value.result is asked.type:
+        return value
+    if asked.type is VEC3 and value.result is FLOAT:
+        return Pattern("grey", grey, {"amount": value}, value.place)
+    refuse_kind(
+        f"'{asked.label}' takes a {asked.type}; {value.what} gives a {value.result}",
+        place=asked.place,
+    )
+
+
+def own_pattern(
+    function: Func, args: tuple[Any, ...], kwargs: Mapping[str, Any], place: Span | None
+) -> Pattern | Material:
+    """An author's function of a place as a pattern, or as a material where it gives a Surface."""
+    what = function.name
+    call = _call(what, function, kwargs, place, args, {})
+    result = call.result
+    if isinstance(result, Struct) and result.name == "Surface":
+        return Material.of(call, reflects=True, refracts=True)
+    if result is FLOAT or result is VEC3:
+        return Pattern(what, function, call.values, place)
+    gives = "nothing that is known" if result is None else f"a {result}"
+    refuse_kind(
+        f"'{what}' is no pattern: it gives {gives}",
+        f"def {what}(p: vec3) -> vec3, or -> float, or -> Surface",
+        place,
+    )
+
+
+def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Material:
+    """Two materials mixed by a share of the second."""
+    share = arguments(
+        library.mix_surfaces,
+        (),
+        {"t": t},
+        what=what,
+        limits={"t": Limit.FRACTION},
+        place=place,
+        accept=accept,
+    )
+    call = FunctionCall(what, library.mix_surfaces, {"a": a, "b": b, **share}, place)
+    return Material.of(
+        call,
+        reflects=a.reflects or b.reflects,
+        refracts=a.refracts or b.refracts,
+    )
+
+
+def as_material(value: Any, place: Span | None = None) -> Material:
+    """A material, or what stands for one: a colour, a pattern of colours, a @func of a place.
+
+    Raises:
+        TypeError: It is none of these.
+        ValueError: It is no colour.
+    """
+    place = place or author_place()
+    if isinstance(value, Func):
+        value = own_pattern(value, (), {}, place)
+    if isinstance(value, Material):
+        return value
+    plain = unwrapped(value)
+    is_color = isinstance(plain, str | tuple | list | Symbolic | VectorValue | Pattern)
+    if not is_color:
+        hint = 'write matte("#rrggbb"), glass(), metal() or Material(color=…)'
+        if isinstance(value, FunctionType) and value.__module__.startswith("distal."):
+            hint = f"call it: {value.__name__}()"
+        refuse_kind(
+            f"a material or a color is wanted, not {type(value).__name__} {value!r:.40}",
+            hint,
+            place,
+        )
+    return _made("matte", library.matte, {"color": value}, place)
+
+
+# The kinds of materials
+
+
+def matte(color: Any = (1.0, 1.0, 1.0)) -> Material:
+    """A material that scatters light evenly to all sides: plaster, paper.
+
+    Args:
+        color: What it scatters.
+    """
+    given = {"color": color}
+    return _made("matte", library.matte, given)
+
+
+def glossy(
+    color: Any = (1.0, 1.0, 1.0),
+    diffuse: Any = 0.5,
+    specular: Any = 0.5,
+    roughness: Any = 0.0,
+) -> Material:
+    """A material that scatters a part of the light and mirrors a part, alike from all sides.
+
+    Args:
+        color: What it scatters.
+        diffuse: Share of light scattered.
+        specular: Share of light mirrored.
+        roughness: 0 mirrors sharply, 1 hardly at all.
+
+    Raises:
+        ValueError: The shares add up to more than 1, or a number is out of its range.
+        TypeError: Something is of another kind.
+    """
+    given = {"color": color, "diffuse": diffuse, "specular": specular, "roughness": roughness}
+    return _made("glossy", library.glossy, given, reflects=True)
+
+
+def metal(color: Any = (0.91, 0.92, 0.92), roughness: Any = 0.2) -> Material:
+    """A metal: it mirrors in its own colour.
+
+    Args:
+        color: What it mirrors, seen straight on.
+        roughness: 0 mirrors sharply, 1 hardly at all.
+    """
+    given = {"color": color, "roughness": roughness}
+    return _made("metal", library.metal, given, reflects=True)
+
+
+def mirror(color: Any = (1.0, 1.0, 1.0)) -> Material:
+    """A perfect mirror.
+
+    Args:
+        color: What it mirrors.
+    """
+    given = {"color": color}
+    return _made("mirror", library.mirror, given, reflects=True)
+
+
+def glass(ior: Any = 1.5, color: Any = None, *, absorption: Any = None) -> Material:
+    """Glass, water, ice: light goes in, and is mirrored more the flatter it comes.
+
+    Args:
+        ior: Index of refraction: 1.33 water, 1.5 glass, 2.42 diamond.
+        color: What white light becomes on one unit of way inside; instead of ``absorption``.
+        absorption: How much of each colour the inside takes for each unit of way.
+
+    Raises:
+        ValueError: The index is not above 0, or a number is out of its range.
+        TypeError: Something is of another kind, or both color and absorption are given.
+    """
+    place = author_place()
+    if color is not None and absorption is not None:
+        refuse_kind("glass takes color or absorption, not both", "each tells the other", place)
+    given = {"ior": ior}
+    if color is not None:
+        given["absorption"] = _absorption(color, place)
+    elif absorption is not None:
+        given["absorption"] = absorption
+    return _made("glass", library.glass, given, place, reflects=True, refracts=True)
+
+
+def _absorption(color: Any, place: Span | None) -> Any:
+    """What takes white light to a colour in one unit of way (Beer and Lambert)."""
+    asked = Asked("color", "glass", VEC3, Limit.FRACTION, is_color=True, place=place)
+    left: Any = number(color, asked).value
+    if not isinstance(left, Expression):
+        left = vec3(*left)
+    return -log(max(left, _DARKEST))
+
+
+def plastic(color: Any = (1.0, 1.0, 1.0), roughness: Any = 0.2, ior: Any = 1.5) -> Material:
+    """A scattering material under a clear coat: it mirrors more the flatter light comes.
+
+    Args:
+        color: What it scatters.
+        ior: Index of refraction of the coat.
+        roughness: Of the coat; 0 mirrors sharply.
+    """
+    given = {"color": color, "ior": ior, "roughness": roughness}
+    return _made("plastic", library.plastic, given, reflects=True)
+
+
+def emissive(color: Any = (1.0, 1.0, 1.0), strength: Any = 1.0) -> Material:
+    """A material that shines by itself and shows nothing else.
+
+    Args:
+        color: What it gives off.
+        strength: A factor on it; beyond 1 too.
+    """
+    place = author_place()
+    given = {"color": color, "strength": strength}
+    # What shines may be brighter than white.
+    call = _call(
+        "emissive", library.emissive, given, place, limits={"strength": Limit.NOT_NEGATIVE}
+    )
+    return Material.of(call, reflects=False, refracts=False)
+
+
+def _made(
+    what: str,
+    function: Func,
+    given: Mapping[str, Any],
+    place: Span | None = None,
+    *,
+    reflects: bool = False,
+    refracts: bool = False,
+) -> Material:
+    call = _call(what, function, given, place or author_place())
+    return Material.of(call, reflects=reflects, refracts=refracts)
+
+
+def _call(
+    what: str,
+    function: Func,
+    given: Mapping[str, Any],
+    place: Span | None,
+    args: tuple[Any, ...] = (),
+    limits: Mapping[str, Limit] = _LIMITS,
+) -> FunctionCall:
+    values = arguments(
+        function,
+        args,
+        given,
+        what=what,
+        limits=limits,
+        place=place,
+        reserved=PLACE_NAMES,
+        colors=_COLORS,
+        accept=accept,
+    )
+    _check_weights(what, values, place)
+    return FunctionCall(what, function, values, place)
+
+
+def _may_be(value: Any) -> bool:
+    """Whether a weight is, or may become, more than nothing."""
+    return not isinstance(value, Number) or value.may_exceed(0.0)
+
+
+def _check_weights(what: str, values: Mapping[str, Any], place: Span | None) -> None:
+    known = {n: values[n].plain for n in _WEIGHTS if isinstance(values.get(n), Number)}
+    total = sum(weight for weight in known.values() if weight is not None)
+    if total > 1.0 + _SLACK:
+        listed = " + ".join(f"{name} {known[name]:g}" for name in known if known[name])
+        refuse(
+            f"the weights of {what} add up to {total:g}: {listed}",
+            "give away at most all of the light: a sum of 1",
+            place,
+        )

@@ -1,0 +1,263 @@
+"""Drawings and letters as outlines: the chains of lines and curves that ``fields.outlines`` reads.
+
+What flows in: the text of an SVG path, or a text and a font (``scene.lettering`` lays it out). What
+flows out: an ``Outline``: the buffers of edges and the box around them. What cannot be read is told
+at the author's line. Reading paths and fonts is left to fontTools, an optional package.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+
+from distal.diagnostics import Span
+from distal.lang.resources import Buffer
+from distal.packages import PackageError, imported
+from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.source_places import author_place
+
+# Two points: a line. Three: a quadratic Bézier curve. Four: a cubic one. y points up.
+Edge: TypeAlias = tuple[complex, ...]
+
+# How far a quadratic curve may leave the cubic that it stands for, in sides of the outline's box.
+TOLERANCE: Final = 1.0 / 4000.0
+# Flatter than this share of its length, a curve is a line.
+STRAIGHT: Final = 1e-6
+_NOT_IN_A_PATH: Final = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+\-.,\s]")
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """Closed chains of edges, as the buffers of ``fields.outlines.outline``.
+
+    Attributes:
+        lines: Start and end of each line, a vec4 each.
+        curves: Start, control point and end of each quadratic curve, three vec2 each.
+        low: The lower left corner of the box around all.
+        high: The upper right corner.
+    """
+
+    lines: Buffer
+    curves: Buffer
+    low: tuple[float, float]
+    high: tuple[float, float]
+
+
+def svg_path(path: str, *, size: float | None = None, place: Span | None = None) -> Outline:
+    """The outline of an SVG path, its middle at the origin, upright.
+
+    Open parts are closed by a line, as SVG does before it fills them.
+
+    Args:
+        path: What stands in the attribute ``d``: "M 0 0 L 10 0 …".
+        size: The larger of width and height; None keeps the drawing's own units.
+        place: The author's line.
+
+    Raises:
+        SceneValueError: It is no path, or encloses nothing.
+        SceneTypeError: It is no text.
+    """
+    place = place or author_place()
+    if not isinstance(path, str):
+        refuse_kind(f"an SVG path is a text, not {path!r:.40}", 'write "M 0 0 L 1 0 …"', place)
+    strange = _NOT_IN_A_PATH.search(path)
+    if strange or path.strip()[:1] not in ("M", "m"):
+        what = f"holds {strange[0]!r}" if strange else "does not start with M"
+        hint = "give the attribute d of a <path>: M 0 0 L 1 0 …"
+        refuse(f"this is no SVG path: it {what}", hint, place)
+    pen = outline_pen(None, place)
+    try:
+        font_tools("svgLib.path", place).parse_path(path, pen)
+        edges = pen.finished()
+    except (ValueError, IndexError, TypeError, AttributeError, AssertionError) as error:
+        hint = "M, L, Q and A take 2, 2, 4 and 7 numbers"
+        refuse(f"this SVG path cannot be read: {error or 'numbers are missing'}", hint, place)
+    upright = [tuple(p.conjugate() for p in edge) for edge in edges]
+    low, high = _corners(upright, "this SVG path", place)
+    extent = max(high.real - low.real, high.imag - low.imag)
+    if size is not None and not 0.0 < size < math.inf:
+        refuse(f"size must be above 0, not {size}", None, place)
+    scale = 1.0 if size is None else size / extent
+    middle = 0.5 * (low + high)
+    moved = [tuple((p - middle) * scale for p in edge) for edge in upright]
+    return made_of(moved, "this SVG path", place)
+
+
+def font_tools(module: str, place: Span | None) -> Any:
+    """A module of fontTools.
+
+    Raises:
+        SceneValueError: It is missing or broken.
+    """
+    try:
+        return imported(f"fontTools.{module}")
+    except PackageError as error:
+        why = "" if error.is_missing else f": {error}"
+        refuse(f"outlines need the package fontTools{why}", "pip install 'distal[text]'", place)
+
+
+def outline_pen(glyphs: Any, place: Span | None) -> Any:
+    """A pen, in fontTools' sense, that keeps edges; ``finished()`` gives them, chains closed."""
+    base: Any = font_tools("pens.basePen", place).BasePen
+
+    class OutlinePen(base):  # type: ignore[misc]
+        def __init__(self) -> None:
+            super().__init__(glyphs)
+            self.edges: list[Edge] = []
+            self.start = self.at = 0j
+
+        def _add(self, *points: tuple[float, float]) -> None:
+            ahead = tuple(complex(*p) for p in points)
+            self.edges.append((self.at, *ahead))
+            self.at = ahead[-1]
+
+        def _moveTo(self, point: tuple[float, float]) -> None:  # noqa: N802
+            self._closePath()
+            self.start = self.at = complex(*point)
+
+        def _lineTo(self, point: tuple[float, float]) -> None:  # noqa: N802
+            self._add(point)
+
+        def _curveToOne(self, *points: tuple[float, float]) -> None:  # noqa: N802
+            self._add(*points)
+
+        def _qCurveToOne(self, *points: tuple[float, float]) -> None:  # noqa: N802
+            self._add(*points)
+
+        def _closePath(self) -> None:  # noqa: N802
+            if self.at != self.start:
+                self.edges.append((self.at, self.start))
+                self.at = self.start
+
+        _endPath = _closePath  # noqa: N815
+
+        def finished(self) -> list[Edge]:
+            self._closePath()
+            return self.edges
+
+    return OutlinePen()
+
+
+def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
+    """An outline of closed chains.
+
+    Args:
+        edges: In any order.
+        what: What is drawn, for messages.
+        place: The author's line.
+
+    Raises:
+        SceneValueError: It encloses nothing, or a number is not finite.
+    """
+    given = list(edges)
+    low, high = _corners(given, what, place)
+    tolerance = TOLERANCE * max(high.real - low.real, high.imag - low.imag)
+    lines: list[Edge] = []
+    curves: list[Edge] = []
+    for edge in given:
+        for part in _parts(edge, tolerance):
+            if len(part) == 3:
+                curves.append(part)
+            elif part[0] != part[1]:
+                lines.append(part)
+    # A buffer holds something: an edge without length is nowhere near and crosses nothing.
+    anywhere = (lines or curves)[0][0]
+    lines = lines or [(anywhere, anywhere)]
+    curves = curves or [(anywhere, anywhere, anywhere)]
+    segments = _numbers(lines).reshape(-1, 4)
+    bows = _numbers(curves).reshape(-1, 2)
+    points = np.concatenate([segments.reshape(-1, 2), bows])
+    left, below = points.min(axis=0).tolist()
+    right, above = points.max(axis=0).tolist()
+    return Outline(Buffer(segments), Buffer(bows), (left, below), (right, above))
+
+
+def _numbers(edges: Sequence[Edge]) -> Any:
+    """Two floats for each point, rounded alike wherever the same point stands."""
+    return np.array(edges, np.complex128).view(np.float64).astype(np.float32)
+
+
+def _corners(edges: Sequence[Edge], what: str, place: Span | None) -> tuple[complex, complex]:
+    points = np.array([p for edge in edges for p in edge], np.complex128)
+    if len(points) and not np.isfinite(points).all():
+        refuse(f"{what} holds a number that is not finite", None, place)
+    from_first = points - points[0] if len(points) else np.zeros(1, np.complex128)
+    farthest = from_first[np.argmax(np.abs(from_first))]
+    aside = np.abs((from_first * farthest.conjugate()).imag).max()
+    if aside <= STRAIGHT * abs(farthest) ** 2:
+        refuse(f"{what} encloses nothing", None, place)
+    x, y = points.real, points.imag
+    return complex(x.min(), y.min()), complex(x.max(), y.max())
+
+
+def _parts(edge: Edge, tolerance: float) -> Iterator[Edge]:
+    """Lines, and quadratic curves that rise or fall all the way."""
+    match len(edge):
+        case 2:
+            yield edge
+        case 3:
+            yield from _rising_or_falling(edge)
+        case 4:
+            for quadratic in _quadratics(edge, tolerance):
+                yield from _rising_or_falling(quadratic)
+        case count:
+            raise AssertionError(f"an edge of {count} points")
+
+
+def _quadratics(cubic: Edge, tolerance: float) -> Iterator[Edge]:
+    """Quadratic curves within a tolerance of a cubic one.
+
+    A quadratic with the same ends and middle leaves a cubic by at most sqrt(3)/36 of its third
+    difference, which falls with the cube of the number of parts.
+    """
+    a, b, c, d = cubic
+    bend = abs(d - 3.0 * c + 3.0 * b - a)
+    count = max(1, math.ceil((bend * math.sqrt(3.0) / 36.0 / tolerance) ** (1.0 / 3.0)))
+    at = _cubic_at(cubic)
+    for i in range(count):
+        t, s = i / count, (i + 1) / count
+        start, leaving = at(t)
+        end, arriving = at(s)
+        share = 0.25 / count
+        yield start, 0.5 * (start + end) + share * (leaving - arriving), end
+
+
+def _cubic_at(cubic: Edge) -> Callable[[float], tuple[complex, complex]]:
+    """Place and velocity on a cubic curve; its ends as they were given."""
+    a, b, c, d = cubic
+
+    def at(t: float) -> tuple[complex, complex]:
+        u = 1.0 - t
+        place = u**3 * a + 3.0 * u * u * t * b + 3.0 * u * t * t * c + t**3 * d
+        velocity = 3.0 * (u * u * (b - a) + 2.0 * u * t * (c - b) + t * t * (d - c))
+        return (a if t == 0.0 else d if t == 1.0 else place), velocity
+
+    return at
+
+
+def _rising_or_falling(quadratic: Edge) -> Iterator[Edge]:
+    """A curve, cut where it is level; a line where it is straight."""
+    a, b, c = quadratic
+    fall = a.imag - 2.0 * b.imag + c.imag
+    t = (a.imag - b.imag) / fall if fall else -1.0
+    if 0.0 < t < 1.0:
+        first, second = a + (b - a) * t, b + (c - b) * t
+        turn = first + (second - first) * t
+        # Exactly level there, so that neither part turns back by a rounding.
+        yield from _straightened(a, complex(first.real, turn.imag), turn)
+        yield from _straightened(turn, complex(second.real, turn.imag), c)
+    else:
+        yield from _straightened(a, b, c)
+
+
+def _straightened(a: complex, b: complex, c: complex) -> Iterator[Edge]:
+    along, aside = c - a, b - a
+    across = along.real * aside.imag - along.imag * aside.real
+    between = 0.0 <= along.real * aside.real + along.imag * aside.imag <= abs(along) ** 2
+    straight = abs(across) <= STRAIGHT * abs(along) ** 2 and between
+    yield (a, c) if straight else (a, b, c)

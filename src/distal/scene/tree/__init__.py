@@ -1,0 +1,1 @@
+"""The tree behind shapes, and the checked arguments of its nodes."""

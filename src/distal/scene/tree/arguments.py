@@ -1,0 +1,355 @@
+"""Python's call of a shape, light or material becomes values for a scene function's parameters.
+
+What flows in: the functions of a row (``fields``, ``render``, or the author's own), positional and
+keyword arguments, limits. What flows out: checked ``Number``s, choices, textures and buffers by
+name. Every mistake is told at the author's line, with what mends it. Knows no row's meaning.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final, NoReturn, TypeAlias
+from weakref import WeakKeyDictionary
+
+from distal.diagnostics import CompileError, Span
+from distal.fields.guarantees import PROMISED, Limit, Requirement
+from distal.frontend.problems import did_you_mean
+from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
+from distal.frontend.signatures.signatures import MISSING, read_header
+from distal.ir.nodes import Uniform
+from distal.ir.types import BOOL, FLOAT, INT, Buffer, Kind, Struct, Texture, Type, Vector
+from distal.lang.expressions import Symbolic
+from distal.lang.functions import Func
+from distal.lang.resources import Buffer as LangBuffer
+from distal.lang.resources import TextureValue
+from distal.scene.tree.conversion import (
+    Asked,
+    Number,
+    choice,
+    is_scalar,
+    number,
+    resource,
+    type_name,
+    unwrapped,
+)
+from distal.scene.tree.errors import refuse, refuse_kind
+
+# What a parameter is given; an object of another kind where the caller accepts some (a pattern).
+Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
+# Takes a value and the type wanted: what stands for it, or None to go on as with any number.
+Accept: TypeAlias = Callable[[Any, Asked], Any]
+
+# The names of ``fields.claims`` that are no numbers of a shape.
+RESERVED: Final = PROMISED | {"p", "d", "a", "b", "field", "cell"}
+# Those that a shape of its own keeps from its numbers: it has no distances to join.
+RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d"}
+# One number stands for all components of these.
+_SPLATTED: Final = frozenset(
+    ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")
+)
+_LETTERS: Final = "xyzw"
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One parameter of a scene function; ``type`` is None where a call decides it."""
+
+    name: str
+    type: Type | None
+    default: Any
+
+    @property
+    def is_vector(self) -> bool:
+        """Whether scalars in a row may stand for it."""
+        return isinstance(self.type, Vector) and self.type.kind is Kind.FLOAT
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it takes a float or a vector of floats."""
+        return self.type is FLOAT or self.is_vector
+
+
+_slots: WeakKeyDictionary[Func, tuple[Slot, ...]] = WeakKeyDictionary()
+
+
+def slots_of(func: Func) -> tuple[Slot, ...]:
+    """A function's parameters (of its first overload).
+
+    Raises:
+        CompileError: Its first line says what scene code cannot say.
+    """
+    found = _slots.get(func)
+    if found is None:
+        header = read_header(func.overloads[0])
+        if header.problems:
+            raise CompileError(header.problems)
+        made = []
+        for slot in header.slots:
+            try:
+                type: Type | None = to_type(slot.annotation)
+            except UnboundVariableError:
+                type = None
+            except AnnotationError as error:
+                raise CompileError.at(error.message, slot.span, error.hint) from None
+            made.append(Slot(slot.name, type, slot.default))
+        found = _slots[func] = tuple(made)
+    return found
+
+
+def arguments(
+    functions: Func | Iterable[Func],
+    args: Sequence[Any],
+    kwargs: Mapping[str, Any],
+    *,
+    what: str,
+    limits: Mapping[str, Limit] | None = None,
+    requires: Requirement | None = None,
+    place: Span | None = None,
+    reserved: Collection[str] = RESERVED,
+    colors: Collection[str] = (),
+    accept: Accept | None = None,
+) -> dict[str, Given]:
+    """The values of functions' parameters, by name, in the order of the parameters.
+
+    Several functions are asked as one: a parameter of the same name is the same.
+
+    Args:
+        functions: Scene functions.
+        args: What was given by position.
+        kwargs: What was given by name. ``x=``, ``y=``, ``z=`` are the parts of a vector, where only
+            one parameter is a vector.
+        what: What is being made, for messages: "Sphere".
+        limits: What each number must be.
+        requires: Tells why numbers do not go together. Asked with plain values by name; where a
+            slider stands, with its default; not asked where one that it names is computed.
+        place: The author's line.
+        reserved: Parameters that are no numbers.
+        colors: Parameters that understand "#rrggbb"; ``color`` and ``…_color`` always do.
+        accept: Takes other objects than numbers.
+
+    Raises:
+        SceneTypeError: Something unknown, missing, twice, too many, or of another kind.
+        SceneValueError: A number is not finite, beyond its limit, or does not go with the others.
+    """
+    binding = _Binding(_number_slots(functions, reserved), what, place, accept is not None)
+    binding.take_keywords(kwargs)
+    binding.take_positional(args)
+    values: dict[str, Given] = {}
+    for slot in binding.slots:
+        asked = Asked(
+            slot.name,
+            what,
+            _known_type(slot, what, place),
+            (limits or {}).get(slot.name, Limit.ANY),
+            slot.name in colors or slot.name == "color" or slot.name.endswith("_color"),
+            slot.name in _SPLATTED,
+            place,
+        )
+        values[slot.name] = _value(binding.value_of(slot), asked, accept)
+    _check_together(requires, values, what, place)
+    return values
+
+
+def _number_slots(functions: Func | Iterable[Func], reserved: Collection[str]) -> tuple[Slot, ...]:
+    """The parameters of all functions that are numbers or choices, each name once."""
+    found: dict[str, Slot] = {}
+    for func in (functions,) if isinstance(functions, Func) else functions:
+        for slot in slots_of(func):
+            if slot.name in reserved:
+                continue
+            known = found.setdefault(slot.name, slot)
+            if known.default is MISSING and slot.default is not MISSING:
+                found[slot.name] = replace(known, default=slot.default)
+    return tuple(found.values())
+
+
+def _known_type(slot: Slot, what: str, place: Span | None) -> Type:
+    usable = slot.is_number or slot.type in (INT, BOOL)
+    if not usable and not isinstance(slot.type, Texture | Buffer | Struct):
+        kind = "no one type" if slot.type is None else f"the type {slot.type}"
+        refuse_kind(
+            f"'{slot.name}' of {what} has {kind}, which cannot be given from Python",
+            "numbers are float, vec2, vec3 or vec4; choices int or bool",
+            place,
+        )
+    assert slot.type is not None
+    return slot.type
+
+
+def _value(given: Any, asked: Asked, accept: Accept | None) -> Given:
+    if accept is not None:
+        accepted = accept(given, asked)
+        if accepted is not None:
+            return accepted
+    match asked.type:
+        case Texture() | Buffer():
+            return resource(given, asked)
+        case Struct(name):
+            refuse_kind(
+                f"'{asked.label}' takes a {name}, not {type_name(given)} {given!r:.40}",
+                place=asked.place,
+            )
+        case _:
+            whole = asked.type in (INT, BOOL)
+            return choice(given, asked) if whole else number(given, asked)
+
+
+@dataclass(slots=True)
+class _Binding:
+    """Which argument belongs to which parameter."""
+
+    slots: tuple[Slot, ...]
+    what: str
+    place: Span | None
+    takes_objects: bool
+    given: dict[str, Any] = field(default_factory=dict)
+
+    def _wrong(self, message: str, hint: str | None = None) -> NoReturn:
+        refuse_kind(message, hint, self.place)
+
+    def _listed(self) -> str:
+        return ", ".join(s.name for s in self.slots)
+
+    # By name
+
+    def take_keywords(self, kwargs: Mapping[str, Any]) -> None:
+        """Sort out what was given by name."""
+        names = {s.name for s in self.slots}
+        vectors = [s for s in self.slots if s.is_vector]
+        parts: dict[str, Any] = {}
+        for name, value in kwargs.items():
+            if name in names:
+                self.given[name] = value
+            elif len(vectors) == 1 and name in _LETTERS[: _size(vectors[0])]:
+                parts[name] = value
+            else:
+                takes = f"it takes {self._listed()}" if names else "it takes no numbers"
+                hint = did_you_mean(name, names) or takes
+                self._wrong(f"{self.what} has no '{name}'", hint)
+        if parts:
+            self._take_parts(vectors[0], parts)
+
+    def _take_parts(self, slot: Slot, parts: Mapping[str, Any]) -> None:
+        if slot.name in self.given:
+            self._wrong(f"{self.what} got '{slot.name}' and its part '{next(iter(parts))}' too")
+        rest = _parts_of_default(slot)
+        self.given[slot.name] = tuple(
+            parts.get(letter, rest[i]) for i, letter in enumerate(_LETTERS[: len(rest)])
+        )
+
+    # By position
+
+    def take_positional(self, args: Sequence[Any]) -> None:
+        """Sort out what was given by position."""
+        left = list(args)
+        for slot in self.slots:
+            if not left:
+                return
+            if slot.name in self.given:
+                self._wrong(
+                    f"{self.what} got '{slot.name}' twice, by its name and by its position",
+                    "give what follows it by name too",
+                )
+            taken = self._gathered(slot, left) if slot.is_vector else 0
+            if taken:
+                self.given[slot.name] = tuple(left[:taken])
+                del left[:taken]
+            else:
+                self.given[slot.name] = left.pop(0)
+        if left:
+            if not self.slots:
+                self._wrong(f"{self.what} takes no numbers")
+            last = self.slots[-1]
+            message = f"{self.what} takes nothing after '{last.name}'"
+            hint = f"it takes {self._listed()}"
+            if last.is_vector and last.name in _SPLATTED and is_scalar(left[0]):
+                letters = ", ".join(_LETTERS[: _size(last)])
+                hint = f"'{last.name}' is one number for all, or {letters}"
+            self._wrong(message, hint)
+
+    def _gathered(self, slot: Slot, left: Sequence[Any]) -> int:
+        """How many scalars in a row stand for a vector: its size, or 0 where it is given whole."""
+        size = _size(slot)
+        scalars = 0
+        while scalars < min(size, len(left)) and is_scalar(left[scalars]):
+            scalars += 1
+        if scalars == size:
+            return size
+        if scalars == 0 or slot.name in _SPLATTED or (scalars == 1 and len(left) > 1):
+            return 0
+        if "color" in slot.name:  # one number is a grey
+            return 0
+        letters = ", ".join(_LETTERS[:size])
+        given = "one number" if scalars == 1 else f"{scalars} numbers"
+        self._wrong(
+            f"'{slot.name} of {self.what}' takes {letters}, not {given}",
+            f"give {letters}, one vector, or parts by name: x=…",
+        )
+
+    def value_of(self, slot: Slot) -> Any:
+        """What a parameter was given, or its default."""
+        if slot.name in self.given:
+            return self.given[slot.name]
+        if slot.default is MISSING:
+            self._wrong(f"{self.what} needs '{slot.name}'", f"it takes {self._listed()}")
+        return slot.default
+
+
+def _size(slot: Slot) -> int:
+    assert isinstance(slot.type, Vector)
+    return slot.type.size
+
+
+def _parts_of_default(slot: Slot) -> tuple[Any, ...]:
+    """What the parts are that nobody gave: the default's, else those that change nothing."""
+    size = _size(slot)
+    if slot.default is MISSING:
+        return (1.0 if slot.name in ("factor", "factors", "scale") else 0.0,) * size
+    default = unwrapped(slot.default)
+    return tuple(default) if isinstance(default, Sequence) else (default,) * size
+
+
+def _check_together(
+    requires: Requirement | None, values: Mapping[str, Given], what: str, place: Span | None
+) -> None:
+    if requires is None:
+        return
+    wanted = inspect.signature(requires).parameters
+    takes_all = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in wanted.values())
+    known = {n: _plain(v) for n, v in values.items() if takes_all or n in wanted}
+    plain = {n: v for n, v in known.items() if v is not None}
+    if len(plain) < len(known) and not takes_all:
+        return
+    reason = requires(**plain)
+    if reason is not None:
+        refuse(f"{what}: {reason}", place=place)
+
+
+def _plain(value: Given) -> Any:
+    """The value for a requirement: itself, or a slider's default; None where it is computed."""
+    if not isinstance(value, Number):
+        return value
+    if value.plain is not None:
+        return value.plain
+    held = value.value
+    assert isinstance(held, Symbolic)
+    expression = held.as_expression()
+    if isinstance(expression.node, Uniform) and len(expression.parameters) == 1:
+        return expression.parameters[0].default
+    return None
+
+
+__all__ = [
+    "RESERVED",
+    "RESERVED_OF_SHAPES",
+    "Accept",
+    "Asked",
+    "Given",
+    "Number",
+    "Slot",
+    "arguments",
+    "number",
+    "slots_of",
+]

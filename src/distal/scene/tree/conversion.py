@@ -1,0 +1,395 @@
+"""What an author gives for a number becomes a ``Number``; mistakes are told at the author's line.
+
+What flows in: Python's and NumPy's numbers, tuples, lists, arrays, vectors, ``"#hex"`` colours,
+parameters and expressions, also mixed. What flows out: checked plain numbers, or one expression.
+Knows limits (``fields.claims``), but no function that the numbers are for (``numbers``).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+
+from distal.diagnostics import Span
+from distal.fields.guarantees import Limit
+from distal.ir.nodes import Cast, Compose, Const, Expr, Splat, Uniform
+from distal.ir.types import FLOAT, INT, TEXTURE_2D, TEXTURE_3D, Kind, Scalar, Texture, Type, Vector
+from distal.ir.types import Buffer as BufferType
+from distal.lang.expressions import Expression, Symbolic
+from distal.lang.parameter_values import as_bool, as_color, as_float, as_int
+from distal.lang.parameters import Parameter
+from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
+from distal.lang.values import VectorValue
+from distal.scene.tree.errors import refuse, refuse_kind
+
+Component: TypeAlias = "float | Expression"
+Plain: TypeAlias = "float | tuple[float, ...]"
+
+_OF_ARRAYS: Final = {TEXTURE_2D: Texture2D, TEXTURE_3D: Texture3D}
+_WORDS: Final = {2: "two", 3: "three", 4: "four"}
+# A direction typed with six digits is meant to have length 1.
+_UNIT_TOLERANCE: Final = 1e-5
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A float or a vector of floats that a scene object is given.
+
+    Attributes:
+        type: float, vec2, vec3 or vec4.
+        value: Plain numbers, or an expression of this type.
+    """
+
+    type: Type
+    value: Plain | Expression
+
+    @property
+    def plain(self) -> Plain | None:
+        """The value where it is known now, else None."""
+        return None if isinstance(self.value, Expression) else self.value
+
+    def may_exceed(self, low: float) -> bool:
+        """Whether a component is, or may become, larger than ``low``."""
+        known = self.plain
+        return known is None or any(c > low for c in components(known))
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What a value is for: what messages call it, what it must be.
+
+    Attributes:
+        name: The parameter: "radius".
+        what: What is being made: "Sphere".
+        type: The type the scene function wants.
+        limit: What each number must be.
+        is_color: Whether "#rrggbb" and one number (a grey) are understood, and no part is negative.
+        splats: Whether one number stands for all components.
+        place: The author's line.
+    """
+
+    name: str
+    what: str
+    type: Type
+    limit: Limit = Limit.ANY
+    is_color: bool = False
+    splats: bool = False
+    place: Span | None = None
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return f"{self.name} of {self.what}"
+
+
+def number(value: Any, asked: Asked) -> Number:
+    """A float or vector.
+
+    Raises:
+        SceneTypeError: It is no number, or not as many as asked for.
+        SceneValueError: It is not finite, or beyond the limit.
+    """
+    value = unwrapped(value)
+    if asked.type is FLOAT:
+        made = Number(FLOAT, _component(value, asked))
+    else:
+        assert isinstance(asked.type, Vector) and asked.type.kind is Kind.FLOAT, asked.type
+        made = _vector(value, asked, asked.type)
+    _check_limit(made, asked)
+    return made
+
+
+def choice(value: Any, asked: Asked) -> int | bool:
+    """A count or a switch, fixed when the scene is compiled.
+
+    Raises:
+        SceneTypeError: It is of another kind, or changes after the scene is compiled.
+        SceneValueError: It is beyond the limit.
+    """
+    value = unwrapped(value)
+    if isinstance(value, Symbolic):
+        kind = "whole number" if asked.type is INT else "True or False"
+        refuse_kind(
+            f"'{asked.label}' is fixed when the scene is compiled; {_described(value)} is not",
+            f"give a plain {kind}",
+            asked.place,
+        )
+    if asked.type is INT:
+        whole: int = _checked(as_int, value, asked)
+        _check_limit(Number(INT, whole), asked)
+        return whole
+    return bool(_checked(as_bool, value, asked))
+
+
+def resource(value: Any, asked: Asked) -> TextureValue | Buffer:
+    """A texture or a buffer: an object of that kind, a picture's file, or a list of points.
+
+    Raises:
+        SceneTypeError: It is of another kind.
+        SceneValueError: It is empty, or holds what is not finite.
+    """
+    if isinstance(asked.type, Texture):
+        return _texture(value, asked, asked.type)
+    assert isinstance(asked.type, BufferType), asked.type
+    return _buffer(value, asked, asked.type.element)
+
+
+def unwrapped(value: Any) -> Any:
+    """NumPy's scalars and arrays, and vectors, as plain numbers and tuples."""
+    if isinstance(value, VectorValue):
+        return tuple(value)
+    convert: Callable[[], object] | None = getattr(value, "tolist", None)
+    return convert() if callable(convert) else value
+
+
+def is_scalar(value: Any) -> bool:
+    """Whether a value is one number, known now or not."""
+    value = unwrapped(value)
+    if isinstance(value, Symbolic):
+        return isinstance(value.as_expression().node.type, Scalar)
+    return isinstance(value, int | float) or (
+        hasattr(value, "__float__") and not isinstance(value, Sequence)
+    )
+
+
+def components(value: Plain) -> tuple[float, ...]:
+    """The floats of a plain number."""
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _described(value: Symbolic) -> str:
+    if isinstance(value, Parameter):
+        return f"the {value.kind.value} '{value.label}'"
+    return "an expression of parameters or time"
+
+
+def _checked(read: Callable[[str, object], Any], value: object, asked: Asked) -> Any:
+    try:
+        return read(asked.label, value)
+    except TypeError as error:
+        message = str(error)
+        refuse_kind(message, place=asked.place)
+    except ValueError as error:
+        message = str(error)
+        refuse(message, place=asked.place)
+
+
+def _component(value: Any, asked: Asked) -> Component:
+    value = unwrapped(value)
+    if not isinstance(value, Symbolic):
+        found: float = _checked(as_float, value, asked)
+        return found
+    held = value.as_expression()
+    if held.node.type is FLOAT:
+        return held
+    if held.node.type is INT:
+        return Expression(Cast(held.node, FLOAT), held.parameters)
+    refuse_kind(
+        f"'{asked.label}' takes a number; {_described(value)} is a {held.node.type}",
+        place=asked.place,
+    )
+
+
+def _vector(value: Any, asked: Asked, type: Vector) -> Number:
+    if asked.is_color and isinstance(value, str):
+        return Number(type, _checked(as_color, value, asked))
+    if isinstance(value, Symbolic):
+        held = value.as_expression()
+        if held.node.type is type:
+            return Number(type, held)
+    if is_scalar(value) and (asked.splats or asked.is_color):
+        one = _component(value, asked)
+        if isinstance(one, Expression):
+            return Number(type, Expression(Splat(one.node, type), one.parameters))
+        return Number(type, (one,) * type.size)
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        _refuse_vector(value, asked, type)
+    if len(value) != type.size:
+        refuse_kind(
+            f"'{asked.label}' takes {_WORDS[type.size]} numbers, not {len(value)}",
+            place=asked.place,
+        )
+    return _gathered(tuple(_component(c, asked) for c in value), type)
+
+
+def _refuse_vector(value: Any, asked: Asked, type: Vector) -> None:
+    takes = f"{_WORDS[type.size]} numbers"
+    if asked.is_color:
+        takes = "a color: '#rrggbb', or linear red, green and blue"
+    if isinstance(value, Symbolic):
+        given = f"{_described(value)}, a {value.as_expression().node.type}"
+    elif value is None:
+        given = "None"
+    else:
+        given = f"{type_name(value)} {value!r:.40}"
+    refuse_kind(f"'{asked.label}' takes {takes}, not {given}", place=asked.place)
+
+
+def type_name(value: object) -> str:
+    """What messages call a value's type."""
+    return type(value).__name__
+
+
+def _gathered(parts: Sequence[Component], type: Vector) -> Number:
+    """A vector of numbers, of which some may be expressions."""
+    plain = tuple(p for p in parts if not isinstance(p, Expression))
+    if len(plain) == len(parts):
+        return Number(type, plain)
+    parameters: dict[Parameter, None] = {}
+    nodes: list[Expr] = []
+    for part in parts:
+        if isinstance(part, Expression):
+            parameters.update(dict.fromkeys(part.parameters))
+            nodes.append(part.node)
+        else:
+            nodes.append(Const(part, FLOAT))
+    return Number(type, Expression(Compose(tuple(nodes), type), tuple(parameters)))
+
+
+# Limits
+
+
+def _check_limit(made: Number, asked: Asked) -> None:
+    known = made.plain
+    if known is not None:
+        _check_plain(known, asked)
+        return
+    assert isinstance(made.value, Expression)
+    node, parameters = made.value.node, made.value.parameters
+    if len(parameters) != 1 or not isinstance(node, Uniform):
+        return  # a computed value: what it may become is not known here
+    _check_parameter(parameters[0], asked)
+
+
+def _check_plain(known: Plain, asked: Asked) -> None:
+    wrong = complaint(known, asked.limit)
+    if wrong is None and asked.is_color and min(components(known)) < 0.0:
+        wrong = "a color without negative parts"
+    if wrong is not None:
+        refuse(
+            f"'{asked.label}' must be {wrong}, not {shown(known)}",
+            _mend(known, asked.limit),
+            asked.place,
+        )
+
+
+def _check_parameter(parameter: Parameter, asked: Asked) -> None:
+    assert not isinstance(parameter.default, bool)
+    named = f"the {parameter.kind.value} '{parameter.label}'"
+    wrong = complaint(parameter.default, asked.limit)
+    if wrong is not None:
+        refuse(
+            f"'{asked.label}' must be {wrong}; {named} has {shown(parameter.default)} at first",
+            place=asked.place,
+        )
+    for end, value in (("low", parameter.low), ("high", parameter.high)):
+        wrong = None if value is None else complaint(value, asked.limit)
+        if value is not None and wrong is not None:
+            hint = None
+            if asked.limit in (Limit.POSITIVE, Limit.NOT_NEGATIVE, Limit.NOT_ZERO):
+                hint = f"give it low={'0.0' if asked.limit is Limit.NOT_NEGATIVE else '0.01'}"
+            refuse(
+                f"'{asked.label}' must be {wrong}; {named} goes {_reach(end)} {value:g}",
+                hint,
+                asked.place,
+            )
+
+
+def _reach(end: str) -> str:
+    return "down to" if end == "low" else "up to"
+
+
+def complaint(known: Plain, limit: Limit) -> str | None:
+    """What a number must be that this one is not, or None."""
+    parts = components(known)
+    match limit:
+        case Limit.POSITIVE:
+            kept = all(c > 0.0 for c in parts)
+        case Limit.NOT_NEGATIVE:
+            kept = all(c >= 0.0 for c in parts)
+        case Limit.NOT_ZERO:
+            kept = all(c != 0.0 for c in parts)
+        case Limit.UNIT:
+            kept = abs(math.hypot(*parts) - 1.0) <= _UNIT_TOLERANCE
+        case Limit.FRACTION:
+            kept = all(0.0 <= c <= 1.0 for c in parts)
+        case Limit.ANY:
+            kept = True
+    return None if kept else limit.value
+
+
+def _mend(known: Plain, limit: Limit) -> str | None:
+    if limit is not Limit.UNIT:
+        return None
+    parts = components(known)
+    length = math.hypot(*parts)
+    if length == 0.0:
+        return "a vector of zeros has no direction"
+    return f"write {shown(tuple(c / length for c in parts))}"
+
+
+def shown(known: Plain) -> str:
+    """A number as an author writes it."""
+    if isinstance(known, tuple):
+        return f"({', '.join(f'{c:.6g}' for c in known)})"
+    return f"{known:.6g}"
+
+
+# Data
+
+
+def _texture(value: Any, asked: Asked, type: Texture) -> TextureValue:
+    if isinstance(value, str | os.PathLike) and type is TEXTURE_2D:
+        return Texture2D(beside(value, asked.place))
+    if isinstance(value, TextureValue) and value.__distal_type__ is type:
+        return value
+    if hasattr(value, "dtype") and hasattr(value, "shape") and type in _OF_ARRAYS:
+        return _OF_ARRAYS[type](value)
+    hint = "or an array"
+    if type is TEXTURE_2D:
+        hint += ", or the name of a picture's file"
+    refuse_kind(
+        f"'{asked.label}' takes a {type}, not {type_name(value)} {value!r:.40}", hint, asked.place
+    )
+
+
+def beside(value: str | os.PathLike[str], place: Span | None) -> str | os.PathLike[str]:
+    """A file's name made whole where such a file stands beside the author's own."""
+    if place is None:
+        return value
+    candidate = os.path.join(os.path.dirname(os.path.abspath(place.file)), os.fspath(value))
+    return candidate if os.path.exists(candidate) else value
+
+
+def _buffer(value: Any, asked: Asked, element: Type) -> Buffer:
+    if isinstance(value, Buffer):
+        if value.element is not element:
+            refuse_kind(
+                f"'{asked.label}' takes a Buffer of {element}, not of {value.element}",
+                place=asked.place,
+            )
+        return value
+    rows = unwrapped(value)
+    if isinstance(rows, str) or not isinstance(rows, Sequence):
+        refuse_kind(
+            f"'{asked.label}' takes a list of {element}, not {type_name(value)} {value!r:.40}",
+            place=asked.place,
+        )
+    if not rows:
+        refuse(f"'{asked.label}' needs at least one {element}", place=asked.place)
+    return Buffer([_row(row, position, asked, element) for position, row in enumerate(rows)])
+
+
+def _row(row: Any, position: int, asked: Asked, element: Type) -> Any:
+    inner = Asked(f"{asked.name}[{position}]", asked.what, element, place=asked.place)
+    if element is INT:
+        return choice(row, inner)
+    found = number(row, inner)
+    if found.plain is None:
+        refuse_kind(
+            f"'{inner.label}' is data: plain numbers, no parameters or time", place=asked.place
+        )
+    return found.plain

@@ -1,0 +1,102 @@
+"""The tree behind a shape: what it is made of, without a way to ask it anything.
+
+What flows in: rows of the field library, checked numbers, other nodes. What flows out: immutable
+nodes that ``compose`` turns into functions. A node knows where the author wrote it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from distal.diagnostics import Span
+from distal.fields.guarantees import EXACT, Claim, Operator, Primitive
+from distal.lang.functions import Func
+from distal.scene.tree.conversion import Number
+
+Rule: TypeAlias = Primitive | Operator
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class Node:
+    """One shape in a tree.
+
+    Attributes:
+        rule: The row of the field library that it is.
+        flat: Whether it lies in the plane.
+        children: What an operator works on.
+        numbers: Values of the rule's floats and vectors, by name.
+        constants: Choices (counts, switches), textures and buffers, by name.
+        place: Where the author made it.
+        material: What paints it and everything in it, or None.
+        cut_material: What the faces show that it cuts into other shapes, or None.
+        label: What the author calls it, or "".
+        parts: How many shapes of the library are asked for one distance; one that is asked twice
+            counts twice.
+    """
+
+    rule: Rule
+    flat: bool
+    children: tuple[Node, ...] = ()
+    numbers: Mapping[str, Number] = field(default_factory=dict)
+    constants: Mapping[str, Any] = field(default_factory=dict)
+    place: Span | None = None
+    material: Any = None
+    cut_material: Any = None
+    label: str = ""
+    parts: int = field(init=False, default=1)
+
+    def __post_init__(self) -> None:
+        if self.children:
+            object.__setattr__(self, "parts", sum(child.parts for child in self.children))
+
+    @property
+    def name(self) -> str:
+        """What people call it: the author's name, else the rule's."""
+        return self.label or self.rule.name
+
+    @property
+    def claims(self) -> frozenset[Claim]:
+        """What it promises besides its slope."""
+        rule = self.rule
+        if isinstance(rule, Primitive):
+            return rule.claims
+        inner = [child.claims for child in self.children]
+        kept = rule.keeps.intersection(*inner)
+        return kept | rule.keeps_exact if all(c >= EXACT for c in inner) else kept
+
+    @property
+    def signed(self) -> bool:
+        """Whether it has an inside."""
+        if isinstance(self.rule, Primitive):
+            return self.rule.signed
+        return all(child.signed for child in self.children) or bool(self.rule.finish)
+
+    @property
+    def estimate(self) -> bool:
+        """Whether its slope is an estimate (fractals)."""
+        if isinstance(self.rule, Primitive):
+            return self.rule.estimate
+        return any(child.estimate for child in self.children)
+
+    def walk(self) -> Iterator[Node]:
+        """This node and all below, each once, parents first."""
+        seen: set[int] = set()
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            if id(node) not in seen:
+                seen.add(id(node))
+                yield node
+                stack.extend(reversed(node.children))
+
+    def functions(self) -> Iterator[Func]:
+        """The functions that it and everything in it call."""
+        for node in self.walk():
+            rule = node.rule
+            if isinstance(rule, Primitive):
+                yield rule.distance
+            else:
+                made = (rule.point, rule.finish, rule.combine, rule.mix, rule.around, rule.site)
+                yield from (func for func in made if func is not None)

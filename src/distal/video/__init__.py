@@ -1,0 +1,11 @@
+"""Video: a moving picture, rendered frame by frame and written as one file or as many.
+
+Takes anything that can be viewed, and how long it is shown; gives mp4, webm, gif, apng, webp or
+numbered PNG files.
+"""
+
+from __future__ import annotations
+
+from distal.video.recording import Made, video
+
+__all__ = ["Made", "video"]

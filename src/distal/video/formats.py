@@ -1,0 +1,223 @@
+"""Which kinds of moving pictures there are, and how each is encoded.
+
+What flows in: an output's path, a quality, a size, a frame rate. What flows out: a ``Codec``, the
+settings an encoder takes, or one line that says why it cannot be. Knows nothing of scenes; PyAV is
+imported when it is first needed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Final
+
+from distal.devices.features import host_features
+from distal.images.atomic_files import SaveError
+from distal.packages import PackageError, imported
+
+# A quality is a number from 0 to 100; these are its names.
+QUALITIES: Final[Mapping[str, float]] = {"low": 60.0, "medium": 70.0, "high": 80.0}
+LOSSLESS: Final = "lossless"
+# GIF counts in hundredths of a second, and viewers show a frame of 1/100 s for 1/10 s.
+GIF_FASTEST: Final = 50
+_NUMBERED: Final = re.compile(r"%(0\d+|)d")
+
+
+class WishError(ValueError):
+    """What was asked for has no sense, or a kind of file cannot have it; in one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of file.
+
+    Attributes:
+        name: Its suffix without the dot; "frames" for numbered pictures.
+        encoded: Whether frames are encoded as they come, in segments; else they are kept as PNG
+            files first.
+        loops: Whether the file itself says how often it is played.
+        lossy: Whether a quality can be chosen.
+        largest: Pixels of its longest side.
+    """
+
+    name: str
+    encoded: bool = False
+    loops: bool = False
+    lossy: bool = False
+    largest: int = 16384
+
+
+KINDS: Final[Mapping[str, Kind]] = {
+    ".mp4": Kind("mp4", encoded=True, lossy=True),
+    ".webm": Kind("webm", encoded=True, lossy=True),
+    ".gif": Kind("gif", loops=True),
+    ".apng": Kind("apng", loops=True),
+    ".webp": Kind("webp", loops=True, lossy=True, largest=16383),
+}
+FRAMES: Final = Kind("frames")
+
+
+@dataclass(frozen=True, slots=True)
+class Codec:
+    """How pictures of one size become the packets of one stream.
+
+    Attributes:
+        encoder: FFmpeg's name of the encoder.
+        pixels: The pixel format that is encoded.
+        options: The encoder's own settings.
+        exact: Whether the pixels are stored as they are, in RGB.
+    """
+
+    encoder: str
+    pixels: str
+    options: Mapping[str, str]
+    exact: bool = False
+
+
+def kind_of(path: Path) -> Kind:
+    """What is written to a path.
+
+    Raises:
+        SaveError: The suffix is unknown, or a sequence's name has no place for the number.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".png":
+        _check_pattern(path)
+        return FRAMES
+    if suffix not in KINDS:
+        known = ", ".join([*KINDS, "or pictures named like frames/%05d.png"])
+        named = f"the suffix '{path.suffix}'" if suffix else "no suffix"
+        raise SaveError(f"cannot write {path}: it has {named}; videos end in {known}")
+    return KINDS[suffix]
+
+
+def _check_pattern(path: Path) -> None:
+    fields = _NUMBERED.findall(path.name)
+    if len(fields) == 1 and path.name.count("%") == 1:
+        return
+    if "%" in path.name:
+        raise SaveError(f"cannot write {path}: a name has one number, like %05d.png")
+    mend = path.with_name(f"{path.stem}-%05d.png")
+    raise SaveError(f"cannot write {path}: every frame needs its number in the name: {mend}")
+
+
+def numbered(pattern: Path, index: int) -> Path:
+    """The file of a frame."""
+    name = _NUMBERED.sub(lambda field: f"{index:{field[1]}d}", pattern.name)
+    return pattern.with_name(name)
+
+
+def read_quality(quality: str | float, kind: Kind) -> float | str:
+    """A quality from 0 to 100, or "lossless".
+
+    Raises:
+        WishError: There is no such quality, or this kind of file has none to choose.
+    """
+    if isinstance(quality, str) and quality == LOSSLESS:
+        if kind.name == "gif":
+            raise WishError("a gif has 256 colors: it is never lossless; choose webp or apng")
+        return LOSSLESS
+    if isinstance(quality, str) and quality in QUALITIES:
+        value = QUALITIES[quality]
+    else:
+        try:
+            value = float(quality)
+        except (TypeError, ValueError):
+            value = -1.0
+        if not 0.0 <= value <= 100.0:
+            names = ", ".join([*QUALITIES, LOSSLESS])
+            raise WishError(f"a quality is {names} or a number from 0 to 100, not {quality!r:.40}")
+    return value
+
+
+def check_size(size: tuple[int, int], kind: Kind, quality: float | str) -> None:
+    """Refuse a size that a kind of file cannot have.
+
+    Raises:
+        WishError: With the nearest size that it can have.
+    """
+    width, height = size
+    if max(size) > kind.largest:
+        raise WishError(f"{kind.name} has at most {kind.largest} pixels a side, not {max(size)}")
+    if kind.encoded and quality != LOSSLESS and (width % 2 or height % 2):
+        # Players for everyone show 4:2:0 only, in which two pixels share a color.
+        even = f"{width + width % 2}x{height + height % 2}"
+        raise WishError(
+            f"{kind.name} has even sides, {width}x{height} has not; the nearest is {even}, "
+            "or the quality lossless"
+        )
+
+
+def check_rate(rate: Fraction, kind: Kind) -> None:
+    """Refuse a frame rate that a kind of file cannot have.
+
+    Raises:
+        WishError: It is too high for the file's clock.
+    """
+    if kind.name == "gif" and rate > GIF_FASTEST:
+        raise WishError(
+            f"a gif counts in hundredths of a second and has at most {GIF_FASTEST} frames in one, "
+            f"not {float(rate):g}; webp and apng have more"
+        )
+    if kind.name == "webp" and rate > 1000:
+        raise WishError("a webp counts in milliseconds and has at most 1000 frames in a second")
+    largest = 65535 if kind.name == "apng" else 10**6  # APNG holds a delay as two 16-bit numbers
+    if max(rate.numerator, rate.denominator) > largest:
+        raise WishError(f"{kind.name} cannot count {rate} frames a second exactly; round it")
+
+
+def codec_of(kind: Kind, quality: float | str) -> Codec:
+    """How frames are encoded for mp4 and webm."""
+    if kind.name == "mp4":
+        if quality == LOSSLESS:
+            options = {"preset": "veryfast", "qp": "0", "x264-params": _x264("")}
+            return Codec("libx264rgb", "rgb24", options, exact=True)
+        options = {"preset": "veryfast", "crf": _crf(quality, 58.0, 51.0)}
+        return Codec("libx264", "yuv420p", {**options, "x264-params": _x264(_H264)})
+    if quality == LOSSLESS:
+        return Codec("libvpx-vp9", "gbrp", {"lossless": "1", **_VP9}, exact=True)
+    return Codec("libvpx-vp9", "yuv420p", {"crf": _crf(quality, 64.0, 63.0), "b": "0", **_VP9})
+
+
+# Rendering wants the processors too: a frame may cost the encoder little. Measured at 640x480 and
+# crf 18 on one thread, the raymarcher and the sea, ms of processor time, kB and dB a frame:
+# veryfast 3.4, 2.0, 48.1 and 4.0, 8.3, 40.3; superfast 2.0, 4.8, 51.7 and 2.5, 12.8, 42.2;
+# this 1.2, 2.0, 46.8 and 1.6, 7.8, 39.8 (with partitions and a lookahead of 10: 1.6, 1.9, 47.6 and
+# 1.9, 8.3, 40.2). Scenes move smoothly: what makes files small is the
+# lookahead (mbtree), not a thorough search for motion.
+_H264: Final = (
+    "subme=0:me=dia:weightp=0:bframes=1:b-adapt=0:rc-lookahead=5:scenecut=0:partitions=none"
+)
+# realtime at 5: 4.5 ms, 254 kB, 49.6 dB; good at 5: 22 ms, 205 kB, 49.9 dB.
+_VP9: Final = {"deadline": "realtime", "cpu-used": "5", "row-mt": "1"}
+
+
+def _x264(params: str) -> str:
+    """The encoder's own parameters, on this processor."""
+    said = ["open-gop=0"] + ([params] if params else [])
+    if host_features() >= {"avx512f", "avx2"}:
+        # Its AVX-512 code gave other bytes for the same frames in 1 to 15 of 100 runs (x264 165,
+        # 96x64), its AVX2 code never, 8 % faster: what goes on must equal what went before.
+        said.append("asm=avx2")
+    return ":".join(said)
+
+
+def _crf(quality: float | str, worst: float, largest: float) -> str:
+    """The constant rate factor: two steps of quality for one of it; 80 is 18 in H.264."""
+    assert not isinstance(quality, str)
+    return f"{min(largest, worst - quality / 2.0):g}"
+
+
+def library() -> Any:
+    """PyAV.
+
+    Raises:
+        SaveError: It is missing or broken.
+    """
+    try:
+        return imported("av")
+    except PackageError as error:
+        raise SaveError(f"videos need PyAV: {error}") from error

@@ -1,0 +1,74 @@
+"""Frames as PNG files: written whole, known again.
+
+What flows in: pictures and where they go. What flows out: files that carry a key of what they
+depend on, so that a later run keeps those that it would make alike.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from PIL import Image
+
+from distal.images.atomic_files import SaveError, replacement
+from distal.images.picture import Picture
+from distal.images.png import encode
+from distal.video.program import Program
+
+KEY: Final = "distal:frame"
+
+
+class Frames:
+    """The files of a sequence's frames.
+
+    Args:
+        files: Where each frame stands.
+        times: When each is, in seconds.
+        program: What renders them.
+        device: What it is rendered on: pictures of two devices differ a little.
+    """
+
+    def __init__(
+        self, files: Sequence[Path], times: Sequence[float], program: Program, device: str
+    ) -> None:
+        self.files = files
+        said = (program.fingerprint, sorted(program.parameters.items()), program.size, device)
+        self._common = repr(said)
+        self._times = times
+
+    def is_there(self, index: int) -> bool:
+        """Whether the frame's file holds what would be rendered."""
+        try:
+            with Image.open(self.files[index]) as picture:
+                return picture.info.get(KEY) == self._key(index)
+        except Exception:  # Pillow raises of every kind on broken files
+            return False
+
+    def write(self, index: int, picture: Picture) -> None:
+        """Write a frame's file.
+
+        Raises:
+            SaveError: It cannot be written.
+        """
+        texts = {**picture.metadata, KEY: self._key(index)}
+        with replacement(self.files[index]) as file:
+            file.write(encode(picture.array, texts))
+
+    def _key(self, index: int) -> str:
+        told = f"{self._common} {index} {self._times[index]!r}"
+        return hashlib.sha256(told.encode()).hexdigest()
+
+
+def make_folder(folder: Path) -> None:
+    """Make the folder of frames, and those above it.
+
+    Raises:
+        SaveError: It cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SaveError(f"cannot make the folder {folder}: {error.strerror or error}") from None

@@ -1,0 +1,61 @@
+"""Pixels as encoders take them.
+
+What flows in: display-encoded float pixels, top row first. What flows out: frames of 8 bits in RGB,
+or in BT.709's Y'CbCr with its tags. Knows nothing of files.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.images.png import quantise
+from distal.video.formats import Codec, library
+
+# ITU-T H.273: the codes of BT.709's primaries, transfer and matrix; sRGB's transfer; RGB itself.
+BT709: Final = 1
+SRGB: Final = 13
+RGB: Final = 0
+LIMITED, FULL = 1, 2  # FFmpeg's names for 16 to 235 and 0 to 255
+
+
+class Converter:
+    """Makes an encoder's frames of pictures; one for each thread, since it keeps its tables."""
+
+    def __init__(self, codec: Codec) -> None:
+        self._codec = codec
+        self._av = library()
+        reformatter = self._av.video.reformatter
+        self._reformatter = reformatter.VideoReformatter()
+        ways = reformatter.Interpolation
+        # Colors from all pixels. Exact rounding would take half as long again (0.71 ms instead of
+        # 0.46 at 640x480) and move colors by 0.06 of a level; brightness is the same.
+        self._way = ways.BILINEAR | ways.FULL_CHR_H_INP
+
+    def frame(self, array: NDArray[np.float32]) -> Any:
+        """The frame of a picture; what is transparent shows its color."""
+        levels = quantise(array)
+        made = self._av.VideoFrame.from_numpy_buffer(levels, "rgba")
+        if self._codec.exact:
+            return self._reformatter.reformat(made, format=self._codec.pixels, threads=1)
+        return self._reformatter.reformat(
+            made,
+            format=self._codec.pixels,
+            dst_colorspace=BT709,
+            src_color_range=FULL,
+            dst_color_range=LIMITED,
+            dst_color_trc=BT709,
+            dst_color_primaries=BT709,
+            interpolation=self._way,
+            threads=1,
+        )
+
+
+def tag(context: Any, codec: Codec) -> None:
+    """Tell a stream's reader which colors its numbers mean."""
+    context.color_primaries = BT709
+    context.color_trc = SRGB if codec.exact else BT709
+    context.colorspace = RGB if codec.exact else BT709
+    context.color_range = FULL if codec.exact else LIMITED

@@ -1,0 +1,149 @@
+"""What is kept of a video while it is made, so that broken-off work goes on where it ended.
+
+What flows in: an output's path, and what its frames depend on. What flows out: a folder beside the
+output, with a manifest, that holds whole pieces only. Knows nothing of how they are made.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any, Final
+
+from distal.diagnostics import printable
+from distal.images.atomic_files import SaveError, check_destination, move_into_place, replacement
+
+try:
+    import fcntl
+except ImportError:  # Windows: two that write one output are not told apart there
+    fcntl = None  # type: ignore[assignment]
+
+MANIFEST: Final = "manifest.json"
+LOCK: Final = "lock"
+
+Tell = Callable[[str], Any]
+
+
+class Store:
+    """The folder ``.out.mp4.distal`` beside ``out.mp4``; used by one process at a time."""
+
+    def __init__(self, output: Path) -> None:
+        self.output = output
+        self.folder = output.with_name(f".{output.name}.distal")
+        self._lock: IO[Any] | None = None
+
+    def open(self, manifest: Mapping[str, Any], fresh: bool, tell: Tell) -> None:
+        """Make the folder, or go on with it if it belongs to the same video.
+
+        Args:
+            manifest: What the frames depend on, as JSON values.
+            fresh: Begin anew in any case.
+            tell: Told why work begins anew.
+
+        Raises:
+            SaveError: The folder cannot be made, or another process uses it.
+        """
+        check_destination(self.output)
+        try:
+            if self.folder.is_symlink():
+                raise SaveError(f"cannot write {self.folder}: it is a link")
+            self.folder.mkdir(exist_ok=True)
+            # Nothing here is a link by our hand: what it leads to would be written or emptied.
+            for path in self.folder.iterdir():
+                if path.is_symlink():
+                    path.unlink()
+            self._lock = open(self.folder / LOCK, "a")  # noqa: SIM115 (held until close)
+            self._hold()
+            known = self._known()
+            changed = [] if known is None else _changed(known, manifest)
+            if known is None or fresh or changed:
+                if changed and not fresh and self.items():
+                    tell(f"begins anew: {'; '.join(changed)}")
+                self._empty()
+            for pattern in ("*.partial*", ".distal-*.tmp"):
+                for path in self.folder.glob(pattern):
+                    path.unlink()
+            with replacement(self.folder / MANIFEST) as file:
+                file.write(json.dumps(manifest, indent=1, sort_keys=True).encode())
+        except OSError as error:
+            self.close()
+            raise SaveError(f"cannot write {self.folder}: {error.strerror or error}") from error
+        except SaveError:
+            self.close()
+            raise
+
+    def path(self, name: str) -> Path:
+        """Where a piece stands."""
+        return self.folder / name
+
+    def items(self) -> list[Path]:
+        """The whole pieces, and frames, that are there."""
+        names = (MANIFEST, LOCK)
+        return [p for p in self.folder.iterdir() if p.name not in names and p.name[0] != "."]
+
+    def appear(self, made: Path) -> None:
+        """Move the finished video to its place and drop the folder."""
+        try:
+            move_into_place(made, Path(os.path.realpath(self.output)))
+        except OSError as error:
+            raise SaveError(f"cannot write {self.output}: {error.strerror or error}") from error
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.close()
+
+    def close(self) -> None:
+        """Let others use the folder; an empty one goes."""
+        if self._lock is None:
+            return
+        with suppress(OSError):
+            if not self.items():
+                shutil.rmtree(self.folder)
+        self._lock.close()
+        self._lock = None
+
+    def _hold(self) -> None:
+        if fcntl is None or self._lock is None:
+            return
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self._lock.close()
+            self._lock = None
+            raise SaveError(f"another process is writing {self.output}") from None
+        except OSError:  # a file system without locks
+            return
+
+    def _known(self) -> dict[str, Any] | None:
+        try:
+            found = json.loads((self.folder / MANIFEST).read_text("utf-8"))
+        except (OSError, ValueError, RecursionError):
+            return None
+        return found if isinstance(found, dict) else None
+
+    def _empty(self) -> None:
+        for path in self.folder.iterdir():
+            if path.name == LOCK:
+                continue
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path)
+            else:
+                path.unlink()
+
+
+def _changed(known: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
+    """What differs, in words."""
+    told = []
+    for name, value in wanted.items():
+        if known.get(name) == value:
+            continue
+        if name == "program":
+            told.append("the scene has changed")
+        elif name == "parameters":
+            told.append("parameters have changed")
+        else:
+            was = printable(known.get(name), 80)
+            told.append(f"{name.replace('_', ' ')} was {was}, is {value}")
+    return told
