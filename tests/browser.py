@@ -1,6 +1,6 @@
 """A real browser for tests: headless Chromium on SwiftShader, with no way out to a network.
 
-What flows in: files. What flows out: playwright's browser, and pages that remember what they said
+Input: files. Output: playwright's browser, and pages that remember what they said
 and what they asked for. Where there is no browser, a test skips aloud on the error raised here;
 one that is there and does not start is a fault. Knows nothing of WebGL: that is ``tests.webgl``.
 """

@@ -1,6 +1,6 @@
 """What the catalogue sheet shows: a shape of every row of the field library, under its name.
 
-What flows in: the library's rows. What flows out: cells, grouped. A row that needs data, or that
+Input: the library's rows. Output: cells, grouped. A row that needs data, or that
 shows little as it stands, has its numbers here; every other row is shown with its defaults, so a
 new row is on the sheet by itself. It does not know how a cell is drawn.
 """

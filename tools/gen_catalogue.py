@@ -1,6 +1,6 @@
 """Write ``docs/reference/catalogue.md``: every shape and operator with its claims, held against it.
 
-What flows in: the field library's rows; what the checks of ``tests/fields`` measure. What flows
+Input: the field library's rows; what the checks of ``tests/fields`` measure. What flows
 out: the page. ``--changed`` measures only rows that say something new. ``--check`` measures nothing
 and fails when the page's names, numbers, claims, slopes or sources are not the library's; what was
 measured may differ from machine to machine.

@@ -1,6 +1,6 @@
 """Draw the catalogue sheet: every shape, operator and blend of the field library under its name.
 
-What flows in: the cells of ``catalogue_cells``. What flows out: one picture for each group in
+Input: the cells of ``catalogue_cells``. Output: one picture for each group in
 ``docs/pictures/``, and how long all took to compile. Solids are lit and framed by their own boxes;
 flat shapes are lines of equal distance. ``--only NAME …`` writes single cells to a folder of your
 own instead, large enough to judge them.

@@ -1,6 +1,6 @@
 """Write ``docs/gallery.md`` and its pictures from ``examples/`` and the sheets of the catalogue.
 
-What flows in: the examples, each with a docstring that says what it shows. What flows out: the
+Input: the examples, each with a docstring that says what it shows. Output: the
 page, and a picture for each example in ``docs/pictures/``. ``--check`` writes nothing and fails
 when the page is stale or a picture is missing; names draw only these pictures; ``--page`` draws
 none.

@@ -1,6 +1,6 @@
 """Write ``docs/parity.md``: how far every example is from the CPU's picture, wherever it is drawn.
 
-What flows in: the gallery, and every way of drawing it (``tests/parity/gallery.py``). What flows
+Input: the gallery, and every way of drawing it (``tests/parity/gallery.py``). What flows
 out: the page, a table for each way; names draw only these examples anew and keep the other rows.
 Exits with 1 where a picture disagrees, or cannot be drawn where it should be.
 """

@@ -1,6 +1,6 @@
 """Write ``docs/reference/builtins.md`` from the table of built-ins and the forms of the language.
 
-What flows in: ``INTRINSICS`` (its visible rows) and ``FORMS``. What flows out: the page, grouped by
+Input: ``INTRINSICS`` (its visible rows) and ``FORMS``. Output: the page, grouped by
 what the built-ins are for. It knows no target but by the table's columns. ``--check`` writes
 nothing and fails when the page is stale.
 """

@@ -2,7 +2,7 @@
 
     python tools/mutate.py --modules distal/fields 'distal/passes/fold*' --count 100 --seed 7
 
-What flows in: globs below ``src``, how many mutations, a seed. What flows out: a line for each
+Input: globs below ``src``, how many mutations, a seed. Output: a line for each
 mutation, counts for each package, and the survivors that ``tests/mutation/survivors.toml`` does
 not accept, as entries to put there once their reason is known. Fails when there is one, and when
 an entry is stale; names entries whose mutation is killed now. Which tests run what is recorded

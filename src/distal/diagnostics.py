@@ -1,6 +1,6 @@
 """Source spans, and the errors a scene author sees.
 
-What flows in: a message, a place in the author's source and, when known, a hint. What flows
+Input: a message, a place in the author's source and, when known, a hint. What flows
 out: an exception whose text shows the author's line with a caret. This is the only module that
 draws a caret; everything above reports by making a ``Diagnostic`` and raising ``CompileError``.
 Here too is how texts that others wrote (of a file, a driver, a package) become safe to show.

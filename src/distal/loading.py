@@ -1,6 +1,6 @@
 """Finding scenes: a file's path, or the name of a gallery example, to the object to compile.
 
-What flows in: ``FILE[:NAME]``. What flows out: a ``Func``, an ``Image``, a shape or a scene. A file
+Input: ``FILE[:NAME]``. Output: a ``Func``, an ``Image``, a shape or a scene. A file
 is run once from a snapshot of its text, so that a later edit never mixes in.
 """
 

@@ -1,6 +1,6 @@
 """Packages of others: which there are, and how one that is missing or broken is reported.
 
-What flows in: an import, or an error that one raised. What flows out: the module, or a
+Input: an import, or an error that one raised. Output: the module, or a
 ``PackageError`` of one line with the command that repairs it. An installation can fail in any way:
 a native library that is missing, a build for another processor, half an upgrade. Imports nothing
 but the standard library.

@@ -1,6 +1,6 @@
 """What ``show``, ``export`` and ``video`` of a picture do: each in a room of its own.
 
-What flows in: a scene, a shape or an image. What flows out: a widget, a page, a film. Reached from
+Input: a scene, a shape or an image. Output: a widget, a page, a film. Reached from
 below through a hook; the rooms are entered only when they are needed.
 """
 

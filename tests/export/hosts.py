@@ -1,6 +1,6 @@
 """Places that shaders are written for, as far as a text can tell: what they put around it.
 
-What flows in: a text as it was exported, and what its place would be told by a person. What flows
+Input: a text as it was exported, and what its place would be told by a person. What flows
 out: the picture, 8 bits, top row first, drawn by WebGL in a real browser. Nothing is read from the
 compiler's interface: a host knows the text alone.
 

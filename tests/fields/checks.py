@@ -1,6 +1,6 @@
 """What is held against what: a field's promises against what it does.
 
-What flows in: subjects and samples. What flows out: findings, one sentence each, and what was
+Input: subjects and samples. Output: findings, one sentence each, and what was
 measured on the way. No finding means that nothing was found, at this number of points.
 
 A value f at p is the distance when two things hold: no point of the surface is nearer than |f|, and

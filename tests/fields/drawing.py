@@ -1,6 +1,6 @@
 """Numbers for shapes: their defaults, and random ones within what the row declares.
 
-What flows in: rows. What flows out: ``Sample``s whose numbers keep every limit and requirement.
+Input: rows. Output: ``Sample``s whose numbers keep every limit and requirement.
 """
 
 from __future__ import annotations

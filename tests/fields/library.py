@@ -1,6 +1,6 @@
 """The whole field library, imported: its rows and their docstrings.
 
-What flows in: the package's modules. What flows out: rows by name, measured lines of docstrings.
+Input: the package's modules. Output: rows by name, measured lines of docstrings.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The promises of a field held against few points: for many shapes rather than thoroughly.
 
-What flows in: a subject. What flows out: findings, as those of ``checks``, whose comparisons these
+Input: a subject. Output: findings, as those of ``checks``, whose comparisons these
 are. The surface is found without trusting a promise: by halving segments from outside to inside.
 """
 

@@ -1,6 +1,6 @@
 """A row of the field library, ready to be asked at points.
 
-What flows in: a declared row's functions, values of their numbers and choices. What flows out:
+Input: a declared row's functions, values of their numbers and choices. What flows out:
 values and gradients in 64 or 32 bits from the CPU device or the reference, the slope's bound, the
 box. Knows nothing of what is checked.
 """

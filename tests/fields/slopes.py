@@ -1,6 +1,6 @@
 """The search for places where a field is steeper than it says.
 
-What flows in: a subject. What flows out: the steepest pair of points that was found.
+Input: a subject. Output: the steepest pair of points that was found.
 
 Whatever is steep between two points is at least as steep on one half of the way; halving the way
 again and again leads to the steepest place, and straight into a jump.

@@ -1,6 +1,6 @@
 """What is checked: a field with the promises made about it.
 
-What flows in: a sample of a row, or anything else that answers at points. What flows out: a
+Input: a sample of a row, or anything else that answers at points. Output: a
 ``Subject``. Knows neither how points are chosen nor what is held against what.
 """
 

@@ -1,6 +1,6 @@
 """Points on the surface of a field, found without trusting what it promises.
 
-What flows in: a subject. What flows out: points where its value is zero, and the places where the
+Input: a subject. Output: points where its value is zero, and the places where the
 sign changes without passing through zero.
 
 Two ways, since each misses what the other finds: edges of a grid whose ends differ in sign, halved

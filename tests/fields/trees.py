@@ -1,6 +1,6 @@
 """Random trees of shapes: any operator on shapes whose promises are known to hold.
 
-What flows in: operators' rows. What flows out: shapes of the object model, and subjects of them.
+Input: operators' rows. Output: shapes of the object model, and subjects of them.
 """
 
 from __future__ import annotations

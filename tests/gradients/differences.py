@@ -1,6 +1,6 @@
 """Slopes by finite differences in 64 bits, and where there are none.
 
-What flows in: a function of many points. What flows out: its slopes along each axis, and a mask of
+Input: a function of many points. Output: its slopes along each axis, and a mask of
 the points where the function is smooth enough to have them. The mask looks at the function's values
 alone, so it cannot hide a wrong gradient.
 """

@@ -1,6 +1,6 @@
 """Random fields as modules of scene code.
 
-What flows in: a seed and the size of the point. What flows out: the text of a module with ``field``
+Input: a seed and the size of the point. Output: the text of a module with ``field``
 (a float function of the point) and ``both`` (its value and gradient). A field is made of locals,
 branches, loops, arrays, structs, matrices, functions and captured locals around the expressions of
 ``grammar``.

@@ -1,6 +1,6 @@
 """Random expressions of scene code that are smooth almost everywhere.
 
-What flows in: a source of chance, names in scope by type. What flows out: Python text of a wanted
+Input: a source of chance, names in scope by type. Output: Python text of a wanted
 type. Knows nothing of statements. Values stay in a range where finite differences in 64 bits mean
 something: divisors are at least 1, arguments of exp and the like are bounded first. Every visible
 row of the table that has a derivative has a rule here; a test counts them.

@@ -1,6 +1,6 @@
 """From a field's text to its values and gradients.
 
-What flows in: a ``Field`` and points. What flows out: what the CPU device and the reference make
+Input: a ``Field`` and points. Output: what the CPU device and the reference make
 of them in 64 bits, through the same front end as a file of an author's.
 """
 

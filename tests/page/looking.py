@@ -1,6 +1,6 @@
 """A page that was exported, looked at in a real browser, beside what the CPU shows.
 
-What flows in: an HTML file. What flows out: its picture as the player saves it, the player's state,
+Input: an HTML file. Output: its picture as the player saves it, the player's state,
 and how far the picture is from the CPU's. The player is asked through ``host.distal``; hands use
 the real controls.
 """

@@ -1,6 +1,6 @@
 """Pages that hold the player and a payload made for one test.
 
-What flows in: GLSL, parameters, whatever a test changes of a payload. What flows out: an HTML file
+Input: GLSL, parameters, whatever a test changes of a payload. Output: an HTML file
 that opens from disk. It asks nothing of the exporter, so that a fault of one is not the other's.
 """
 

@@ -1,6 +1,6 @@
 """Every row of the table and every operator, on every type it takes.
 
-What flows in: the table. What flows out: cases. Which samples a promise covers is told here: off
+Input: the table. Output: cases. Which samples a promise covers is told here: off
 the jumps of functions that jump, and within what the language defines.
 """
 

@@ -1,6 +1,6 @@
 """What the table's rows give at their edges.
 
-What flows in: the table. What flows out: cases, one for each row that takes and gives floats, of
+Input: the table. Output: cases, one for each row that takes and gives floats, of
 every number that could lead out of the numbers, in all positions against each other; and numbers
 that are known without any target: what the page on built-ins says.
 """

@@ -1,6 +1,6 @@
 """The gallery on every way of drawing it, held against the CPU's pictures.
 
-What flows in: an example's name and a way's. What flows out: a ``Measured``: how far the worst of
+Input: an example's name and a way's. Output: a ``Measured``: how far the worst of
 its pictures is off. ``tools/gen_parity.py`` writes all of them down, the tests look at some.
 """
 

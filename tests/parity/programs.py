@@ -1,6 +1,6 @@
 """Cases packed into pictures: each column one case, each row one sample.
 
-What flows in: cases, that is expressions of arguments. What flows out: image modules that any
+Input: cases, that is expressions of arguments. Output: image modules that any
 target can run, and, from the pictures they give, each case's results bit for bit. A float is a
 channel of a pixel; an integer two channels of 16 bits, which floats hold exactly.
 """

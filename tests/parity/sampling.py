@@ -1,6 +1,6 @@
 """Where the parity tests sample: for each case, one list of numbers for each argument.
 
-What flows in: a row's name, its domain and the kinds of its arguments. What flows out: ``SAMPLES``
+Input: a row's name, its domain and the kinds of its arguments. Output: ``SAMPLES``
 bit patterns for each argument; sample i of all arguments belongs together, so that edges meet the
 edges they are meant to meet. Vectors take neighbouring samples for their other components.
 """

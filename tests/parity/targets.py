@@ -1,7 +1,7 @@
 """Every way of running an image module, by one name and one call each.
 
-What flows in: an image module before all passes, without uniforms, a size and the data of the
-module's buffers. What flows out: the picture, float32, top row first, neither clamped nor rounded.
+Input: an image module before all passes, without uniforms, a size and the data of the
+module's buffers. Output: the picture, float32, top row first, neither clamped nor rounded.
 Raises ``Unavailable`` with a reason where this machine lacks what a target needs.
 """
 

@@ -1,6 +1,6 @@
 """A page's text as a host has it that trusts its driver with some built-ins.
 
-What flows in: an artifact of glsl-es300 and names of built-ins. What flows out: the artifact with
+Input: an artifact of glsl-es300 and names of built-ins. Output: the artifact with
 their macros defined. Nothing here is the player's.
 """
 

@@ -1,6 +1,6 @@
 """Random scene code, well typed, whose every operation is exact in 32 bits.
 
-What flows in: hypothesis's choices. What flows out: the text of functions. Since nothing is
+Input: hypothesis's choices. Output: the text of functions. Since nothing is
 rounded, all targets must give the same bits, whatever they reorder, contract or fold.
 
 Integers wrap, so any operation on them is exact. Floats are multiples of powers of two: each

@@ -1,6 +1,6 @@
 """Random functions: statements around the expressions of ``grammar``.
 
-What flows in: hypothesis's choices. What flows out: ``Sources``, a module of functions that call
+Input: hypothesis's choices. Output: ``Sources``, a module of functions that call
 one another and an ``@image`` that runs each in columns of its own, every row with other arguments.
 """
 

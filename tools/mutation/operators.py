@@ -1,6 +1,6 @@
 """Small changes of a text that should make a test fail.
 
-What flows in: the text of a Python file. What flows out: mutations, each one replacement in the
+Input: the text of a Python file. Output: mutations, each one replacement in the
 text. Skipped is what no behaviour depends on: docstrings, annotations, ``__all__``, assertions,
 texts of errors and of representations, and decorators that only shape a class.
 """

@@ -1,6 +1,6 @@
 """What is mutated: a source tree, its tests, and the functions its files define.
 
-What flows in: folders. What flows out: paths, module names and the outermost function or method
+Input: folders. Output: paths, module names and the outermost function or method
 that a line belongs to. Knows nothing of mutations or of running.
 """
 

@@ -1,6 +1,6 @@
 """Which functions each test runs: recorded once, one process for each test.
 
-What flows in: a project. What flows out: tests, each with its processor time and the functions
+Input: a project. Output: tests, each with its processor time and the functions
 that it executed as Python or that the front end lowered for it. Scene code is never executed as
 Python: the trace sees the front end take its source apart instead. Each test runs in a process
 forked after collection, so that no cache hides what it needs.

@@ -1,6 +1,6 @@
 """One mutation, one process: forked where pytest and the heavy packages are imported already.
 
-What flows in: a mutation and its tests. What flows out: whether a test failed, and which. The
+Input: a mutation and its tests. Output: whether a test failed, and which. The
 child imports the project anew, with the mutated text in place of the file's: as code, and as what
 ``linecache`` gives those who read the source of functions. Nothing is written to the source.
 

@@ -1,6 +1,6 @@
 """Which tests are run for a mutation, and in which order.
 
-What flows in: a mutation, recorded tests. What flows out: tests that ran the mutated function, most
+Input: a mutation, recorded tests. Output: tests that ran the mutated function, most
 telling first. A test that runs few functions is about them; one that runs thousands draws a
 picture of everything.
 """

@@ -1,6 +1,6 @@
 """The list of survivors that are accepted, each with its reason.
 
-What flows in: a TOML file. What flows out: entries, and what is wrong with them. An entry is known
+Input: a TOML file. Output: entries, and what is wrong with them. An entry is known
 by its file, its function and its line before and after, so that lines may move; when the line
 changes, the entry is stale.
 """

@@ -1,6 +1,6 @@
 """The ``distal`` command: parses, calls, reports.
 
-What flows in: words of a command line. What flows out: files, text on stdout (data only),
+Input: words of a command line. Output: files, text on stdout (data only),
 messages on stderr, and an exit code: 0, 1 for a mistake in a scene or a file, 2 for a wrong
 command line, 130 after ctrl-C. Knows no algorithm.
 """

@@ -1,6 +1,6 @@
 """The commands, each a few lines around the library's own functions.
 
-What flows in: parsed words. What flows out: the work of ``distal.load``, ``distal.compile`` and
+Input: parsed words. Output: the work of ``distal.load``, ``distal.compile`` and
 ``render``. Heavy packages are imported only by the command that needs them: ``compile`` runs
 without numpy, llvmlite and wgpu. ``render``, ``check`` and ``probe`` have modules of their own.
 """

@@ -1,6 +1,6 @@
 """What the words of the command line mean.
 
-What flows in: texts. What flows out: plain values, or ``UsageError`` with one clear message. Knows
+Input: texts. Output: plain values, or ``UsageError`` with one clear message. Knows
 neither typer nor how anything is rendered.
 """
 

@@ -1,6 +1,6 @@
 """What the commands share: the application they belong to, arguments, and how mistakes are told.
 
-What flows in: words of the command line. What flows out: a loaded scene; an author's mistake as its
+Input: words of the command line. Output: a loaded scene; an author's mistake as its
 message and exit code. Knows no command.
 """
 

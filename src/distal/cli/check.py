@@ -1,6 +1,6 @@
 """``distal check``: what a scene's shapes claim, where slope comes from, whether it all holds.
 
-What flows in: parsed words. What flows out: a tree of shapes and findings with their lines, or the
+Input: parsed words. Output: a tree of shapes and findings with their lines, or the
 same as JSON for editors; exit code 1 when a claim was found violated.
 """
 

@@ -1,6 +1,6 @@
 """What this machine can do for distal, and what would mend what is missing.
 
-What flows in: nothing but the machine. What flows out: ``Finding`` rows. Nothing here fails: what
+Input: nothing but the machine. Output: ``Finding`` rows. Nothing here fails: what
 cannot be found out becomes a finding too. Knows nothing of how findings are shown.
 """
 

@@ -1,6 +1,6 @@
 """How ``distal doctor`` looks.
 
-What flows in: findings. What flows out: a table on stdout. Knows no machine.
+Input: findings. Output: a table on stdout. Knows no machine.
 """
 
 from __future__ import annotations

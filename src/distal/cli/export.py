@@ -1,6 +1,6 @@
 """``distal export``: a scene as a page, or as a shader for another place.
 
-What flows in: parsed words. What flows out: a file, and a line that says what it is made of. What
+Input: parsed words. Output: a file, and a line that says what it is made of. What
 a page or a text holds is the library's matter; here stands only what goes with which.
 """
 

@@ -1,6 +1,6 @@
 """What the commands say to a person, on stderr; stdout stays for data.
 
-What flows in: messages, which may quote names and texts that others wrote. What flows out: lines
+Input: messages, which may quote names and texts that others wrote. Output: lines
 without control characters. Loads nothing heavy.
 """
 

@@ -1,6 +1,6 @@
 """``distal probe``: what one pixel of a scene saw.
 
-What flows in: parsed words. What flows out: ray, march, shape and material in words, with the
+Input: parsed words. Output: ray, march, shape and material in words, with the
 author's line; or the same as JSON for editors.
 """
 

@@ -1,6 +1,6 @@
 """``distal render``: a picture of a scene, a shape or an image, in color or as another view.
 
-What flows in: parsed words. What flows out: a picture's file, and how long it took. What a view
+Input: parsed words. Output: a picture's file, and how long it took. What a view
 shows is the library's matter; here stands only which options go with what.
 """
 

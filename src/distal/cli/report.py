@@ -1,6 +1,6 @@
 """What a person sees on stderr while a command works and when it ends.
 
-What flows in: progress and figures. What flows out: a bar, and one line. Knows no scene.
+Input: progress and figures. Output: a bar, and one line. Knows no scene.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """``distal rerender``: a saved picture, rendered again from what its file says.
 
-What flows in: parsed words. What flows out: a picture's file, or how the two differ.
+Input: parsed words. Output: a picture's file, or how the two differ.
 """
 
 from __future__ import annotations

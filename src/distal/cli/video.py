@@ -1,6 +1,6 @@
 """``distal video``: a scene that moves, as a video or as numbered pictures.
 
-What flows in: parsed words. What flows out: the file, and one line about it. When work is broken
+Input: parsed words. Output: the file, and one line about it. When work is broken
 off, the line says how it goes on.
 """
 

@@ -1,6 +1,6 @@
 """``distal view``: a native window that shows a scene live and follows its file.
 
-What flows in: parsed words. What flows out: a window, and an exit code when it is closed.
+Input: parsed words. Output: a window, and an exit code when it is closed.
 """
 
 from __future__ import annotations

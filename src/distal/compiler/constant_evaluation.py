@@ -1,6 +1,6 @@
 """Built-ins of plain values, computed without a device: ``SUN = normalize(vec3(1, 2, 3))``.
 
-What flows in: a row of the table and Python numbers or vectors. What flows out: the value in 64
+Input: a row of the table and Python numbers or vectors. Output: the value in 64
 bits, by the same rules that fold constants in scene code; None where those leave it to a device.
 A scene's module may thus compute its constants where nothing but the standard library is.
 """

@@ -1,6 +1,6 @@
 """The prelude as passes see it: lowered on demand, linked into a module under free names.
 
-What flows in: the name of a prelude function and argument types. What flows out: IR functions.
+Input: the name of a prelude function and argument types. Output: IR functions.
 This is where the passes' wish (``distal.ir.library.Library``) meets the front end.
 """
 

@@ -1,6 +1,6 @@
 """The GPUs of this machine, and one open device for each that is used.
 
-What flows in: a person's wish, such as "auto", a number or part of a name. What flows out: an
+Input: a person's wish, such as "auto", a number or part of a name. Output: an
 adapter's row, and an open ``Gpu``. wgpu is imported only when somebody asks. Knows no kernels.
 """
 

@@ -1,6 +1,6 @@
 """What a device gives back: a kernel, ready to run.
 
-What flows in: a module fresh from the front end. What flows out: pictures, or values at points.
+Input: a module fresh from the front end. Output: pictures, or values at points.
 Knows nothing of how the work is done.
 """
 

@@ -1,6 +1,6 @@
 """Compiled kernels kept between runs.
 
-What flows in: a key and a kernel's bytes. What flows out: the same bytes, or nothing. A kernel is
+Input: a key and a kernel's bytes. Output: the same bytes, or nothing. A kernel is
 machine code that will be run, so it is read only from a folder and a file that belong to the user
 and that nobody else can write. Files are written whole under another name and then renamed, and
 carry a checksum of their key and their content, so that writers side by side, full disks, lost

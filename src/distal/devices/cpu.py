@@ -1,6 +1,6 @@
 """The CPU device: vector code on every processor, compiled once and kept.
 
-What flows in: a module fresh from the front end, then numbers. What flows out: pictures, and values
+Input: a module fresh from the front end, then numbers. Output: pictures, and values
 at points. With a kernel in the cache no pass runs and nothing is compiled.
 """
 

@@ -1,7 +1,7 @@
 """Values between NumPy and a kernel's memory.
 
-What flows in: arrays as users have them, and shapes as ``distal.backends.llvm.layout`` describes
-them. What flows out: runs of slots, one for each leaf, and back.
+Input: arrays as users have them, and shapes as ``distal.backends.llvm.layout`` describes
+them. Output: runs of slots, one for each leaf, and back.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Which of a GPU's own functions are too rough to draw with (decision 18).
 
-What flows in: an open GPU. What flows out: the names of the built-ins whose careful stand-in a
+Input: an open GPU. Output: the names of the built-ins whose careful stand-in a
 program should have there, of those that the table has one for. Measured once for each open GPU, by
 a kernel of its own, at the same arguments and against the same error as a page measures
 (``web/src/trust.ts``; a test holds the two together).

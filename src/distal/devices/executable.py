@@ -1,6 +1,6 @@
 """Objects put into memory and called.
 
-What flows in: an object file. What flows out: functions that ctypes calls without Python's lock.
+Input: an object file. Output: functions that ctypes calls without Python's lock.
 LLVM's own loader does the work, as it knows every system's rules for executable memory.
 """
 

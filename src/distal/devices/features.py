@@ -1,6 +1,6 @@
 """What the processor can do, and the vector shape that suits it.
 
-What flows in: the operating system's list of features, or a level by name. What flows out: a
+Input: the operating system's list of features, or a level by name. Output: a
 ``Level``: what LLVM is told, and how many lanes a kernel has. Needs no LLVM, so that a stored
 kernel is found without loading it.
 """

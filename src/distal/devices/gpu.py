@@ -1,6 +1,6 @@
 """The GPU device: a module as WGSL, computed or drawn by wgpu.
 
-What flows in: a module fresh from the front end, then numbers. What flows out: pictures, values at
+Input: a module fresh from the front end, then numbers. Output: pictures, values at
 points, or a picture drawn into somebody's texture. Large pictures go part by part, sized by
 measured time. A lost GPU is a ``DeviceError``; the next run opens it anew.
 """

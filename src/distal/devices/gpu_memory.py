@@ -1,6 +1,6 @@
 """What a program reads, in a GPU's memory: uniforms as bytes, textures and buffers uploaded once.
 
-What flows in: the interface of a WGSL text, values by name. What flows out: bytes, and bindings.
+Input: the interface of a WGSL text, values by name. Output: bytes, and bindings.
 Knows no pipelines.
 """
 

@@ -1,6 +1,6 @@
 """A WGSL text as pipelines on an open device, with what they read and write.
 
-What flows in: an artifact, values by name. What flows out: commands in an encoder. What to bind
+Input: an artifact, values by name. Output: commands in an encoder. What to bind
 where is read from the artifact's interface. Pipelines, buffers and bind groups are kept from one
 run to the next. Knows neither pictures nor time.
 """

@@ -1,6 +1,6 @@
 """LLVM text to machine code. The only module that loads LLVM.
 
-What flows in: a module's text and a feature level. What flows out: an object file.
+Input: a module's text and a feature level. Output: an object file.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The name under which machine code is kept: everything that the code depends on.
 
-What flows in: what is compiled, and for which CPU level. What flows out: a key for ``Cache``, made
+Input: what is compiled, and for which CPU level. Output: a key for ``Cache``, made
 without loading LLVM. The one place that makes keys, so that no kind of kernel can leave out the
 level, the compiler or the version.
 """

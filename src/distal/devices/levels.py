@@ -1,6 +1,6 @@
 """Floats to the levels of 8 or 16 bits, by machine code: each frame of a video passes through here.
 
-What flows in: an array of float32. What flows out: the nearest levels, as ``film.png.quantise``
+Input: an array of float32. Output: the nearest levels, as ``film.png.quantise``
 defines them. NumPy makes five passes in doubles over memory for it: 640x480 pixels take 3.4 ms of
 one core, here 0.3 ms.
 """

@@ -1,6 +1,6 @@
 """Whether this process may take only so much memory, and whether enough of it is left.
 
-What flows in: how many bytes some work needs. What flows out: nothing, or a ``MemoryError``. Python
+Input: how many bytes some work needs. Output: nothing, or a ``MemoryError``. Python
 and NumPy raise one by themselves; LLVM ends the process, so it is asked for beforehand.
 """
 

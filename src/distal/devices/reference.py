@@ -1,6 +1,6 @@
 """The reference device: the NumPy backend as a kernel. Slow, and right by definition.
 
-What flows in: a lowered module, then plain arrays. What flows out: pictures and results. Nothing
+Input: a lowered module, then plain arrays. Output: pictures and results. Nothing
 is compiled, so a kernel is ready at once; threads are not used.
 """
 

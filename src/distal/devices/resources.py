@@ -1,6 +1,6 @@
 """The data of textures and buffers, from what the author declared to arrays for a device.
 
-What flows in: a declared resource and its type: a file's path, an array, nested lists. What flows
+Input: a declared resource and its type: a file's path, an array, nested lists. What flows
 out: texels as float32 (height, width, 4), depth or face first for volumes and cubes, in the order
 of their indices; buffers as (n,) or (n, size). Values of pictures are taken as they stand in the
 file, 0 to 1. It knows no device.

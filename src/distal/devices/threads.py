@@ -1,7 +1,7 @@
 """One kernel run by several threads, watched by the caller's.
 
-What flows in: a function that several threads may call at once and that returns when nothing is
-left to do, a counter it advances, a flag it obeys. What flows out: nothing; it is done, or it was
+Input: a function that several threads may call at once and that returns when nothing is
+left to do, a counter it advances, a flag it obeys. Output: nothing; it is done, or it was
 ended. The caller's own thread only waits, so that ctrl-C and ``cancel`` act at once.
 """
 

@@ -1,6 +1,6 @@
 """How a large picture is cut into parts, each of a length that no driver takes for a hanging one.
 
-What flows in: a picture's size and the time that each part took. What flows out: the next part.
+Input: a picture's size and the time that each part took. Output: the next part.
 Drivers reset a GPU that works on one submission for more than about two seconds (Windows) or five
 to ten (Linux), and a window on the same GPU stands still meanwhile. So parts are sized by measured
 time. Knows no GPU.

@@ -1,6 +1,6 @@
 """A scene as a page: one file that asks for nothing, or a fragment for other people's pages.
 
-What flows in: something to be seen. What flows out: HTML with the player, the programs and a poster
+Input: something to be seen. Output: HTML with the player, the programs and a poster
 inside. The page's own policy forbids it every request. Knows nothing of how the player draws.
 """
 

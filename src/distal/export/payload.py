@@ -1,6 +1,6 @@
 """What a page's player is told of a scene: its programs, parameters and data, as plain JSON values.
 
-What flows in: something that can be looked at. What flows out: the payload, a dictionary that JSON
+Input: something that can be looked at. Output: the payload, a dictionary that JSON
 can carry. Knows no HTML. The player's side of the format is ``web/src/payload.ts``.
 """
 

@@ -1,6 +1,6 @@
 """The picture that a page shows before its first frame, and where it cannot draw.
 
-What flows in: something to be seen. What flows out: a small WebP file's bytes.
+Input: something to be seen. Output: a small WebP file's bytes.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Every kind of file that an export writes, by name and by suffix.
 
-What flows in: a picture and a path. What flows out: the file, and what it is made of. To add a
+Input: a picture and a path. Output: the file, and what it is made of. To add a
 kind: one module with ``write``, and one row here.
 """
 

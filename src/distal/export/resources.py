@@ -1,6 +1,6 @@
 """The data of textures and buffers as a page carries it.
 
-What flows in: what the author declared. What flows out: JSON with the numbers in base64, in the
+Input: what the author declared. Output: JSON with the numbers in base64, in the
 narrowest format that shows the same picture. Knows no page and no program.
 """
 

@@ -1,6 +1,6 @@
 """A picture as a shader for another place, with a comment that says how to use it there.
 
-What flows in: something to be seen, or a text of the compiler's. What flows out: files. The
+Input: something to be seen, or a text of the compiler's. Output: files. The
 comment's part needs the standard library only: ``distal compile`` uses it too.
 """
 

@@ -1,6 +1,6 @@
 """Geometry of boxes, for the rules of operators and for the guards that keep their values safe.
 
-What flows in: boxes of shapes, finite or with sides beyond ``ENDLESS``. What flows out: grown,
+Input: boxes of shapes, finite or with sides beyond ``ENDLESS``. Output: grown,
 overlapping and turned boxes, distances to a box, radii. Knows no operator.
 """
 

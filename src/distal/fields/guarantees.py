@@ -1,6 +1,6 @@
 """What fields and operators promise, beside the functions themselves.
 
-What flows in: ``@func`` functions and the promises made about them. What flows out: ``Primitive``
+Input: ``@func`` functions and the promises made about them. Output: ``Primitive``
 and ``Operator`` rows, kept in the order of their declaration. Knows neither the object model that
 reads them nor how anything is rendered.
 

@@ -1,6 +1,6 @@
 """Python's parser, for one thread at a time.
 
-What flows in: source text. What flows out: its tree. CPython 3.11 counts the depth of all trees
+Input: source text. Output: its tree. CPython 3.11 counts the depth of all trees
 that are being built in one place (gh-106905): two threads that parse at once fail now and then
 with "AST constructor recursion depth mismatch".
 """

@@ -1,6 +1,6 @@
 """From captured text to a syntax tree, and from its nodes back to places in the author's file.
 
-What flows in: a ``Source`` (file, lines, first line). What flows out: the ``def``'s node and a
+Input: a ``Source`` (file, lines, first line). Output: the ``def``'s node and a
 ``SourceMap`` that makes spans. Knows nothing of scene code.
 """
 

@@ -1,6 +1,6 @@
 """Files that appear whole or not at all.
 
-What flows in: a destination and the bytes for it. What flows out: the file, replaced in one step;
+Input: a destination and the bytes for it. Output: the file, replaced in one step;
 a failure or an interruption leaves what stood there before. Knows nothing of formats.
 """
 

@@ -1,6 +1,6 @@
 """Linear light and layers to an OpenEXR file, and back.
 
-What flows in: linear light with straight alpha, layers by name, texts. What flows out: one part of
+Input: linear light with straight alpha, layers by name, texts. Output: one part of
 scan lines. Knows nothing of scenes. Channels are called as compositors find them by themselves:
 ``R G B A``, ``Z`` (the format's own name for depth), ``N.X N.Y N.Z``, ``albedo.R`` …,
 ``material.id``.

@@ -1,6 +1,6 @@
 """The head of an OpenEXR file, read without the library: others may have made the file.
 
-What flows in: a file. What flows out: its size, the bits of a channel, its texts; or a
+Input: a file. Output: its size, the bits of a channel, its texts; or a
 ``ValueError`` in words. OpenEXR's C++ ends the process on some broken files, so nothing of a file
 reaches it before its head is known to be one that ``exr.encode`` writes.
 

@@ -1,6 +1,6 @@
 """Where a picture came from, as texts in its file, and back.
 
-What flows in: a ``Provenance``, or a file that ``Picture.save`` wrote. What flows out: texts by
+Input: a ``Provenance``, or a file that ``Picture.save`` wrote. Output: texts by
 key, or the ``Record`` they stand for. Knows file formats by their heads only; pixels are others'
 matter.
 """

@@ -1,7 +1,7 @@
 """A finished picture.
 
-What flows in: pixels encoded for display, the light they show where it is known, and where they
-came from. What flows out: an immutable
+Input: pixels encoded for display, the light they show where it is known, and where they
+came from. Output: an immutable
 ``Picture`` that saves itself and shows itself in a notebook. Knows nothing about how the pixels
 were made.
 """

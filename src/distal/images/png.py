@@ -1,6 +1,6 @@
 """Pixels to PNG bytes, and back.
 
-What flows in: display-encoded float pixels, top row first, and texts to keep beside them. What
+Input: display-encoded float pixels, top row first, and texts to keep beside them. What
 flows out: a PNG of 8 or 16 bits that says it is sRGB. Knows nothing of scenes.
 """
 

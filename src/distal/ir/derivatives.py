@@ -1,7 +1,7 @@
 """The derivative rules of the table's rows.
 
-What flows in: a ``Builtin`` and, for one direction, the tangent of each argument (None where an
-argument does not change). What flows out: the tangent of the result, an expression over the same
+Input: a ``Builtin`` and, for one direction, the tangent of each argument (None where an
+argument does not change). Output: the tangent of the result, an expression over the same
 arguments. The builtin itself is its value, for rules that need it.
 
 Where a function has no derivative one is settled: 0 for length, abs and sqrt at 0 and wherever the

@@ -1,6 +1,6 @@
 """What a caller chose for parameters, held against what they take.
 
-What flows in: parameters, and values by name from Python. What flows out: plain values by the
+Input: parameters, and values by name from Python. Output: plain values by the
 parameters' names, each checked. Texts of a command line are ``distal.cli.arguments``' matter.
 """
 

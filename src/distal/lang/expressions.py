@@ -1,7 +1,7 @@
 """Values that are known only when a picture is made, written with Python's own operators.
 
-What flows in: parameters, the time, numbers, vectors, and operators or built-ins between them
-(``0.5 + 0.1 * np.cos(time)``). What flows out: an ``Expression`` that holds the node of the IR.
+Input: parameters, the time, numbers, vectors, and operators or built-ins between them
+(``0.5 + 0.1 * np.cos(time)``). Output: an ``Expression`` that holds the node of the IR.
 Operators mean what they mean in scene code; the rules themselves are the front end's, reached
 through the one hook. NumPy's functions find their way here by themselves: it is not imported.
 """

@@ -1,6 +1,6 @@
 """``@func`` and ``@image``: a Python function recorded as scene code.
 
-What flows in: the function as Python made it. What flows out: an object that keeps it together
+Input: the function as Python made it. Output: an object that keeps it together
 with its source text. Nothing is parsed or checked; that happens when it is compiled or called.
 """
 

@@ -1,6 +1,6 @@
 """Numbers as people read them, by JavaScript's rules: a page and a window show the same text.
 
-What flows in: a finite number. What flows out: the number rounded in decimal digits, or its text.
+Input: a finite number. Output: the number rounded in decimal digits, or its text.
 """
 
 from __future__ import annotations

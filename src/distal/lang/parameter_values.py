@@ -1,7 +1,7 @@
 """Reading and checking the values of parameters.
 
-What flows in: whatever an author, a caller or a command line gave, and the label to name in a
-message. What flows out: plain finite Python numbers that 32 bits hold, or a ``TypeError`` (another
+Input: whatever an author, a caller or a command line gave, and the label to name in a
+message. Output: plain finite Python numbers that 32 bits hold, or a ``TypeError`` (another
 kind of thing) or ``ValueError`` (the right kind, out of reach). Knows no ``Parameter``.
 """
 

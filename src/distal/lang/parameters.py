@@ -1,7 +1,7 @@
 """Parameters: the numbers of a scene that change without a new compilation.
 
-What flows in: the author's definitions (``slider("Softness", 0.3)``) and, later, values from a
-caller or a command line. What flows out: frozen ``Parameter`` rows and plain Python values, each
+Input: the author's definitions (``slider("Softness", 0.3)``) and, later, values from a
+caller or a command line. Output: frozen ``Parameter`` rows and plain Python values, each
 checked against kind and range; a mistake is a ``ValueError`` or ``TypeError`` that names the
 label. The module does not know how a parameter reaches a target: each one is a uniform of its
 ``name``.

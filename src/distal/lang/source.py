@@ -1,6 +1,6 @@
 """The text of a decorated function, captured when it is decorated.
 
-What flows in: a Python function. What flows out: where it was written and the lines of the whole
+Input: a Python function. Output: where it was written and the lines of the whole
 file as they are now, so that a later edit never mixes in. Nothing is parsed here: decorating must
 cost next to nothing. The lines of a file are one shared list, however many functions it has.
 """

@@ -1,6 +1,6 @@
 """sRGB's curve (IEC 61966-2-1): the one definition, scene code and plain Python at once.
 
-What flows in: linear light, or values encoded for display. What flows out: the other of the two.
+Input: linear light, or values encoded for display. Output: the other of the two.
 Pictures, parameters' colors, shaders and the page's player (through ``tools/gen_player.py``) take
 the curve from here. Needs the standard library only.
 """

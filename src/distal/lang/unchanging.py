@@ -1,6 +1,6 @@
 """Objects that stay as they were made: copies are themselves, and they stay in their process.
 
-What flows in: nothing. What flows out: a base class for shapes, materials, lights and their like.
+Input: nothing. Output: a base class for shapes, materials, lights and their like.
 Their functions and types are known by identity, so another process could do nothing with them.
 """
 

@@ -1,6 +1,6 @@
 """The live picture of a notebook cell.
 
-What flows in: something that can be looked at, and values of its parameters. What flows out: a
+Input: something that can be looked at, and values of its parameters. Output: a
 widget that shows it in the browser, whose state (parameters, time, view, camera) either side may
 change. Knows nothing of how the browser draws.
 """

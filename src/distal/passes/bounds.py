@@ -1,6 +1,6 @@
 """Make the clamping of indices explicit where an index is not provably in range.
 
-What flows in: a module whose every index is clamped in meaning. What flows out: the same, with
+Input: a module whose every index is clamped in meaning. Output: the same, with
 ``min(max(i, 0), n - 1)`` in place of ``i`` unless its interval lies within 0 .. n - 1. Memory
 safety of compiled code rests on this pass. Buffers, whose length is known when they are bound,
 stay with the backend.

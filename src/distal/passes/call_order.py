@@ -1,6 +1,6 @@
 """Callees before callers.
 
-What flows in: functions in any order, and the entry. What flows out: those that the entry
+Input: functions in any order, and the entry. Output: those that the entry
 reaches, each after everything it calls; otherwise in the order they are called, so that the same
 program always gives the same order.
 """

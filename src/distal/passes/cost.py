@@ -1,6 +1,6 @@
 """What computing a node costs, in scalar operations, roughly.
 
-What flows in: expressions and functions. What flows out: whole numbers that passes compare with
+Input: expressions and functions. Output: whole numbers that passes compare with
 each other; they only have to be right within a factor of two. Taking values apart and putting
 them together is free: it is no work on any target.
 """

@@ -1,6 +1,6 @@
 """Removing locals that nothing reads.
 
-What flows in: the body of a function. What flows out: the same without Lets, Vars, assignments,
+Input: the body of a function. Output: the same without Lets, Vars, assignments,
 branches and counted loops that no result depends on. A ``while`` stays: whether it ends is part
 of what the author wrote.
 """

@@ -1,6 +1,6 @@
 """Give the module a plain entry point: what the host provides becomes coord and uniforms.
 
-What flows in: a lowered module whose image function takes a ``Frame``. What flows out: a module
+Input: a lowered module whose image function takes a ``Frame``. Output: a module
 without ``Frame``. A parameter of that type is now the vec2 ``coord``; every other part of it is a
 uniform of origin FRAME, declared only when it is read. An image is wrapped into
 ``main(coord: vec2) -> vec4``. The time that expressions made in Python read is the frame's, also

@@ -1,6 +1,6 @@
 """Names that are free.
 
-What flows in: the names already taken, and a wish. What flows out: the wish, or the wish with the
+Input: the names already taken, and a wish. Output: the wish, or the wish with the
 first number that is free. Deterministic: the same wishes in the same order give the same names.
 """
 

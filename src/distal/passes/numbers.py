@@ -1,6 +1,6 @@
 """The numbers of a scene's shapes as constants, for a text or a kernel that is final.
 
-What flows in: a lowered module. What flows out: the same without uniforms of origin NUMBER: each
+Input: a lowered module. Output: the same without uniforms of origin NUMBER: each
 value stands where it was read, and the passes fold it. It costs a compilation for every change of
 a number.
 """

@@ -1,6 +1,6 @@
 """Ifs of two ways as Ifs of one, for drivers whose time doubles with each.
 
-What flows in: functions as a text would show them. What flows out: the same meaning; where two ways
+Input: functions as a text would show them. Output: the same meaning; where two ways
 of an If may be equally long, its condition is bound first, and each way has an If of its own. Two
 returns at the end of a function are such ways too. Knows nothing of drivers beyond this:
 SwiftShader walks a loop block by block to find its way back, and walks on twice from a block that

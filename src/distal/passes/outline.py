@@ -1,6 +1,6 @@
 """Outline: a very long function is cut into functions of its own, where the target wants it.
 
-What flows in: predicated functions. What flows out: the same values; of a function that is larger
+Input: predicated functions. Output: the same values; of a function that is larger
 than ``LARGE``, runs of statements are functions of about ``PIECE`` that stay apart. LLVM's
 instruction selection and register allocation take time that grows with the square of a block's
 length: 800 lines of one block took 10 s, in pieces they take a tenth.

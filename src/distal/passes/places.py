@@ -1,6 +1,6 @@
 """Where in a function something is computed.
 
-What flows in: blocks and positions, as ``versions`` numbers a function. What flows out: answers
+Input: blocks and positions, as ``versions`` numbers a function. Output: answers
 to where a value that several statements use may be computed once, and whether it would have been
 computed anyway.
 """

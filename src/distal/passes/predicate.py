@@ -1,6 +1,6 @@
 """Early exits turned into flags, for targets that run many pixels in step.
 
-What flows in: functions with return, break and continue anywhere. What flows out: functions with
+Input: functions with return, break and continue anywhere. Output: functions with
 one Return, their last statement, and loops whose only Break is a last statement ``if flag: break``.
 A backend with lane masks then needs to know ifs and loops only. Knows nothing of masks.
 

@@ -1,6 +1,6 @@
 """Which values an integer can take.
 
-What flows in: int and uint expressions and what is known of the locals they read. What flows out:
+Input: int and uint expressions and what is known of the locals they read. What flows out:
 for each a closed interval, the whole range of its type when nothing better is known. Arithmetic
 that could wrap gives the whole range. Var locals are not followed.
 """

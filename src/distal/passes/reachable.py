@@ -1,6 +1,6 @@
 """Which functions and per-frame values a module's entry still needs.
 
-What flows in: a module. What flows out: the same without functions that nothing calls and without
+Input: a module. Output: the same without functions that nothing calls and without
 per-frame values that nothing reads.
 """
 

@@ -1,6 +1,6 @@
 """One name for each value: reads of a changing local are told apart by what it holds.
 
-What flows in: a function's body. What flows out: its places, with every read of a Var renamed to
+Input: a function's body. Output: its places, with every read of a Var renamed to
 ``name#3``, a new number wherever the value may have changed, so that equal nodes have equal
 values wherever both are in scope (static single assignment, without the phis: after a branch and
 around a loop a Var simply has a new number). A Let whose value an earlier one in scope already

@@ -1,6 +1,6 @@
 """Light from all around, as surfaces see it.
 
-What flows in: a unit normal and the numbers of the surroundings. What flows out: what a white
+Input: a unit normal and the numbers of the surroundings. Output: what a white
 diffuse surface shows, unoccluded. Point lights and the like are in ``lights``.
 """
 

@@ -1,7 +1,7 @@
 """Cameras: the ray that a place in the picture looks along.
 
-What flows in: ``uv``, -1 to 1 from the bottom to the top of the picture and by the same unit from
-left to right, and the numbers of a camera. What flows out: a ``Ray``. Right-handed, y up; a camera
+Input: ``uv``, -1 to 1 from the bottom to the top of the picture and by the same unit from
+left to right, and the numbers of a camera. Output: a ``Ray``. Right-handed, y up; a camera
 that is not turned looks along -z. ``mirror`` swaps left and right, as in left-handed systems.
 """
 

@@ -1,6 +1,6 @@
 """A picture of the surroundings: as background, and as diffuse light.
 
-What flows in: an equirectangular picture (-z in its middle, up at its top) in linear light. What
+Input: an equirectangular picture (-z in its middle, up at its top) in linear light. What
 flows out: the light from a direction; and nine spherical harmonics of it, which
 ``ambient.environment_ambient`` reads. The harmonics are computed once, in Python.
 """

@@ -1,7 +1,7 @@
 """The hybrid march for terrain and water: long steps over it, then a search between two of them.
 
-What flows in: a field that is a height over ground, roughly (positive above), a ray, the height
-that all of it stays below. What flows out: a ``Hit``. Sphere tracing nearly stops where a ray
+Input: a field that is a height over ground, roughly (positive above), a ray, the height
+that all of it stays below. Output: a ``Hit``. Sphere tracing nearly stops where a ray
 skims a surface; this one strides on and finds the crossing between its last two steps.
 
 Source: the founding blog's "Sunset on the sea": steps of the larger of the distance and a length

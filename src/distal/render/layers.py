@@ -1,6 +1,6 @@
 """What else is known of a pixel besides its color, as plain values: for compositing and denoising.
 
-What flows in: the ray through a pixel's middle, and what a renderer may ask for. What flows out:
+Input: the ray through a pixel's middle, and what a renderer may ask for. What flows out:
 values, not colors: up to three numbers, and in w whether anything was met. Each is asked once for
 each pixel: a mean of depths or of numbers of materials is a place or a material that is nowhere.
 """

@@ -1,6 +1,6 @@
 """A legend over a picture of costs: a bar of the colours in use, with numbers at its ends.
 
-What flows in: a pixel's colour and place. What flows out: the colour, or the legend's. Numbers are
+Input: a pixel's colour and place. Output: the colour, or the legend's. Numbers are
 drawn by arithmetic, so that every target can.
 """
 

@@ -1,6 +1,6 @@
 """Lights that come from somewhere: what each sends to a point.
 
-What flows in: a point and the numbers of a light. What flows out: a ``LightSample``. Knows neither
+Input: a point and the numbers of a light. Output: a ``LightSample``. Knows neither
 shadows nor surfaces. The unit of ``radiance``: a white diffuse surface, square on, shows it as it
 is, so that a point light of intensity 1 at distance 1 shows 1.
 """

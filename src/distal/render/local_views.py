@@ -1,6 +1,6 @@
 """The locals of an author's picture as colors: numbers, coordinates, vectors.
 
-What flows in: a local's value at a pixel, and whether the pixel reached it. What flows out: a
+Input: a local's value at a pixel, and whether the pixel reached it. Output: a
 color that shows sizes and signs, whatever the range.
 """
 

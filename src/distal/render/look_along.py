@@ -1,6 +1,6 @@
 """What one ray of a picture meets: the picture's own march, told in numbers instead of a color.
 
-What flows in: a pixel and the scene's own functions. What flows out: a ``Seen``.
+Input: a pixel and the scene's own functions. Output: a ``Seen``.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What a surface is made of at one place, and how much of the light goes which way.
 
-What flows in: colours, weights, optical constants. What flows out: a ``Surface``, and from it the
+Input: colours, weights, optical constants. Output: a ``Surface``, and from it the
 shares of light that a ray splits into. Knows no geometry and no lights.
 """
 

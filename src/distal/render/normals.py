@@ -1,6 +1,6 @@
 """Normals of a field: exact, or by differences.
 
-What flows in: a field and a point. What flows out: a unit vector, never NaN.
+Input: a field and a point. Output: a unit vector, never NaN.
 """
 
 from __future__ import annotations

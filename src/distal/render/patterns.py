@@ -1,7 +1,7 @@
 """Patterns: numbers and colours that differ from place to place on a surface.
 
-What flows in: ``p``, the point in the painted shape's own space, ``n``, the normal there, ``cell``,
-the index of the repetition it lies in, and the numbers of a pattern. What flows out: a share from 0
+Input: ``p``, the point in the painted shape's own space, ``n``, the normal there, ``cell``,
+the index of the repetition it lies in, and the numbers of a pattern. Output: a share from 0
 (the first colour or material) to 1 (the second), or a linear colour. Knows no shapes and no lights.
 """
 

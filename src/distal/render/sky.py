@@ -1,6 +1,6 @@
 """Backgrounds: what a ray sees that meets nothing.
 
-What flows in: a unit direction and the numbers of a background. What flows out: linear light. The
+Input: a unit direction and the numbers of a background. Output: linear light. The
 sky's parts as lights are here too: its sun, as a ``LightSample``; its diffuse light is
 ``ambient.sky_ambient``.
 """

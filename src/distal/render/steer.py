@@ -1,6 +1,6 @@
 """A camera moved by hand: around what it looks at, nearer, sideways.
 
-What flows in: any camera's rays, and how far a person turned, dragged and zoomed. What flows out:
+Input: any camera's rays, and how far a person turned, dragged and zoomed. What flows out:
 the rays of the camera moved so. Whoever shows a picture keeps five numbers and knows no camera.
 """
 

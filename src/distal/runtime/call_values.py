@@ -1,6 +1,6 @@
 """Python values as arguments of scene functions, and results as Python values.
 
-What flows in: what a person passes to a ``@func``: numbers, vectors, lists, arrays of points. What
+Input: what a person passes to a ``@func``: numbers, vectors, lists, arrays of points. What
 flows out: an overload's types, and arrays with one row for each point; and back. Knows no device.
 """
 

@@ -1,6 +1,6 @@
 """What happens when Python calls scene code: ``f(points)`` and ``image.render()``.
 
-What flows in: recorded functions and plain values. What flows out: arrays and Pictures. This room
+Input: recorded functions and plain values. Output: arrays and Pictures. This room
 joins the front end, the devices and the film; ``distal.lang`` reaches it through its one hook.
 """
 

@@ -1,6 +1,6 @@
 """Functions as the front end lowers them, told apart by what they mean.
 
-What flows in: recorded functions and composed objects. What flows out: their IR, a digest under
+Input: recorded functions and composed objects. Output: their IR, a digest under
 which a kernel is kept, and whether what they captured has changed since. Runs nothing.
 """
 

@@ -1,6 +1,6 @@
 """The value of every uniform of a run: the frame's, the parameters', a scene's numbers.
 
-What flows in: modules, and what a caller gave: time, parameters by name, settings. What flows out:
+Input: modules, and what a caller gave: time, parameters by name, settings. What flows out:
 checked plain numbers by the names that kernels know. A mistake of the caller's is a ``TypeError``
 or ``ValueError`` that names it. Knows no device.
 """

@@ -1,6 +1,6 @@
 """A scene's picture, computed: which programs, with which numbers, and what is doubtful about it.
 
-What flows in: a scene, and what its author asked to see. What flows out: a ``Picture`` with its
+Input: a scene, and what its author asked to see. Output: a ``Picture`` with its
 layers, which says how it was made. Needs NumPy; scenes compile without this module.
 """
 

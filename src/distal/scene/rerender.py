@@ -1,6 +1,6 @@
 """A saved picture, rendered again from what its file says.
 
-What flows in: the file of a picture. What flows out: the same picture, and what is not as it was
+Input: the file of a picture. Output: the same picture, and what is not as it was
 then. Nothing of a scene's file is run before its text is known to be the one of then.
 """
 

@@ -1,6 +1,6 @@
 """A scene: shapes, lights and a camera, ready to become a picture.
 
-What flows in: the author's objects. What flows out: one function from a pixel to linear light, made
+Input: the author's objects. Output: one function from a pixel to linear light, made
 of the library's cameras, marchers and shaders around the shapes' own functions; and a second one
 that encodes light for display. The cheapest renderer is chosen that shows all materials.
 """

@@ -1,6 +1,6 @@
 """What an author gives a scene, checked: shapes, lights, counts, choices and numbers.
 
-What flows in: arguments of ``Scene`` as they were given, and where. What flows out: objects of the
+Input: arguments of ``Scene`` as they were given, and where. Output: objects of the
 library, or a ``CompileError`` at the author's line. Knows nothing of how a scene is rendered.
 """
 

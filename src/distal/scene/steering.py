@@ -1,6 +1,6 @@
 """How a person moved a scene's camera, as five numbers.
 
-What flows in: gestures, already turned into angles and shares of the picture. What flows out: the
+Input: gestures, already turned into angles and shares of the picture. Output: the
 values of the uniforms that a steered view reads; ``render/steer.py`` says what they do.
 """
 

@@ -1,6 +1,6 @@
 """Animated pictures: GIF, APNG and WebP of frames that stand in files.
 
-What flows in: the frames' PNG files, in order. What flows out: one file. Only a few frames are in
+Input: the frames' PNG files, in order. Output: one file. Only a few frames are in
 memory at a time. Knows nothing of scenes.
 """
 

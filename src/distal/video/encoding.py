@@ -1,6 +1,6 @@
 """Frames into the pieces of a video, while others are rendered.
 
-What flows in: pictures by their numbers, in order. What flows out: whole pieces. Frames are made
+Input: pictures by their numbers, in order. Output: whole pieces. Frames are made
 ready on the threads that render, and encoded on one of their own.
 """
 

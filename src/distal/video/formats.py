@@ -1,6 +1,6 @@
 """Which kinds of moving pictures there are, and how each is encoded.
 
-What flows in: an output's path, a quality, a size, a frame rate. What flows out: a ``Codec``, the
+Input: an output's path, a quality, a size, a frame rate. Output: a ``Codec``, the
 settings an encoder takes, or one line that says why it cannot be. Knows nothing of scenes; PyAV is
 imported when it is first needed.
 """

@@ -1,6 +1,6 @@
 """Frames as PNG files: written whole, known again.
 
-What flows in: pictures and where they go. What flows out: files that carry a key of what they
+Input: pictures and where they go. Output: files that carry a key of what they
 depend on, so that a later run keeps those that it would make alike.
 """
 

@@ -1,6 +1,6 @@
 """Several kinds of work at once: items are made, in order, while others take those that are made.
 
-What flows in: a function that makes, one that takes. What flows out: each item is given to a
+Input: a function that makes, one that takes. Output: each item is given to a
 function that runs on threads of its own; a few wait in between, so that memory stays flat. Knows
 nothing of pictures.
 """

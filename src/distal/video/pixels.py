@@ -1,6 +1,6 @@
 """Pixels as encoders take them.
 
-What flows in: display-encoded float pixels, top row first. What flows out: frames of 8 bits in RGB,
+Input: display-encoded float pixels, top row first. Output: frames of 8 bits in RGB,
 or in BT.709's Y'CbCr with its tags. Knows nothing of files.
 """
 

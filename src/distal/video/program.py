@@ -1,6 +1,6 @@
 """What is rendered again and again, and what its pictures depend on.
 
-What flows in: anything that is a picture, a view, parameters. What flows out: pictures by their
+Input: anything that is a picture, a view, parameters. Output: pictures by their
 number and time, and a fingerprint: two programs of one fingerprint make the same pictures. Knows no
 file.
 """

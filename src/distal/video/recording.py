@@ -1,6 +1,6 @@
 """``scene.video(…)``: a sequence rendered and written, from beginning to end.
 
-What flows in: a picture that moves, a path, how long and how fast. What flows out: the file, or
+Input: a picture that moves, a path, how long and how fast. Output: the file, or
 numbered pictures. Frames are rendered on the caller's thread while others encode them; what is
 whole is kept, and the same call goes on from there. How files are encoded is ``film``'s matter.
 """

@@ -1,6 +1,6 @@
 """Pieces of a video: encoded one by one, joined without encoding again.
 
-What flows in: pictures; later the pieces' paths. What flows out: a file for each piece, whole or
+Input: pictures; later the pieces' paths. Output: a file for each piece, whole or
 not there, and one file of all. Each piece begins with a key frame and needs no other. Knows nothing
 of scenes and of who decides where a piece ends.
 """

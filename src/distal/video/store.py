@@ -1,6 +1,6 @@
 """What is kept of a video while it is made, so that broken-off work goes on where it ended.
 
-What flows in: an output's path, and what its frames depend on. What flows out: a folder beside the
+Input: an output's path, and what its frames depend on. Output: a folder beside the
 output, with a manifest, that holds whole pieces only. Knows nothing of how they are made.
 """
 

@@ -1,6 +1,6 @@
 """Texts inside animated pictures: what FFmpeg's writers of them leave out.
 
-What flows in: a finished GIF, APNG or WebP, and texts. What flows out: the same file with them:
+Input: a finished GIF, APNG or WebP, and texts. Output: the same file with them:
 a comment extension, iTXt chunks, an EXIF chunk. Pixels are not touched.
 """
 

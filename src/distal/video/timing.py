@@ -1,6 +1,6 @@
 """How the frames of a sequence lie in time.
 
-What flows in: a start, a duration, a frame rate, as people write them. What flows out: exact counts
+Input: a start, a duration, a frame rate, as people write them. Output: exact counts
 and times. Fractions throughout: 30000/1001 is no decimal number.
 """
 

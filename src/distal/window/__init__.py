@@ -1,5 +1,5 @@
 """The native window: a scene shown live, steered by hand, and made anew when its file is saved.
 
-What flows in: a loaded scene and where it came from. What flows out: a window, until it is closed.
+Input: a loaded scene and where it came from. Output: a window, until it is closed.
 ``session`` is what a person has done so far, and knows no display; ``app`` joins it to one.
 """

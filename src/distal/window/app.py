@@ -1,6 +1,6 @@
 """The window: joins what a person does, what is made, and what is on the screen.
 
-What flows in: events of a canvas, timers, what the worker has done. What flows out: orders to the
+Input: events of a canvas, timers, what the worker has done. Output: orders to the
 worker, drawings. The parts that can be thought about alone stand in the other modules; here is the
 order of things.
 """

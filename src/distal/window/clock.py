@@ -1,6 +1,6 @@
 """The scene's time: it runs, stands, jumps, and goes faster or slower.
 
-What flows in: readings of a steady wall clock, in seconds. What flows out: the scene's seconds at
+Input: readings of a steady wall clock, in seconds. Output: the scene's seconds at
 each. Reads no clock itself.
 """
 

@@ -1,6 +1,6 @@
 """Parameters as rows that a person can move: a slider is one, a color is three.
 
-What flows in: parameters and their values. What flows out: for each row its words, where its bar
+Input: parameters and their values. Output: for each row its words, where its bar
 stands, and the parameter's value after a move. Knows no window.
 """
 

@@ -1,6 +1,6 @@
 """What the pointer's motion means: for a camera, and for an ``@image``'s ``frame.mouse``.
 
-What flows in: distances in parts of the picture's height, places in parts of the picture. What
+Input: distances in parts of the picture's height, places in parts of the picture. What
 flows out: five numbers of a ``Steering``, or Shadertoy's four of the mouse. Knows no camera: what
 the numbers do is scene code; how far a hand moves them stands in ``scene/viewing/interaction.py``.
 """

@@ -1,6 +1,6 @@
 """Which key does what in a window.
 
-What flows in: a key or a typed character. What flows out: an action's name. The table of keys is
+Input: a key or a typed character. Output: an action's name. The table of keys is
 ``scene/viewing/key_bindings.py``, which pages share. Does nothing itself.
 """
 

@@ -1,6 +1,6 @@
 """Where things stand on the window, in its own units (not pixels), y down.
 
-What flows in: the window's size. What flows out: rectangles, for what draws them and for what asks
+Input: the window's size. Output: rectangles, for what draws them and for what asks
 what a pointer is on. Draws nothing.
 """
 

@@ -1,6 +1,6 @@
 """Fonts for what is written over the picture.
 
-What flows in: a size in pixels, texts. What flows out: fonts, and the widths of texts. The
+Input: a size in pixels, texts. Output: fonts, and the widths of texts. The
 machine's own DejaVu or its like where one is found, else the one that Pillow brings.
 """
 

@@ -1,6 +1,6 @@
 """Tells what a window showed, one line of JSON for each event, where somebody asks for it.
 
-What flows in: events. What flows out: a file that ``DISTAL_VIEW_LOG`` names; nothing without that.
+Input: events. Output: a file that ``DISTAL_VIEW_LOG`` names; nothing without that.
 It is for tests, and for reports of what went wrong.
 """
 

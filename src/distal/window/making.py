@@ -1,6 +1,6 @@
 """Keeps the picture up with what a person wants to see: which frame is made next, and how sharp.
 
-What flows in: shots, sizes, finished frames. What flows out: jobs for the worker, the frame to
+Input: shots, sizes, finished frames. Output: jobs for the worker, the frame to
 show, the figures. Knows neither window nor keys.
 """
 

@@ -1,6 +1,6 @@
 """Opens a window on a scene and keeps it until it is closed.
 
-What flows in: what ``distal.load`` gave and where it came from, a device. What flows out: an exit
+Input: what ``distal.load`` gave and where it came from, a device. Output: an exit
 code.
 """
 

@@ -1,7 +1,7 @@
 """What is drawn over the picture: figures, parameters, help, a mistake, the time.
 
-What flows in: what a person is to read, as plain values, and the window's size and pixel ratio.
-What flows out: small pictures and where they stand, in pixels; a part that did not change is the
+Input: what a person is to read, as plain values, and the window's size and pixel ratio.
+Output: small pictures and where they stand, in pixels; a part that did not change is the
 same object again. Knows no window and no GPU.
 """
 

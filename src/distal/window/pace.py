@@ -1,6 +1,6 @@
 """How sharp a frame may be to come in time.
 
-What flows in: how long frames took. What flows out: the share of the window's width and height
+Input: how long frames took. Output: the share of the window's width and height
 that the next one has. Reads no clock.
 """
 

@@ -1,6 +1,6 @@
 """Makes frames: on the CPU as pixels, on a GPU as a texture that never leaves it.
 
-What flows in: what is shown, a ``Shot``, a size. What flows out: a ``Made``, display values either
+Input: what is shown, a ``Shot``, a size. Output: a ``Made``, display values either
 way. Runs in the worker's thread; knows no window.
 """
 

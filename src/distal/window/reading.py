@@ -1,6 +1,6 @@
 """What a person is to read over the picture, as plain values: equal readings look the same.
 
-What flows in: a ``Session``, and words about frames and mistakes. What flows out: a ``Reading``.
+Input: a ``Session``, and words about frames and mistakes. Output: a ``Reading``.
 Knows nothing of how it is drawn.
 """
 

@@ -1,6 +1,6 @@
 """Notices that a scene's files were saved, and loads it again.
 
-What flows in: paths, and what is looked at. What flows out: whether files are other than they
+Input: paths, and what is looked at. Output: whether files are other than they
 were, and have come to rest; a scene that is compiled and ready to take the old one's place.
 
 Files are asked for their times four times a second, which costs a few microseconds for each and

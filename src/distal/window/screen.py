@@ -1,6 +1,6 @@
 """Opens a native window, with a device of wgpu to draw on it; or says in a line why there is none.
 
-What flows in: a size, a device's name. What flows out: canvas, surface, maker. The only module
+Input: a size, a device's name. Output: canvas, surface, maker. The only module
 that knows glfw.
 """
 

@@ -1,6 +1,6 @@
 """What the pictures that are saved of a window are called.
 
-What flows in: a folder, a scene's title, a ``Shot``. What flows out: a file's name that is free.
+Input: a folder, a scene's title, a ``Shot``. Output: a file's name that is free.
 """
 
 from __future__ import annotations

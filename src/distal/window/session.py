@@ -1,6 +1,6 @@
 """What a person has done with a window so far, and so what it has to show.
 
-What flows in: a ``Viewable``, actions of keys, the pointer, readings of a steady clock. What flows
+Input: a ``Viewable``, actions of keys, the pointer, readings of a steady clock. What flows
 out: a ``Shot``: two that are equal look the same, so no frame is drawn twice. Knows no display, no
 device and no thread.
 """

@@ -1,6 +1,6 @@
 """Puts a frame and what is drawn over it onto a window.
 
-What flows in: a canvas of rendercanvas, a device of wgpu, a frame, panels. What flows out: pixels
+Input: a canvas of rendercanvas, a device of wgpu, a frame, panels. Output: pixels
 on the screen that are exactly the frame's where the sizes agree. No formula of color stands here:
 where a surface encodes what is written to it, textures have the format that is read decoded.
 """

@@ -1,6 +1,6 @@
 """The one thread that loads, compiles and renders, so that the window never waits.
 
-What flows in: jobs, and what to do with their results. What flows out: results, handed to the
+Input: jobs, and what to do with their results. Output: results, handed to the
 window's own thread in the order of their jobs. Knows nothing of what jobs do.
 """
 

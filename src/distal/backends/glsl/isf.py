@@ -1,6 +1,6 @@
 """ISF, the Interactive Shader Format of video tools: a shader under a comment that describes it.
 
-What flows in: a module shaped for the target. What flows out: the comment's JSON with an input for
+Input: a module shaped for the target. Output: the comment's JSON with an input for
 each parameter, what stands for these in the text, and the functions that read imported pictures.
 The host declares everything that the JSON names (https://docs.isf.video, "ISF JSON Reference" and
 "Automatically Generated Variables"). It has no input of three coordinates and none without a range:

@@ -1,6 +1,6 @@
 """Uniforms as GLSL declares them, and how many of a scene's numbers it has room for.
 
-What flows in: the uniforms of a module. What flows out: their lines. WebGL 2 promises 224 vectors
+Input: the uniforms of a module. Output: their lines. WebGL 2 promises 224 vectors
 to a fragment stage and packs smaller values into them (GLSL ES 3.00, appendix A.7). A scene may
 have thousands of numbers: those beyond are constants, under the same names.
 """

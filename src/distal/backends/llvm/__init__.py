@@ -1,6 +1,6 @@
 """Vector code for the CPU, as LLVM text: one lane per pixel.
 
-What flows in: a module after the passes and the shape of the machine's vectors. What flows out:
+Input: a module after the passes and the shape of the machine's vectors. What flows out:
 LLVM text with the kernels of ``distal.backends.llvm.kernels``. Needs no LLVM: turning the text into
 machine code is a device's business.
 """

@@ -1,6 +1,6 @@
 """Operations on leaves: once when every operand is uniform, else once for each chunk.
 
-What flows in: leaves. What flows out: instructions in a ``Writer``, and leaves that name their
+Input: leaves. Output: instructions in a ``Writer``, and leaves that name their
 results. A uniform operand is broadcast as late as possible, and once for each stretch of code that
 is certain to run together. Knows nothing of IR nodes, variables or control flow.
 """

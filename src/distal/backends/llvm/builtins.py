@@ -1,6 +1,6 @@
 """The rows of the table that the CPU computes itself.
 
-What flows in: a row's name and its arguments' leaves. What flows out: the result's leaves. Every
+Input: a row's name and its arguments' leaves. Output: the result's leaves. Every
 other row has been decomposed into calls of prelude functions before; in 64 bits, where the
 prelude's polynomials do not reach, the elementary ones call the C library lane by lane.
 """

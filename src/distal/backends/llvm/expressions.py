@@ -1,6 +1,6 @@
 """Expressions to leaves.
 
-What flows in: IR expressions after the passes, and what the locals hold. What flows out:
+Input: IR expressions after the passes, and what the locals hold. What flows out:
 instructions and leaves. An expression is computed once in a statement, since nodes are interned;
 what several statements share the share pass has bound to a local. Knows no statement.
 """

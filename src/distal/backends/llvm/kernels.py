@@ -1,6 +1,6 @@
 """The loops around a scene: tiles of a picture, the per-frame part, batches of points.
 
-What flows in: a ``Program``. What flows out: exported LLVM functions that take a job (see
+Input: a ``Program``. Output: exported LLVM functions that take a job (see
 ``layout``). Every thread calls the same kernel once; it takes one tile after the other from a
 shared counter until none is left or the stop flag is up.
 """

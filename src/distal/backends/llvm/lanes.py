@@ -1,6 +1,6 @@
 """What a value is while it is computed: leaves, each the same in all lanes or one per lane.
 
-What flows in: IR types and the shape of the machine. What flows out: the flat list of scalars a
+Input: IR types and the shape of the machine. Output: the flat list of scalars a
 type consists of, and how LLVM writes their types. Knows no instruction.
 
 A kernel works on ``count`` pixels at a time, one per lane, held in ``chunks`` vectors of

@@ -1,7 +1,7 @@
 """Loops under lane masks.
 
-What flows in: predicated loops, whose one way out besides their end is a last ``if flag: break``.
-What flows out: instructions. A loop goes round while a lane is left; its Vars keep their value in
+Input: predicated loops, whose one way out besides their end is a last ``if flag: break``.
+Output: instructions. A loop goes round while a lane is left; its Vars keep their value in
 lanes that have left, unless nobody reads them afterwards. A count that is the same in all lanes is
 a scalar, even where lanes leave one by one. Loops that may go on for long ask whether to stop.
 """

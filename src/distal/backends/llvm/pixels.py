@@ -1,6 +1,6 @@
 """Pixels of four floats between memory and the lanes of vectors.
 
-What flows in: addresses, or the channels of a block. What flows out: channels, or vectors of whole
+Input: addresses, or the channels of a block. Output: channels, or vectors of whole
 pixels in the order in which a picture holds them. Knows nothing of the loops around.
 """
 

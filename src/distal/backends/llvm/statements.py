@@ -1,6 +1,6 @@
 """Statements under lane masks.
 
-What flows in: predicated blocks. What flows out: instructions that leave each local's value in the
+Input: predicated blocks. Output: instructions that leave each local's value in the
 environment. Locals are SSA values: after a condition that varies, a Var is picked from both sides
 lane by lane, so nothing inside a side needs a mask but memory, calls and tests for active lanes.
 """

@@ -1,6 +1,6 @@
 """Values in memory: indexed arrays, constant tables, buffers and textures.
 
-What flows in: places (a pointer, leaves, an index that may differ from lane to lane). What flows
+Input: places (a pointer, leaves, an index that may differ from lane to lane). What flows
 out: loads, gathers, masked stores and scatters. Every index that reaches memory was clamped by the
 bounds pass, buffers' and texels' are clamped here, and lanes that are not active touch nothing.
 """

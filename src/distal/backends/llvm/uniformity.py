@@ -1,6 +1,6 @@
 """Which locals of a function are the same in every lane.
 
-What flows in: a predicated function and which parameters vary. What flows out: the names of the
+Input: a predicated function and which parameters vary. Output: the names of the
 locals that may differ between lanes; everything else is computed once, in scalar registers.
 
 A value varies when an operand does. A Var varies also when it is assigned where lanes may have

@@ -1,6 +1,6 @@
 """The text of one LLVM function, line by line.
 
-What flows in: instructions as text. What flows out: a function body. Gives fresh names, knows the
+Input: instructions as text. Output: a function body. Gives fresh names, knows the
 block being written, and leaves room for phis whose operands come later. Knows nothing of lanes.
 
 Text rather than a library's objects: it is written and parsed in a few milliseconds, and printed

@@ -1,6 +1,6 @@
 """The reference's expressions: what each node gives, in all lanes of a scope at once.
 
-What flows in: an expression and the scope of the lanes that want it. What flows out: its value, in
+Input: an expression and the scope of the lanes that want it. Output: its value, in
 the layouts of ``numpy_operations``. How a called function runs is told by the heir.
 """
 

@@ -1,7 +1,7 @@
 """The reference: walks the IR on NumPy arrays. Slow, and right by definition.
 
-What flows in: a module that passes have brought down to what runs (no function values, gradients
-or filtered textures), arguments and uniforms. What flows out: the entry function's value in every
+Input: a module that passes have brought down to what runs (no function values, gradients
+or filtered textures), arguments and uniforms. Output: the entry function's value in every
 lane (point or pixel). Lanes that take another way than others are told apart by running each way
 on the lanes that take it, so the meaning of every statement is visible in one place. Layouts are
 told in ``numpy_operations``. It knows neither files nor devices.

@@ -1,6 +1,6 @@
 """Lanes on their several ways: a call's frame, and the locals of a part of its lanes.
 
-What flows in: values bound and assigned by the reference's walk. What flows out: the same values
+Input: values bound and assigned by the reference's walk. Output: the same values
 as some lanes see them. It knows nothing of nodes.
 """
 

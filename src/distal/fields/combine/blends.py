@@ -1,6 +1,6 @@
 """Blends by name: each smooth minimum and shaped edge, for unions, intersections and differences.
 
-What flows in: union forms from ``smooth`` and ``edge_profiles``. What flows out: ``BLENDS``, and an
+Input: union forms from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an
 operator for each way to combine with each of them (``combination``). The other ways follow from the
 union: an intersection is the union of the outsides, a difference the intersection with an outside.
 """

@@ -1,6 +1,6 @@
 """Shaped edges: what stands where two shapes meet, and what is cut along their seam.
 
-What flows in: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. What
+Input: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. What
 flows out: the distance of the union (``edges`` makes the intersections and differences of it),
 or of the one shape that pipes, engraving, grooves and tongues give. Knows no points.
 

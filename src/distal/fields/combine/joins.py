@@ -1,6 +1,6 @@
 """Shapes made of two others: unions, cuts, morphs, displacement.
 
-What flows in: two distances. What flows out: the distance of the result, and the rules of its
+Input: two distances. Output: the distance of the result, and the rules of its
 slope, its box and its material. Knows no names of blends (``edges`` makes those rows), no points.
 """
 

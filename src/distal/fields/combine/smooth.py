@@ -1,7 +1,7 @@
 """Smooth minima: unions without a crease, one pair of functions for each family.
 
-What flows in: two distances and ``k``, how far the surface moves out where both are equal, so that
-families are exchanged without retuning (they differ in shape, not in size). What flows out: the
+Input: two distances and ``k``, how far the surface moves out where both are equal, so that
+families are exchanged without retuning (they differ in shape, not in size). Output: the
 distance of the union, and from ``NAME_mix`` the share of the second shape, which is the derivative
 by ``b``: normals and materials blend alike. Intersections and differences are made of these in
 ``edges``; nothing here knows of points or shapes.

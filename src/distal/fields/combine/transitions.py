@@ -1,6 +1,6 @@
 """From one shape to another across space: a morph whose progress depends on the place.
 
-What flows in: two distances, the point, the children's boxes and slopes. What flows out: the
+Input: two distances, the point, the children's boxes and slopes. Output: the
 distance between the two, and the rules of slope and material.
 """
 

@@ -1,6 +1,6 @@
 """Flat shapes bent out of shape: elongated, bent. As ``deform`` does for solids.
 
-What flows in: a point of the plane. What flows out: the point to ask the shape at, the slope, the
+Input: a point of the plane. Output: the point to ask the shape at, the slope, the
 rectangle. Of these the scene code of ``deform`` is the same, with the third coordinate 0.
 """
 

@@ -1,6 +1,6 @@
 """Space folded and curled: around a cylinder, into a sphere, into ever larger copies, by noise.
 
-What flows in: a point, the numbers of the fold, the child's box. What flows out: the point to ask
+Input: a point, the numbers of the fold, the child's box. Output: the point to ask
 the child at, a value without jumps, the slope, the box. As in ``deform``, the slope is the child's
 times the largest stretch of the map, and a folded shape answers at least the distance to its box.
 """

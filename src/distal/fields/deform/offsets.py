@@ -1,6 +1,6 @@
 """A shape changed by its value alone, and cut by a plane: rounding, offsets, shells.
 
-What flows in: a distance. What flows out: the distance of the new surface, its box, its claims.
+Input: a distance. Output: the distance of the new surface, its box, its claims.
 Knows no second shape.
 
 A surface that is moved out by r is where the old field is r. The box grows by r times the growth

@@ -1,6 +1,6 @@
 """Solids bent out of shape: elongated, twisted, bent, tapered, wrapped, attracted, shaken by noise.
 
-What flows in: a point, the numbers of the deformation, the child's box. What flows out: the point
+Input: a point, the numbers of the deformation, the child's box. Output: the point
 to ask the child at, the slope that the deformation makes of the child's, the box of the result.
 
 The slope of a deformed shape is the child's times how far the map of points takes two points apart,

@@ -1,6 +1,6 @@
 """Flat shapes with right angles: rectangles, crosses, stairs.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside.
+Input: a point and the numbers of a shape. Output: the distance, negative inside.
 Sizes are full sizes, from side to side.
 """
 

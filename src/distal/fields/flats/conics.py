@@ -1,6 +1,6 @@
 """Flat shapes bounded by ellipses, parabolas and hyperbolas.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside.
+Input: a point and the numbers of a shape. Output: the distance, negative inside.
 
 The nearest point of a conic is the root of a polynomial; here an equation with the same root is
 chosen that Newton's method solves from one side, so that a fixed number of steps is enough. How

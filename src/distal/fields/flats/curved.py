@@ -1,6 +1,6 @@
 """Flat shapes with sides of circles: lenses, moons, hearts, eggs and capsules.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside.
+Input: a point and the numbers of a shape. Output: the distance, negative inside.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Lines with a width along curves: Bézier curves, splines, waves, spirals.
 
-What flows in: a point, and the numbers or points of a curve. What flows out: the distance to what a
+Input: a point, and the numbers or points of a curve. Output: the distance to what a
 disc covers that is drawn along it.
 """
 

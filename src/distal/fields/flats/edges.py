@@ -1,6 +1,6 @@
 """Parts that several flat shapes are made of: edges, folds of the plane, boxes of points.
 
-What flows in: a point of the plane and the numbers of an edge or a fold. What flows out: the vector
+Input: a point of the plane and the numbers of an edge or a fold. Output: the vector
 from the nearest point of the edge, or the point folded. Declares no shapes.
 
 Outlines made of several edges compare vectors by their squares and take one root at the end; the

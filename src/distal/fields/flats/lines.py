@@ -1,6 +1,6 @@
 """Lines with a width along waves and spirals, and the S that everybody drew at school.
 
-What flows in: a point and the numbers of a curve. What flows out: the distance to what a disc
+Input: a point and the numbers of a curve. Output: the distance to what a disc
 covers that is drawn along it.
 """
 

@@ -1,7 +1,7 @@
 """Outlines of letters and drawings: closed chains of lines and of quadratic Bézier curves.
 
-What flows in: a point, and the edges as data. Curves must rise or fall all the way, so that each
-crosses a level once; whoever makes the data splits them (``scene.outlines``). What flows out: the
+Input: a point, and the edges as data. Curves must rise or fall all the way, so that each
+crosses a level once; whoever makes the data splits them (``scene.outlines``). Output: the
 distance to the nearest edge, negative where the chains go around.
 
 No class is made of this row: its data have a form that only ``scene.outlines`` knows.

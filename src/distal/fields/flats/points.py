@@ -1,6 +1,6 @@
 """Polygons and lines through any number of points.
 
-What flows in: a point, and points in a buffer. What flows out: the distance, negative inside.
+Input: a point, and points in a buffer. Output: the distance, negative inside.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Triangles, regular polygons and stars.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside.
+Input: a point and the numbers of a shape. Output: the distance, negative inside.
 Regular shapes have a corner straight up, at ``radius``; mirrors bring all their edges onto one.
 """
 

@@ -1,6 +1,6 @@
 """Profiles of machine parts, and distances stored in an image.
 
-What flows in: a point, and the numbers or the image of a shape. What flows out: the distance,
+Input: a point, and the numbers or the image of a shape. Output: the distance,
 negative inside.
 """
 

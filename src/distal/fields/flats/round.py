@@ -1,6 +1,6 @@
 """Discs, rings and their parts.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance, negative inside. An
+Input: a point and the numbers of a shape. Output: the distance, negative inside. An
 ``angle`` is measured from the y axis to either side.
 """
 

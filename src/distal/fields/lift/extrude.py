@@ -1,6 +1,6 @@
 """From the plane to space: extruding flat shapes, plain, twisted, tapered, and from one to another.
 
-What flows in: the distance of a flat shape, the point, and what the shape promises. What flows out:
+Input: the distance of a flat shape, the point, and what the shape promises. What flows out:
 the distance of the solid, and the rules of its slope and box. The plane is that of x and y, solids
 stand along z, their middle at z = 0.
 """

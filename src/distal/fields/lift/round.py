@@ -1,7 +1,7 @@
 """Between the plane and space by turning, wrapping, cutting and casting shadows.
 
-What flows in: the distance of a flat shape or of a solid, the point, and what the shape promises.
-What flows out: the distance of the solid or the flat shape, and the rules of its slope and box.
+Input: the distance of a flat shape or of a solid, the point, and what the shape promises.
+Output: the distance of the solid or the flat shape, and the rules of its slope and box.
 """
 
 from __future__ import annotations

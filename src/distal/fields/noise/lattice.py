@@ -1,6 +1,6 @@
 """What noise is made of: hashed lattices of space and plane, ramps, octaves.
 
-What flows in: cells of a lattice, places in them, a seed. What flows out: random bits and what
+Input: cells of a lattice, places in them, a seed. Output: random bits and what
 each corner of a cell adds to noise. ``noise`` and ``noise_flat`` blend these.
 """
 

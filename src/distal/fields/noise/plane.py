@@ -1,6 +1,6 @@
 """Noise in the plane; ``noise`` gives it by the names of the noise of space.
 
-What flows in: a point of the plane and a seed. What flows out: a number in an exactly known range,
+Input: a point of the plane and a seed. Output: a number in an exactly known range,
 and the bound on its gradient.
 """
 

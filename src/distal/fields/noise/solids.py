@@ -1,6 +1,6 @@
 """Noise as shapes without end: inside is where the noise is above a level.
 
-What flows in: a point, the size of the noise's cells, a level. What flows out: the noise's height
+Input: a point, the size of the noise's cells, a level. Output: the noise's height
 over its typical gradient, so that it is about the distance near the surface (offsets and shells
 then have about their nominal size), and the bound on its slope.
 

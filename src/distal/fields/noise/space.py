@@ -1,7 +1,7 @@
 """Noise: smooth random functions of a place, the same on every target.
 
-What flows in: a point of space or of the plane, and a seed that picks one of many such functions.
-What flows out: a number in an exactly known range, and beside each function the bound on its
+Input: a point of space or of the plane, and a seed that picks one of many such functions.
+Output: a number in an exactly known range, and beside each function the bound on its
 gradient. Random numbers are integer hashes of lattice cells. Knows no shapes: patterns call these
 as they are, ``noise_solids`` makes shapes of them.
 

@@ -1,6 +1,6 @@
 """Cells around scattered points: cellular noise, and the walls between the cells as shapes.
 
-What flows in: a point, how irregular the cells are, a seed. What flows out: distances to the
+Input: a point, how irregular the cells are, a seed. Output: distances to the
 scattered points and to the borders of their cells.
 
 There is one point in each cell of a lattice, and the 27 cells (in the plane 9) around are looked

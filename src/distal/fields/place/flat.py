@@ -1,6 +1,6 @@
 """Where a flat shape lies: moved, turned, scaled, sheared and mirrored in the plane.
 
-What flows in: a point of the plane, and the numbers of the placement. What flows out: the point to
+Input: a point of the plane, and the numbers of the placement. Output: the point to
 ask the shape at, and the rectangle of the placed shape. As ``place`` and ``mirrors`` do for solids.
 """
 

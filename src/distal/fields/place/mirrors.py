@@ -1,6 +1,6 @@
 """Symmetric solids: part of a shape seen again in mirrors.
 
-What flows in: a point. What flows out: the point to ask the shape at, and the box of all images.
+Input: a point. Output: the point to ask the shape at, and the box of all images.
 Knows nothing of repetition (``repeat``).
 
 A fold never moves two points apart: it keeps every slope, and a lower bound stays one, since no

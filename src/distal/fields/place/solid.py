@@ -1,6 +1,6 @@
 """Where a solid stands: moved, turned, scaled, sheared.
 
-What flows in: a point, and the numbers of the placement. What flows out: the point to ask the shape
+Input: a point, and the numbers of the placement. Output: the point to ask the shape
 at, which is the placement backwards, and the box of the placed shape. Rotations are matrices of
 numbers alone: they are computed once a frame. Knows nothing of copies (``mirrors``, ``repeat``).
 """

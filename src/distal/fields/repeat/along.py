@@ -1,6 +1,6 @@
 """A solid again and again along a line, around a rectangle, and at given places.
 
-What flows in: a point, how the copies stand, the child's box. What flows out: the distance to the
+Input: a point, how the copies stand, the child's box. Output: the distance to the
 nearest copy, safe by the rule of ``repeat`` for those that are not asked, and its place.
 """
 

@@ -1,6 +1,6 @@
 """A solid again and again on a grid: infinite, limited, in an interval, in half of space, mirrored.
 
-What flows in: a point, the spacing (0 along an axis: not repeated there), the child's box. What
+Input: a point, the spacing (0 along an axis: not repeated there), the child's box. What
 flows out: the point in a copy's own space, the cell's index, and a value that is safe to march.
 
 The rule that keeps a repetition safe. The point is asked in one cell only (``neighbours=0``) or in

@@ -1,6 +1,6 @@
 """A flat shape again and again: on a grid, mirrored, around the origin, at given places.
 
-What flows in: a point of the plane. What flows out: as ``repeat`` and ``repeat_polar`` give for
+Input: a point of the plane. Output: as ``repeat`` and ``repeat_polar`` give for
 solids, which these call: the plane is a slice of space, without repetition across it.
 """
 

@@ -1,6 +1,6 @@
 """The operators of repetition on a grid, and its other kinds: intervals, half of space, mirrors.
 
-What flows in: the scene code of ``repeat``. What flows out: operators, whose names tell the kind.
+Input: the scene code of ``repeat``. Output: operators, whose names tell the kind.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A solid again and again around the y axis.
 
-What flows in: a point, how many copies, the child's box. What flows out: the point in a copy's own
+Input: a point, how many copies, the child's box. Output: the point in a copy's own
 space, the copy's index, and a value that is safe to march. The first copy is the child itself,
 wherever it stands; the others follow counterclockwise as seen from above.
 

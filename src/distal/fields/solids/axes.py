@@ -1,6 +1,6 @@
 """Parts that several solids are made of: an axis, and boxes along it.
 
-What flows in: a point and the numbers of a shape. What flows out: the point as seen from the axis,
+Input: a point and the numbers of a shape. Output: the point as seen from the axis,
 or the box of what lies along it. Declares no shapes.
 """
 

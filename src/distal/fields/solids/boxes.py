@@ -1,6 +1,6 @@
 """Solids with right angles: boxes, their frames, and corners of space.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance. Sizes are full
+Input: a point and the numbers of a shape. Output: the distance. Sizes are full
 sizes, from side to side.
 """
 

@@ -1,6 +1,6 @@
 """Tubes that wind around the y axis: a helix without end, and a spring.
 
-What flows in: a point and the numbers of a coil. What flows out: a lower bound of the distance.
+Input: a point and the numbers of a coil. Output: a lower bound of the distance.
 """
 
 from __future__ import annotations

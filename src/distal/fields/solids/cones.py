@@ -1,6 +1,6 @@
 """Cones: pointed, cut, rounded, without end; upright or between two points.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance. Each is a profile,
+Input: a point and the numbers of a shape. Output: the distance. Each is a profile,
 looked at as how far from the axis and how high above the middle.
 """
 

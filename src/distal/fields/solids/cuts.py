@@ -1,6 +1,6 @@
 """What planes, cones and balls leave of a ball, and the body of two arcs.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance. All are round
+Input: a point and the numbers of a shape. Output: the distance. All are round
 about the y axis: the point is looked at as how far from the axis, and how high.
 """
 

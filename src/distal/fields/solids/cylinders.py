@@ -1,6 +1,6 @@
 """Round bars: cylinders and capsules, upright or between two points.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance.
+Input: a point and the numbers of a shape. Output: the distance.
 """
 
 from __future__ import annotations

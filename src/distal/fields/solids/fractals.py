@@ -1,6 +1,6 @@
 """Fractals: a sponge with a true bound, and sets whose distance is estimated.
 
-What flows in: a point, how often the map is repeated, its numbers. What flows out: a lower bound
+Input: a point, how often the map is repeated, its numbers. Output: a lower bound
 for the sponge; for the others an estimate from how fast the map spreads neighbouring points. Beyond
 the ball or box that holds a set, the way there and the estimate at its edge are joined at a right
 angle, so that the estimate never has to serve far away. Divided by the slope that is named, fewer

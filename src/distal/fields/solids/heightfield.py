@@ -1,7 +1,7 @@
 """Terrain: the solid below a height that depends on the place in the plane.
 
-What flows in: a point, and the height from an image or from a flat field (whose value is read as
-the height). What flows out: the vertical way to the surface, shortened by the steepest rise, so
+Input: a point, and the height from an image or from a flat field (whose value is read as
+the height). Output: the vertical way to the surface, shortened by the steepest rise, so
 that it is never more than the distance. ``RELIEF`` makes terrain of any flat shape or function.
 """
 

@@ -1,6 +1,6 @@
 """Strut lattices: round bars between the points of a crystal's lattice, without end.
 
-What flows in: a point, the edge of the cell that repeats, the struts' radius. What flows out: the
+Input: a point, the edge of the cell that repeats, the struts' radius. Output: the
 distance, exact outside. Each lattice is mirrored at the planes through its nodes and half way
 between them, so a point is folded into an eighth of a cell: what is nearest to it lies there too.
 """

@@ -1,6 +1,6 @@
 """Metaballs: balls that melt into each other where they are close.
 
-What flows in: a point, the balls (centre and radius) as data, and how softly they blend. What flows
+Input: a point, the balls (centre and radius) as data, and how softly they blend. What flows
 out: a lower bound of the distance that never rises faster than the way.
 """
 

@@ -1,6 +1,6 @@
 """Polyhedra with exact distance, and convex bodies from any planes.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance. Mirrors of the
+Input: a point and the numbers of a shape. Output: the distance. Mirrors of the
 shape's symmetry move the point to where one face, with one of its edges, is the nearest.
 """
 

@@ -1,6 +1,6 @@
 """Upright prisms over regular polygons and the rhombus.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance. Symmetry turns the
+Input: a point and the numbers of a shape. Output: the distance. Symmetry turns the
 point until one side of the outline, square to the z axis, is the nearest.
 """
 

@@ -1,6 +1,6 @@
 """Regular and Archimedean solids from the directions of their faces.
 
-What flows in: a point and the numbers of a shape. What flows out: a convex body's largest plane
+Input: a point and the numbers of a shape. Output: a convex body's largest plane
 distance: exact inside, a lower bound outside. The directions come as axes: a face looks both ways
 along each.
 

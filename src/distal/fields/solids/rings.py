@@ -1,6 +1,6 @@
 """Circles and what stands at a distance from them: rings, arcs, links, discs.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance. Rings lie flat,
+Input: a point and the numbers of a shape. Output: the distance. Rings lie flat,
 around the y axis.
 """
 

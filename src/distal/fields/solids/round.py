@@ -1,6 +1,6 @@
 """Balls and what is stretched or swollen from a ball.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance, or a bound on it.
+Input: a point and the numbers of a shape. Output: the distance, or a bound on it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Regular and Archimedean solids with soft edges: between a ball and the sharp body.
 
-What flows in: a point and the numbers of a shape. What flows out: a bound on the distance with
+Input: a point and the numbers of a shape. Output: a bound on the distance with
 slope 1.
 
 Where the sharp body takes the largest part of the point along an axis, these take the sum of all

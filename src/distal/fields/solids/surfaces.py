@@ -1,6 +1,6 @@
 """Planes and what few of them enclose: half spaces, slabs, wedges; flat faces without thickness.
 
-What flows in: a point and the numbers of a shape. What flows out: the distance; of the faces,
+Input: a point and the numbers of a shape. Output: the distance; of the faces,
 which have no inside, without a sign.
 """
 

@@ -1,7 +1,7 @@
 """Triply periodic minimal surfaces, as sheets or as the solid on one side.
 
-What flows in: a point, the edge of the cell that repeats, an offset and, for sheets, a thickness.
-What flows out: the surface's equation over its typical gradient, which is about the distance near
+Input: a point, the edge of the cell that repeats, an offset and, for sheets, a thickness.
+Output: the surface's equation over its typical gradient, which is about the distance near
 the surface, and the bound on its slope. ``THICKEN_BY`` lets another shape's distance steer the
 thickness of a sheet.
 

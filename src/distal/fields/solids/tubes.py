@@ -1,6 +1,6 @@
 """Tubes along lines in space: through points and along Bézier curves.
 
-What flows in: a point, the curve's points as numbers or data, radii. What flows out: the distance,
+Input: a point, the curve's points as numbers or data, radii. Output: the distance,
 exact outside. A tube that grows thinner is followed by straight pieces, each
 the hull of two balls: the nearest point of the curve would jump where its radius changes.
 """

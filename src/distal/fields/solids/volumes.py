@@ -1,6 +1,6 @@
 """Distances stored on a grid: scanned and simulated shapes, meshes sampled beforehand.
 
-What flows in: a point, a volume of samples, the size of the box they fill. What flows out: the
+Input: a point, a volume of samples, the size of the box they fill. Output: the
 samples interpolated inside the box, and a lower bound of the way to it outside. Texels are blended
 here and not by the target's own filter: that of a graphics card knows 256 places between two
 samples, which shows in normals, and has no gradient.

@@ -1,6 +1,6 @@
 """Functions of the IR made by objects instead of by a ``def``: shapes and scenes.
 
-What flows in: library functions as they were recorded, arguments as expressions, by name. What
+Input: library functions as they were recorded, arguments as expressions, by name. What
 flows out: calls, and functions added to the program. Knows nothing of what the objects are.
 """
 

@@ -1,6 +1,6 @@
 """Matching a call's arguments with a function's parameters.
 
-What flows in: a header, the arguments and where they stand. What flows out: an expression of the
+Input: a header, the arguments and where they stand. Output: an expression of the
 right type for each parameter, and what each type variable stands for.
 """
 

@@ -1,6 +1,6 @@
 """Where each local of a function lives, found before lowering.
 
-What flows in: the syntax tree of one function. What flows out: for each block the locals that
+Input: the syntax tree of one function. Output: for each block the locals that
 belong to it, and whether each may change. Knows names only, no types.
 
 A local belongs to the innermost block that holds all its uses. Where several inner blocks use the

@@ -1,6 +1,6 @@
 """A function's parameters and result: what ``def`` says before the body.
 
-What flows in: an ``Overload`` as it was recorded. What flows out: its syntax, its parameters with
+Input: an ``Overload`` as it was recorded. Output: its syntax, its parameters with
 evaluated annotations and defaults, and where its names are looked up.
 """
 

@@ -1,6 +1,6 @@
 """Say with what a target has what it has not.
 
-What flows in: a module without function values and gradients. What flows out: one that says
+Input: a module without function values and gradients. Output: one that says
 everything in operations the target has (``distal.ir.target``), mostly by calls of the prelude,
 whose functions are linked in and treated likewise until nothing is left to do. What cannot be said
 on the target is a CompileError at the author's line (``decompose_limits``).

@@ -1,6 +1,6 @@
 """Built-ins at their edges: arguments held, and where a target's own function serves.
 
-What flows in: a call of a row of the table and what is known of immutable locals. What flows out:
+Input: a call of a row of the table and what is known of immutable locals. What flows out:
 the call with its argument between the row's limits (``ir.limits``; the fold pass takes away what
 is not needed), and whether the target's own function means what the table says for such arguments.
 GLSL leaves a smoothstep of equal edges, a clamp of crossed ones and the direction of nothing

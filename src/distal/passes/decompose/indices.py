@@ -1,6 +1,6 @@
 """Indices for targets that only take numbers between brackets (arrays are structs there).
 
-What flows in: an ``Index`` with any index, as a value or in an Assign's target. What flows out: a
+Input: an ``Index`` with any index, as a value or in an Assign's target. Output: a
 chain of choices among the elements, clamped at both ends as every index is in meaning.
 """
 

@@ -1,6 +1,6 @@
 """What a target cannot say at all, and loops brought into the form it can.
 
-What flows in: a node or statement, the target, and what to blame. What flows out: nothing, or a
+Input: a node or statement, the target, and what to blame. Output: nothing, or a
 CompileError that names the target and the mend. Inside a prelude function the blame is the
 author's operation that brought it in.
 """

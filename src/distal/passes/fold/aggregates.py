@@ -1,6 +1,6 @@
 """Simplifying vectors, matrices, arrays and structs put together and taken apart again.
 
-What flows in: an expression whose operands are simple already. What flows out: an equal one, the
+Input: an expression whose operands are simple already. Output: an equal one, the
 same when no rule applies. All of these rules are exact.
 """
 

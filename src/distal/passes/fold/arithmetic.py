@@ -1,6 +1,6 @@
 """Arithmetic on constants exactly as the targets do it.
 
-What flows in: Python numbers that stand for the components of constants. What flows out: the
+Input: Python numbers that stand for the components of constants. Output: the
 result in the module's precision, or None where folding would need a NaN, an infinity or a
 denormal (GPUs flush those): such an operation is left to the target.
 

@@ -1,6 +1,6 @@
 """Calls of the table's rows on constants.
 
-What flows in: a row's name and the components of its constant arguments. What flows out: the
+Input: a row's name and the components of its constant arguments. Output: the
 components of the result, or NotFoldableError. Each step rounds to the module's precision in the
 order of the row's definition; elementary functions are computed in 64 bits and rounded once,
 closer than the table's tolerance. What is not here (hashes, inverse) is simply not folded.

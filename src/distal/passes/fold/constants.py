@@ -1,6 +1,6 @@
 """What is constant, and what an operation on constants gives.
 
-What flows in: expressions, and what is known of immutable locals. What flows out: components of
+Input: expressions, and what is known of immutable locals. Output: components of
 constants, rounded to the module's precision, and expressions made of such components.
 """
 

@@ -1,6 +1,6 @@
 """Between which numbers a float expression certainly lies.
 
-What flows in: an expression and what is known of immutable locals. What flows out: an interval that
+Input: an expression and what is known of immutable locals. Output: an interval that
 holds every component, without end where nothing better is seen. It is asked whether a guard is
 needed, so that ``exp(-0.02 * t * t)`` keeps its short form. Rounding is allowed for: what is not
 exact makes an interval a little wider, but 0 stays 0. A NaN is in no interval, and in all of them.

@@ -1,6 +1,6 @@
 """Fold: constants computed, trivial locals forwarded, dead and unreachable code dropped.
 
-What flows in: any module after specialise. What flows out: the same functions, simpler. A name of
+Input: any module after specialise. Output: the same functions, simpler. A name of
 the author's stays, unless its local is only another name for something as short (a constant, a
 parameter, a uniform, components of one), or nothing reads it.
 """

@@ -1,6 +1,6 @@
 """Simplifying one expression whose operands are simple already.
 
-What flows in: an expression. What flows out: an equal one, the same when no rule applies. Every
+Input: an expression. Output: an equal one, the same when no rule applies. Every
 rule is exact bit for bit, but for the sign of a zero in ``x + 0.0`` (it may be ignored).
 """
 

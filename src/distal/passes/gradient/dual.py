@@ -1,7 +1,7 @@
 """A function's statements with the tangents of its values beside them.
 
-What flows in: the body of a function, the tangents of its parameters along each direction, and
-which of its locals change. What flows out: a body that computes the same values and, beside each
+Input: the body of a function, the tangents of its parameters along each direction, and
+which of its locals change. Output: a body that computes the same values and, beside each
 that changes, its tangents: ``q`` has ``q_dx``, ``q_dy``, ``q_dz``. A call becomes a call of the
 callee's derivative function, which gives value and tangents at once. Conditions, indices and loop
 bounds stay as they are. How derivative functions are found and named is not known here.

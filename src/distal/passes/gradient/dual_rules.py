@@ -1,7 +1,7 @@
 """The tangent of one node from the tangents of its operands.
 
-What flows in: an expression, its operands already rewritten, and along one direction the tangent
-of each operand (``children`` order). What flows out: its own tangent along that direction. Rules
+Input: an expression, its operands already rewritten, and along one direction the tangent
+of each operand (``children`` order). Output: its own tangent along that direction. Rules
 of built-ins stand in their rows.
 """
 

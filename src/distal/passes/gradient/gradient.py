@@ -1,6 +1,6 @@
 """Replace each ``Gradient`` by a call of a derivative function made from the function's own code.
 
-What flows in: a module whose functions are all bound. What flows out: one without Gradient. The
+Input: a module whose functions are all bound. Output: one without Gradient. The
 derivative is exact (forward mode): beside each value that depends on the point, the derivative
 function computes how it changes along each of the point's axes, all in one evaluation
 (``dual``). Functions are treated callees first, so that the gradient of a function that itself

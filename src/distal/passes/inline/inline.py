@@ -1,6 +1,6 @@
 """Inline: calls replaced by the callee's statements, where the target wants it.
 
-What flows in: a module. What flows out: a module with fewer and longer functions; functions that
+Input: a module. Output: a module with fewer and longer functions; functions that
 nothing calls any more are dropped, on every target.
 
 A call in a loop is worth most: what does not change from round to round moves out of it, and a

@@ -1,6 +1,6 @@
 """Bodies that can stand in the place of a call.
 
-What flows in: a function's body. What flows out: statements that compute the result, and the
+Input: a function's body. Output: statements that compute the result, and the
 result as an expression over their locals, without a Return; or None where that would need flags
 (a return out of a loop, or one that only some ways through a branch reach).
 """

@@ -1,6 +1,6 @@
 """Which expressions of a function are worth computing once a frame.
 
-What flows in: a function, costs, and the forms of expressions where they stand. What flows out:
+Input: a function, costs, and the forms of expressions where they stand. What flows out:
 yes or no for each, and the calls that are left to pixels. Asked twice, once to learn what calls
 hand on and once to rewrite, it answers the same.
 """

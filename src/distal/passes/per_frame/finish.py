@@ -1,7 +1,7 @@
 """The module put together after its per-frame work was taken out of the pixel code.
 
-What flows in: the module before, its rewritten pixel functions and the per-frame values they
-read. What flows out: the module after, simplified: parameters that nothing reads any more are
+Input: the module before, its rewritten pixel functions and the per-frame values they
+read. Output: the module after, simplified: parameters that nothing reads any more are
 gone, values have their names, and what does not travel is computed where it is read.
 """
 

@@ -1,6 +1,6 @@
 """Frequency: what is the same in every pixel is computed once a frame.
 
-What flows in: a module without function values. What flows out: the same functions, reading
+Input: a module without function values. Output: the same functions, reading
 values of ``Module.frame`` where they computed something that only uniforms and constants decide.
 
 It works across functions, and keeps them:

@@ -1,6 +1,6 @@
 """Share: what is computed more than once is computed once, into a Let.
 
-What flows in: any module after inline. What flows out: the same values with common
+Input: any module after inline. Output: the same values with common
 subexpressions bound, what does not change in a loop bound before it, and no expression deeper
 than a shader compiler takes.
 

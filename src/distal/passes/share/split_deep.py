@@ -1,6 +1,6 @@
 """Expressions cut into Lets before they are too deep or too long for a shader compiler.
 
-What flows in: the body of a function. What flows out: the same with no expression nested deeper
+Input: the body of a function. Output: the same with no expression nested deeper
 than about ``DEEPEST``, and none whose text would be longer than about ``LONGEST`` nodes when its
 shared parts are written out. (naga's recursive parser dies on thousands of nested parentheses.)
 """

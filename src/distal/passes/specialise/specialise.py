@@ -1,6 +1,6 @@
 """Bind every function, texture and buffer that is passed to a function.
 
-What flows in: functions with parameters of static types, ``Apply`` of function values. What flows
+Input: functions with parameters of static types, ``Apply`` of function values. What flows
 out: functions of plain values only. Each function with static parameters is cloned once for each
 combination of what is bound to them; the captures of a bound function become further parameters
 of the clone; ``Apply`` becomes ``Call``. A constant that steers a function (``steering``) is bound

@@ -1,6 +1,6 @@
 """Which parameters of a function steer it: how often a loop runs, which branch is taken.
 
-What flows in: functions. What flows out: the positions of int and bool parameters that a loop's
+Input: functions. Output: the positions of int and bool parameters that a loop's
 bounds or a condition depend on, directly or through what the function calls. Such a parameter is
 worth a version of the function for each constant it is called with: loops then have constant
 bounds (GLSL ES 1.00 knows no others) and branches that are never taken disappear.

@@ -1,6 +1,6 @@
 """Tables of literals laid out in buffers, and places in them.
 
-What flows in: tables, as trees of literals; indices and fields that pick a part. What flows out:
+Input: tables, as trees of literals; indices and fields that pick a part. What flows out:
 reads of buffers, and the buffers' declarations with their values. A table takes slots of three
 sorts: floats, vec4 (float vectors, and the columns of matrices), ints (ints, uints, bools). Knows
 no functions and no statements.

@@ -1,6 +1,6 @@
 """What every shape of a tree promises, as numbers: its slope, its divisor, its box.
 
-What flows in: a tree. What flows out: one row for each node, computed in one call.
+Input: a tree. Output: one row for each node, computed in one call.
 """
 
 from __future__ import annotations

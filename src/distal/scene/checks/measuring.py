@@ -1,6 +1,6 @@
 """How steep a field really is, and whether it keeps within its box: measured at random points.
 
-What flows in: a shape, its box, a seed. What flows out: figures. A measurement finds mistakes; it
+Input: a shape, its box, a seed. Output: figures. A measurement finds mistakes; it
 proves nothing: what is steep in a place too small to be met stays unseen.
 """
 

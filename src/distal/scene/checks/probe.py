@@ -1,6 +1,6 @@
 """What one pixel of a scene's picture saw: its ray, the march, the shape and the material it met.
 
-What flows in: a scene and a pixel. What flows out: a ``Probed``, in plain values and with the
+Input: a scene and a pixel. Output: a ``Probed``, in plain values and with the
 tree's own nodes. One small program over the scene's functions, with the march of the picture.
 """
 

@@ -1,6 +1,6 @@
 """What a tree of shapes claims, where its slope comes from, and whether measurements agree.
 
-What flows in: a shape. What flows out: a ``Checkup``: a row for each shape, findings, each with its
+Input: a shape. Output: a ``Checkup``: a row for each shape, findings, each with its
 place in the author's file, and the same as plain values for editors (``Checkup.as_json``).
 """
 

@@ -1,6 +1,6 @@
 """Doubts about a scene that is drawn: own functions that break their word, pictures that are black.
 
-What flows in: a scene, the values of its parameters, the picture. What flows out: a warning at the
+Input: a scene, the values of its parameters, the picture. Output: a warning at the
 author's line, or an error where nothing can be seen. A few hundred places are asked: enough for
 the mistakes that spoil a picture. ``checkup`` looks more closely, when it is asked to.
 """

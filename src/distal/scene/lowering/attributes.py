@@ -1,6 +1,6 @@
 """What is known of a place beside its distance: its material, and which part it belongs to.
 
-What flows in: nodes, and a kind of attribute: what a leaf gives, how two are joined. What flows
+Input: nodes, and a kind of attribute: what a leaf gives, how two are joined. What flows
 out: an expression. Each is computed once for each hit, so nothing is shared between subtrees.
 """
 

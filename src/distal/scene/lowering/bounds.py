@@ -1,6 +1,6 @@
 """What a tree promises: a bound on its slope, a safe divisor for marching, a box, its growth.
 
-What flows in: nodes and the rules of their rows. What flows out: expressions of numbers alone,
+Input: nodes and the rules of their rows. Output: expressions of numbers alone,
 which every target computes once a frame: parameters move them.
 """
 

@@ -1,6 +1,6 @@
 """Refusing paint that tells cells apart where there is only one.
 
-What flows in: a shape's tree. What flows out: an error where a material asks for the cell of a
+Input: a shape's tree. Output: an error where a material asks for the cell of a
 repetition, but paints the repetition as a whole: every copy would look like the first.
 """
 

@@ -1,6 +1,6 @@
 """What is asked of a shape besides its distance, as functions: its gradient, its promises.
 
-What flows in: a tree. What flows out: objects that the executor runs.
+Input: a tree. Output: objects that the executor runs.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What shapes promise as plain numbers, known as soon as they are made.
 
-What flows in: a node. What flows out: its slope, box and growth for the parameters' defaults. Each
+Input: a node. Output: its slope, box and growth for the parameters' defaults. Each
 operator is computed from the numbers of its children, once for each node, by a function that all
 operators of its kind share: making a shape composes and compiles nothing of what is below it.
 """

@@ -1,6 +1,6 @@
 """A scene's layers: depth, normal, albedo and material beside its color.
 
-What flows in: a scene and names. What flows out: arrays, made by programs of the library's scene
+Input: a scene and names. Output: arrays, made by programs of the library's scene
 code. Needs NumPy only when layers are rendered.
 """
 

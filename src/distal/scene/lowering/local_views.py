@@ -1,6 +1,6 @@
 """A local of an ``@image`` as a picture of its own: an image's coordinate, its signal.
 
-What flows in: an author's image and the name of a local. What flows out: an image whose function is
+Input: an author's image and the name of a local. Output: an image whose function is
 the author's, changed to return the color of the local's last value, whichever way it leaves.
 """
 

@@ -1,6 +1,6 @@
 """A scene's function from a pixel to its light, put together.
 
-What flows in: a scene. What flows out: functions in a program: distance, surface, lights, what is
+Input: a scene. Output: functions in a program: distance, surface, lights, what is
 around, rays, and one that joins them by a renderer of the library. Everything that a renderer may
 ask for is known by name; it takes what it names.
 """

@@ -1,6 +1,6 @@
 """A shape's tree becomes functions of the IR.
 
-What flows in: nodes. What flows out: calls of the field library's functions, joined by the names of
+Input: nodes. Output: calls of the field library's functions, joined by the names of
 their parameters. Floats become number uniforms; a subtree that occurs again, with whatever numbers,
 becomes a function of its own that takes them. Knows nothing of materials (``attributes``).
 """

@@ -1,6 +1,6 @@
 """Refusing shapes that no ray can be marched to: fields without a bound on their slope.
 
-What flows in: a shape's tree. What flows out: an error at the place where the bound was lost: a
+Input: a shape's tree. Output: an error at the place where the bound was lost: a
 twist of something that has no end, say. An operator is refused when it is made, for the parameters'
 defaults; other values and times are looked at when it is drawn (``doubts``).
 """

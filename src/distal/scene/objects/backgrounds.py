@@ -1,7 +1,7 @@
 """Backgrounds: what rays show that meet nothing; skies and surroundings that are lights too.
 
-What flows in: a colour, the numbers of a sky, a picture of surroundings, the author's own function
-of a direction. What flows out: a ``Background``, which gives the light from a direction. Only the
+Input: a colour, the numbers of a sky, a picture of surroundings, the author's own function
+of a direction. Output: a ``Background``, which gives the light from a direction. Only the
 camera and mirrors see it, unless it is declared a light (``light=True``, or put among the lights):
 no light counts twice.
 """

@@ -1,6 +1,6 @@
 """What an author gives for a row's numbers, and an author's own function as a row.
 
-What flows in: rows of the library, Python arguments. What flows out: checked numbers and constants,
+Input: rows of the library, Python arguments. Output: checked numbers and constants,
 nodes. Knows nothing of the classes that authors see.
 """
 

@@ -1,6 +1,6 @@
 """Cameras: where a picture is seen from.
 
-What flows in: places, angles, all of which may be parameters or move with time. What flows out: the
+Input: places, angles, all of which may be parameters or move with time. Output: the
 call of a camera function of ``render`` that gives each point of the picture its ray. Space is
 right-handed with y up; a camera looks along -z unless told otherwise.
 """

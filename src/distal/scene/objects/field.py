@@ -1,6 +1,6 @@
 """What solid and flat shapes share: asking them, combining them, painting them.
 
-What flows in: the author's numbers and shapes. What flows out: ever new shapes; none changes. A
+Input: the author's numbers and shapes. Output: ever new shapes; none changes. A
 shape is a function of scene code too: ``shape(p)`` in a ``@func``, ``shape(points)`` in Python.
 """
 

@@ -1,6 +1,6 @@
 """Pictures as light: what patterns and surroundings read.
 
-What flows in: a picture's file, an array, a ``Picture``, a texture. What flows out: a texture of
+Input: a picture's file, an array, a ``Picture``, a texture. Output: a texture of
 linear light: files and bytes are encoded for display (sRGB) and are decoded here, floats are taken
 as light already. A file that cannot be read is told at the author's line.
 """

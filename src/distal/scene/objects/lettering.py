@@ -1,6 +1,6 @@
 """Text as outlines: which font, which glyphs, where each stands.
 
-What flows in: a text, a font's name or file. What flows out: an ``Outline``. Glyphs stand side by
+Input: a text, a font's name or file. Output: an ``Outline``. Glyphs stand side by
 side as the font's widths and its kerning say; there are no ligatures, and all runs from left to
 right. Without a font Pillow's own is taken, the same everywhere; where that lacks a letter, the
 first known font of the machine that has all.

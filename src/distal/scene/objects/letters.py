@@ -1,6 +1,6 @@
 """Letters and drawings as flat shapes: ``Text`` and ``SvgPath``.
 
-What flows in: a text, or the text of an SVG path. What flows out: flat shapes, exact outside, to be
+Input: a text, or the text of an SVG path. Output: flat shapes, exact outside, to be
 extruded, engraved and combined like any other. Reading fonts and paths stands in ``lettering`` and
 ``outlines``, loaded only when one is made.
 """

@@ -1,7 +1,7 @@
 """Lights: what makes a scene visible.
 
-What flows in: places, directions, colours, intensities; all may be parameters or move with time.
-What flows out: calls of light functions of ``render``: how a light reaches a point (``sample``),
+Input: places, directions, colours, intensities; all may be parameters or move with time.
+Output: calls of light functions of ``render``: how a light reaches a point (``sample``),
 and how light from everywhere reaches a surface that faces some way (``ambient``). A point light of
 intensity 1 at distance 1, square on a white matte surface, shows it as white (radiance 1).
 """

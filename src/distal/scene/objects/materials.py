@@ -1,7 +1,7 @@
 """Materials: what a shape looks like.
 
-What flows in: colours, weights and numbers, each plain, a parameter, changing with time, or a
-pattern. What flows out: a ``Material``, which gives its ``Surface`` at a place of the shape it
+Input: colours, weights and numbers, each plain, a parameter, changing with time, or a
+pattern. Output: a ``Material``, which gives its ``Surface`` at a place of the shape it
 paints. The formulas are scene code of ``render.material``; this module checks and remembers what a
 scene must know of a material to choose its renderer: whether rays bounce off it, or go into it.
 """

@@ -1,6 +1,6 @@
 """What authors look for by names that shapes do not have.
 
-What flows in: a name that was not found. What flows out: the sentence that tells which method to
+Input: a name that was not found. Output: the sentence that tells which method to
 use instead. Knows the methods by name only.
 """
 

@@ -1,6 +1,6 @@
 """Drawings and letters as outlines: the chains of lines and curves that ``fields.outlines`` reads.
 
-What flows in: the text of an SVG path, or a text and a font (``scene.lettering`` lays it out). What
+Input: the text of an SVG path, or a text and a font (``scene.lettering`` lays it out). What
 flows out: an ``Outline``: the buffers of edges and the box around them. What cannot be read is told
 at the author's line. Reading paths and fonts is left to fontTools, an optional package.
 """

@@ -1,7 +1,7 @@
 """Patterns: colours and amounts that differ from place to place on a surface.
 
-What flows in: colours, materials, numbers, pictures, other patterns, the author's own functions of
-a place. What flows out: a ``Pattern``, which stands wherever a material takes a colour or a number;
+Input: colours, materials, numbers, pictures, other patterns, the author's own functions of
+a place. Output: a ``Pattern``, which stands wherever a material takes a colour or a number;
 a ``Material`` where one of its two sides is one, an amount where both are numbers. A place is told
 by ``p`` (the point in the painted shape's own space), ``n`` (the normal there) and ``cell`` (the
 index of the repetition it lies in). The formulas are scene code of ``render.patterns``.

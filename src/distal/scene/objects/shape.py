@@ -1,6 +1,6 @@
 """Shapes and their methods: placing, repeating, deforming, thickening.
 
-What flows in: the author's numbers. What flows out: ever new shapes; none changes. Every method is
+Input: the author's numbers. Output: ever new shapes; none changes. Every method is
 a row of the field library, found by its name.
 """
 

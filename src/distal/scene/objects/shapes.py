@@ -1,6 +1,6 @@
 """A class for every shape of the field library, ``Sphere`` to ``Hexagon``.
 
-What flows in: the library's rows. What flows out: a class for each, called with the shape's
+Input: the library's rows. Output: a class for each, called with the shape's
 numbers. ``shapes.pyi`` beside this file, made by ``tools/gen_shapes_stub.py``, tells editors.
 """
 

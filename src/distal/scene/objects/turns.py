@@ -1,6 +1,6 @@
 """Angles that look like degrees: told, because they are radians.
 
-What flows in: the angles that an author turns a shape by. What flows out: a warning at that line.
+Input: the angles that an author turns a shape by. Output: a warning at that line.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Python's call of a shape, light or material becomes values for a scene function's parameters.
 
-What flows in: the functions of a row (``fields``, ``render``, or the author's own), positional and
-keyword arguments, limits. What flows out: checked ``Number``s, choices, textures and buffers by
+Input: the functions of a row (``fields``, ``render``, or the author's own), positional and
+keyword arguments, limits. Output: checked ``Number``s, choices, textures and buffers by
 name. Every mistake is told at the author's line, with what mends it. Knows no row's meaning.
 """
 

@@ -1,7 +1,7 @@
 """A scene function together with what it is given: patterns, materials, lights, cameras are such.
 
-What flows in: a function and checked values, which may be such calls themselves (a material whose
-colour is a pattern). What flows out: on request, the call as an expression of the IR. Knows nothing
+Input: a function and checked values, which may be such calls themselves (a material whose
+colour is a pattern). Output: on request, the call as an expression of the IR. Knows nothing
 of what the function means.
 """
 

@@ -1,7 +1,7 @@
 """What an author gives for a number becomes a ``Number``; mistakes are told at the author's line.
 
-What flows in: Python's and NumPy's numbers, tuples, lists, arrays, vectors, ``"#hex"`` colours,
-parameters and expressions, also mixed. What flows out: checked plain numbers, or one expression.
+Input: Python's and NumPy's numbers, tuples, lists, arrays, vectors, ``"#hex"`` colours,
+parameters and expressions, also mixed. Output: checked plain numbers, or one expression.
 Knows limits (``fields.claims``), but no function that the numbers are for (``numbers``).
 """
 

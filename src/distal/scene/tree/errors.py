@@ -1,7 +1,7 @@
 """Mistakes in how a scene object is made, told at the author's own line.
 
-What flows in: what is wrong, what mends it, and where (by default the innermost call outside this
-package). What flows out: an exception that prints as every other mistake in a scene does, and that
+Input: what is wrong, what mends it, and where (by default the innermost call outside this
+package). Output: an exception that prints as every other mistake in a scene does, and that
 ``except ValueError`` or ``except TypeError`` catches as Python's own.
 """
 

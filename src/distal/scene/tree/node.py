@@ -1,6 +1,6 @@
 """The tree behind a shape: what it is made of, without a way to ask it anything.
 
-What flows in: rows of the field library, checked numbers, other nodes. What flows out: immutable
+Input: rows of the field library, checked numbers, other nodes. Output: immutable
 nodes that ``compose`` turns into functions. A node knows where the author wrote it.
 """
 

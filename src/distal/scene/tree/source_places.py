@@ -1,6 +1,6 @@
 """Where in the author's source a scene object is being made.
 
-What flows in: the running frames. What flows out: a ``Span`` of the innermost call outside this
+Input: the running frames. Output: a ``Span`` of the innermost call outside this
 package (examples are outside). Called for every shape, light and material, so that a mistake found
 later still points at the line; a place costs a microsecond or two, not a look at the file.
 """

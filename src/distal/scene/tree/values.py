@@ -1,6 +1,6 @@
 """The numbers of a tree as expressions, and the statements they go into.
 
-What flows in: nodes with checked numbers. What flows out: a uniform for each float, the author's
+Input: nodes with checked numbers. Output: a uniform for each float, the author's
 expression where one was given, constants for choices.
 """
 

@@ -1,7 +1,7 @@
 """What a hand does to a camera, a time and a slider: the same in windows, pages and notebooks.
 
-What flows in: movements in parts of the picture's height, notches of a wheel, steps, positions.
-What flows out: numbers. ``tools/gen_player.py`` translates this module to TypeScript for the page's
+Input: movements in parts of the picture's height, notches of a wheel, steps, positions.
+Output: numbers. ``tools/gen_player.py`` translates this module to TypeScript for the page's
 player: it is written in the part of Python which that tool knows, and a test holds both together.
 Knows no window and no page.
 """

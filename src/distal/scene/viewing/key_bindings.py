@@ -1,6 +1,6 @@
 """Which key means what, in windows, pages and notebooks, and how the help says it.
 
-What flows in: nothing. What flows out: tables; ``tools/gen_player.py`` copies those of pages to
+Input: nothing. Output: tables; ``tools/gen_player.py`` copies those of pages to
 TypeScript. Does nothing itself.
 """
 

@@ -1,6 +1,6 @@
 """A scene around a lone shape: a ground, a camera that sees all of it, the light of a studio.
 
-What flows in: a shape. What flows out: a scene framed by the shape's box, as it is at one time and
+Input: a shape. Output: a scene framed by the shape's box, as it is at one time and
 for one set of parameters.
 """
 

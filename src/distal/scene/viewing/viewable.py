@@ -1,6 +1,6 @@
 """What windows, pages, notebooks and films show: a scene, a shape or an image, under one interface.
 
-What flows in: any object that is a picture. What flows out: its programs by view, with a camera
+Input: any object that is a picture. Output: its programs by view, with a camera
 that can be moved where it has one, and its parameters. Knows no window and no page.
 """
 
