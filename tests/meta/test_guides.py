@@ -1,8 +1,8 @@
 """Every Python block of the front page and the guides runs as it is printed.
 
-Blocks of one page run in order in one folder, each as a file of its own. One that loads "scene.py"
-finds the block before it there. Those about notebooks are cells: they know the names of the cells
-before. Pictures are made small; nothing else is changed.
+Blocks of one page run in order in one folder, each as a file of its own. One that loads "scene.py" (or
+another file) finds the block before it there. Those about notebooks are cells: they know the names of
+the cells before. Pictures are made small; nothing else is changed.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from distal.lang.functions import Image
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs/guide").glob("*.md"))]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LOADED = re.compile(r'load\("(\w+\.py)"')
 SIZE = re.compile(r"\b640, 480\b")
 
 
@@ -38,8 +39,9 @@ def test_its_blocks_run(page, tmp_path, monkeypatch):
         file = tmp_path / f"block_{number}.py"
         file.write_text(text, encoding="utf-8")
         made = runpy.run_path(str(file), made if are_cells else None)
-        if "scene.py" not in text:
-            (tmp_path / "scene.py").write_text(text, encoding="utf-8")
+        if not LOADED.search(text):
+            for name in LOADED.findall(page.read_text(encoding="utf-8")):
+                (tmp_path / name).write_text(text, encoding="utf-8")
         for value in made.values():
             if isinstance(value, Scene | Image):
                 picture = value.render((32, 24))
