@@ -1,7 +1,8 @@
 """Every Python block of the front page and the guides runs as it is printed.
 
-Blocks of one page run in order in one folder, each as a file of its own. One that loads a file finds
-the block before it there. Those about notebooks are cells: they know the names of the cells before. Pictures are made small; nothing else is changed.
+Blocks of one page run in order in one folder, each as a file of its own. A block that loads a file
+finds the block before it there. Blocks of the notebook guide are cells: they know the names of the
+cells before. Pictures are made small; nothing else is changed.
 """
 
 from __future__ import annotations
