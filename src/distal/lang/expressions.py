@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from distal.ir.build import swizzle
+from distal.ir.intrinsics import python_functions
 from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
@@ -24,21 +25,12 @@ if TYPE_CHECKING:
 
 _LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"}}
 
-# NumPy's functions by what they are in scene code: an operator, or a row of the table.
+# NumPy's functions by what they are in scene code: an operator, or an intrinsic.
 UFUNCS: Final[Mapping[str, str]] = {
     **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/"},
     **{"floor_divide": "//", "remainder": "%", "power": "**", "float_power": "**"},
     **{"matmul": "@", "negative": "-x", "positive": "+x"},
-    **{"absolute": "abs", "fabs": "abs", "rint": "round", "minimum": "min", "maximum": "max"},
-    **{"fmin": "min", "fmax": "max", "arcsin": "asin", "arccos": "acos", "arctan": "atan"},
-    **{"arctan2": "atan2", "deg2rad": "radians", "rad2deg": "degrees"},
-    **{
-        name: name
-        for name in (
-            *("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "log", "log2"),
-            *("floor", "ceil", "trunc", "sign", "degrees", "radians"),
-        )
-    },
+    **python_functions("numpy"),
 }
 _COMPARING: Final = frozenset(
     ("less", "less_equal", "greater", "greater_equal", "equal", "not_equal")

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final, assert_never
 
+from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Apply,
     Binary,
@@ -50,21 +51,6 @@ from distal.ir.walk import blocks, expressions, nodes_in, statements_in
 UNKNOWN_ROUNDS: Final = 16  # what a loop is taken to run when its bounds are not constant
 MOST_ROUNDS: Final = 128
 
-# For each component of the first argument.
-_BY_COMPONENT: Final[dict[str, int]] = {
-    **dict.fromkeys(("abs", "sign", "floor", "ceil", "trunc", "round", "min", "max"), 1),
-    **dict.fromkeys(("any", "all", "isnan", "isinf", "transpose"), 1),
-    **dict.fromkeys(("fract", "clamp", "step", "radians", "degrees", "dot"), 2),
-    **dict.fromkeys(("mix", "outer"), 3),
-    **dict.fromkeys(("cross", "reflect", "faceforward", "length", "distance", "sqrt"), 4),
-    **dict.fromkeys(("inversesqrt", "normalize", "determinant"), 5),
-    **dict.fromkeys(("mod", "smoothstep", "refract", "pcg"), 8),
-    **dict.fromkeys(("exp", "exp2", "log", "log2", "sin", "cos"), 12),
-    **dict.fromkeys(("tan", "asin", "acos", "atan", "inverse", "sinh", "cosh", "tanh"), 16),
-    **dict.fromkeys(("pow", "raw_power", "atan2", "raw_atan2"), 24),
-    "truncated_quotient": 8,
-}
-
 
 def _components(type: Type) -> int:
     return component_count(type) if isinstance(type, Scalar | Vector | Matrix) else 4
@@ -90,7 +76,7 @@ def node_cost(e: Expr, calls: Mapping[str, int]) -> int:
         case Index(_, index):
             return 0 if isinstance(index, Const) else 3
         case Builtin(name, args):
-            return _BY_COMPONENT.get(name, 1) * _components(args[0].type)
+            return INTRINSICS[name].cost * _components(args[0].type)
         case Call(function):
             return 2 + calls.get(function, 100)
         case Sample() | Texel():

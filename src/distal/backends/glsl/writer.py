@@ -17,6 +17,7 @@ from distal.backends.clike.functions import FunctionWriter
 from distal.backends.clike.literals import float_literal, int_literal
 from distal.backends.clike.module_names import ModuleNames
 from distal.diagnostics import CompileError
+from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -59,16 +60,6 @@ _COMPARISONS = {
     CompareOp.LE: "lessThanEqual",
     CompareOp.GT: "greaterThan",
     CompareOp.GE: "greaterThanEqual",
-}
-
-# Arguments that GLSL also takes as scalars beside vectors of the other arguments.
-_SCALAR_ARGUMENTS = {
-    "min": (1,),
-    "max": (1,),
-    "clamp": (1, 2),
-    "mix": (2,),
-    "step": (0,),
-    "smoothstep": (0, 1),
 }
 
 
@@ -221,7 +212,7 @@ class GlslWriter(FunctionWriter):
         return ", ".join(a.text for a in args)
 
     def scalar_arguments(self, name: str) -> tuple[int, ...]:
-        return _SCALAR_ARGUMENTS.get(name, ())
+        return INTRINSICS[name].glsl_scalars
 
     def unary_special(self, e: Unary) -> Code | None:
         if e.op is UnaryOp.NOT and isinstance(e.type, Vector):

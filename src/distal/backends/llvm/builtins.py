@@ -1,8 +1,8 @@
-"""The rows of the table that the CPU computes itself.
+"""The built-ins that the CPU computes itself.
 
-Input: a row's name and its arguments' leaves. Output: the result's leaves. Every
-other row has been decomposed into calls of prelude functions before; in 64 bits, where the
-prelude's polynomials do not reach, the elementary ones call the C library lane by lane.
+Input: a built-in's name and its arguments' leaves. Output: the result's leaves. Every other
+built-in has been decomposed into calls of prelude functions before; in 64 bits, for which the
+prelude's polynomials are not exact enough, the elementary ones call the C library lane by lane.
 """
 
 from __future__ import annotations
@@ -12,20 +12,19 @@ import math
 from distal.backends.llvm.arithmetic import Arithmetic
 from distal.backends.llvm.lanes import Leaf, Leaves, leaf_count
 from distal.backends.llvm.roots import inverse_square_root, square_root
+from distal.ir.intrinsics import INTRINSICS
 from distal.ir.limits import largest_power, smallest
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind, Matrix, Type
 
 # Names that LLVM has under another name; the rest of these are spelled alike.
 _ROUNDING = {"floor": "floor", "ceil": "ceil", "round": "rint", "trunc": "trunc"}
-_LIBRARY_UNARY = ("exp", "exp2", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan",
-                  "sinh", "cosh", "tanh")  # fmt: skip
 
 
 def builtin(
     arithmetic: Arithmetic, name: str, args: tuple[Leaves, ...], types: tuple[Type, ...]
 ) -> Leaves:
-    """A row applied to arguments."""
+    """A built-in applied to arguments."""
     first = args[0]
     match name:
         case "dot":
@@ -150,8 +149,6 @@ def _float_of(arithmetic: Arithmetic, x: Leaf) -> Leaf:
 
 def _library(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
     """An elementary function of the C library; pow's first argument is held above 0."""
-    if name in _LIBRARY_UNARY:
-        return arithmetic.intrinsic(name, Kind.FLOAT, args[0])
     if name in ("atan2", "raw_atan2"):
         # On the axis the signs of zeros count for nothing; the library turns by pi for x = -0, and
         # the other way round for y = -0.
@@ -169,4 +166,6 @@ def _library(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
         base = arithmetic.select(below, zero, args[0])
         power = arithmetic.intrinsic("pow", Kind.FLOAT, base, args[1])
         return arithmetic.select(arithmetic.compare(CompareOp.LT, most, power), most, power)
-    raise AssertionError(f"the table lets the row '{name}' through to the CPU, which lacks it")
+    spelling = INTRINSICS[name].spelling("llvm")
+    assert spelling is not None and spelling.startswith("@elementary."), name
+    return arithmetic.intrinsic(name, Kind.FLOAT, args[0])

@@ -16,28 +16,19 @@ from distal.frontend.types.coercion import fit, natural_type, settle, shown_type
 from distal.frontend.types.powers import power
 from distal.frontend.values import Closure, Display, Static, Value, Whole
 from distal.ir.build import splat
-from distal.ir.intrinsics import INTRINSICS, Intrinsic
+from distal.ir.intrinsics import INTRINSICS, Intrinsic, python_functions
 from distal.ir.nodes import Builtin, Expr
 from distal.ir.signatures import Follows, Signature
 from distal.ir.types import FLOAT, INT, UINT, Scalar, Type, Vector
 from distal.lang.values import MatrixValue, VectorValue
 
-# Python's own functions that mean a row of the table, so that scene code needs no import for them.
-_MATH_NAMES: Final = {"fabs": "abs"} | {
-    name: name
-    for name in (
-        *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp"),
-        *("exp2", "log", "log2", "sqrt", "pow", "floor", "ceil", "trunc", "degrees", "radians"),
-        *("isnan", "isinf"),
-    )
-}
+# Python's own functions that mean an intrinsic, so that scene code needs no import for them.
 PYTHON_FUNCTIONS: Final[dict[Any, Intrinsic]] = {
-    getattr(builtins, name): INTRINSICS[name]
-    for name in ("abs", "min", "max", "round", "pow", "any", "all")
-} | {
-    getattr(math, name): INTRINSICS[row] for name, row in _MATH_NAMES.items() if hasattr(math, name)
+    getattr(module, function): INTRINSICS[name]
+    for module, prefix in ((builtins, ""), (math, "math"))
+    for function, name in python_functions(prefix).items()
+    if hasattr(module, function)
 }
-
 
 # A whole-number literal is an int by itself, becomes a float readily, a uint only beside one.
 _LITERAL_SCORES: Final[dict[Type, int]] = {INT: 2, FLOAT: 1, UINT: 0}

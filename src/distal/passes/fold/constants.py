@@ -6,8 +6,11 @@ constants, rounded to the module's precision, and expressions made of such compo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 
+from distal.ir.constant_arithmetic import COMPARE, ConstantArithmetic, NotFoldableError, Number
+from distal.ir.intrinsics import INTRINSICS
+from distal.ir.intrinsics.folding import Components, ConstantCall
 from distal.ir.nodes import (
     Binary,
     Builtin,
@@ -26,8 +29,6 @@ from distal.ir.nodes import (
     Uniform,
 )
 from distal.ir.types import Kind, Matrix, Scalar, Type, Vector, component_count, kind_of
-from distal.passes.fold.arithmetic import COMPARE, Arithmetic, NotFoldableError, Number
-from distal.passes.fold.builtins import Components, fold_builtin
 
 
 def constant(type: Type, values: Components) -> Expr:
@@ -47,6 +48,36 @@ def constant(type: Type, values: Components) -> Expr:
             )
 
 
+def fold_builtin(
+    name: str,
+    args: Sequence[Components],
+    types: Sequence[Type],
+    result: Type,
+    arithmetic: ConstantArithmetic,
+) -> Components:
+    """The components of ``name(*args)``.
+
+    Args:
+        name: An intrinsic.
+        args: The components of each argument.
+        types: The type of each argument.
+        result: The type of the result.
+        arithmetic: Operations in the module's precision.
+
+    Raises:
+        NotFoldableError: The result is left to the target.
+    """
+    intrinsic, kind, result_kind = INTRINSICS[name], kind_of(types[0]), kind_of(result)
+    if kind is None or result_kind is None:
+        raise NotFoldableError
+    if kind is Kind.FLOAT:
+        args = [tuple(map(float, arg)) for arg in args]
+    if intrinsic.held is not None:
+        low, high = intrinsic.held.limits(arithmetic.precision)
+        args = [tuple(min(max(c, low), high) for c in arg) for arg in args]
+    return intrinsic.fold(ConstantCall(tuple(args), kind, result_kind, arithmetic))
+
+
 class Constants:
     """Constant expressions of one function.
 
@@ -55,7 +86,7 @@ class Constants:
     """
 
     def __init__(
-        self, arithmetic: Arithmetic, known: Mapping[Expr, Expr], mutable: Set[str]
+        self, arithmetic: ConstantArithmetic, known: Mapping[Expr, Expr], mutable: Set[str]
     ) -> None:
         self._math = arithmetic
         self._known = known

@@ -1,7 +1,7 @@
 """Between which numbers a float expression certainly lies.
 
-Input: an expression and what is known of immutable locals. Output: an interval that
-holds every component, without end where nothing better is seen. It is asked whether a guard is
+Input: an expression and what is known of immutable locals. Output: an interval that contains every
+component, infinite where nothing better is known. It serves to leave out guards that are not
 needed, so that ``exp(-0.02 * t * t)`` keeps its short form. Rounding is allowed for: what is not
 exact makes an interval a little wider, but 0 stays 0. A NaN is in no interval, and in all of them.
 """
@@ -11,8 +11,10 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping
-from typing import Final, TypeAlias
+from typing import Final
 
+from distal.ir.intrinsics import INTRINSICS
+from distal.ir.intrinsics.declaration import ANYWHERE, NOT_NEGATIVE, WIDER, Interval
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -28,18 +30,7 @@ from distal.ir.nodes import (
     UnaryOp,
 )
 
-Interval: TypeAlias = tuple[float, float]
-
-ANYWHERE: Final[Interval] = (-math.inf, math.inf)
-_POSITIVE: Final[Interval] = (0.0, math.inf)
 _DEPTH: Final = 10  # operations within one another that are looked at
-_WIDER: Final = 2e-6  # of a value: more than any target's arithmetic is off by
-# A driver's own function may overshoot.
-_RESULTS: Final[dict[str, Interval]] = {
-    **dict.fromkeys(("length", "distance", "sqrt", "exp", "exp2", "cosh", "pow"), _POSITIVE),
-    **dict.fromkeys(("fract", "step", "smoothstep"), (0.0, 1.0 + _WIDER)),
-    **dict.fromkeys(("sin", "cos", "tanh"), (-1.01, 1.01)),
-}
 
 
 def interval(e: Expr, known: Mapping[Expr, Expr], depth: int = _DEPTH) -> Interval:
@@ -95,7 +86,7 @@ def _result(e: Builtin, known: Mapping[Expr, Expr], depth: int) -> Interval:
         case "dot", (a, b) if a is b:
             return _sum_of_squares(a, known, of)
         case _:
-            return _RESULTS.get(e.name, ANYWHERE)
+            return INTRINSICS[e.name].results
 
 
 def _hull(parts: list[Interval]) -> Interval:
@@ -104,8 +95,8 @@ def _hull(parts: list[Interval]) -> Interval:
 
 def _widened(low: float, high: float) -> Interval:
     """Of arithmetic that rounds; what is no number is no bound."""
-    low = -math.inf if math.isnan(low) else low - abs(low) * _WIDER if math.isfinite(low) else low
-    high = math.inf if math.isnan(high) else high + abs(high) * _WIDER
+    low = -math.inf if math.isnan(low) else low - abs(low) * WIDER if math.isfinite(low) else low
+    high = math.inf if math.isnan(high) else high + abs(high) * WIDER
     return low, high
 
 
@@ -135,7 +126,7 @@ def _times(a: Interval, b: Interval) -> Interval:
     ends = [x * y for x in a for y in b]
     if any(map(math.isnan, ends)):  # 0 times infinity: only the signs are known
         if a[0] >= 0.0 and b[0] >= 0.0:
-            return _POSITIVE
+            return NOT_NEGATIVE
         if (a[1] <= 0.0 and b[0] >= 0.0) or (a[0] >= 0.0 and b[1] <= 0.0):
             return -math.inf, 0.0
         return ANYWHERE

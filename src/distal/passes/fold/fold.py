@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from distal.ir.constant_arithmetic import ConstantArithmetic
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -35,7 +36,6 @@ from distal.ir.types import BOOL
 from distal.ir.walk import children, rebuild, root_of, statements_in
 from distal.passes.context import Context
 from distal.passes.dead_code import remove_dead
-from distal.passes.fold.arithmetic import Arithmetic
 from distal.passes.fold.rules import Rules
 from distal.passes.reachable import drop_unused
 
@@ -68,7 +68,7 @@ class _Folder:
             root_of(s.target).name for s in statements_in(body) if isinstance(s, Assign)
         }
         self._known: dict[Expr, Expr] = {}
-        self._rules = Rules(Arithmetic(precision), self._known, self._mutable)
+        self._rules = Rules(ConstantArithmetic(precision), self._known, self._mutable)
         # Rewritten nodes. A trivial local's Read stands here too, as what it forwards to.
         self._done: dict[Expr, Expr] = {}
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.ir.constant_arithmetic import NotFoldableError, Number
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -32,7 +33,6 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import BOOL, Kind, Matrix, Scalar, Type, Vector, component_count, kind_of
 from distal.passes.fold.aggregates import Aggregates
-from distal.passes.fold.arithmetic import NotFoldableError, Number
 from distal.passes.fold.constants import constant
 from distal.passes.fold.float_ranges import interval
 

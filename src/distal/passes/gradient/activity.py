@@ -12,8 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import assert_never
 
-from distal.ir import derivatives
-from distal.ir.intrinsics import INTRINSICS
+from distal.ir.intrinsics import INTRINSICS, derivatives
 from distal.ir.nodes import (
     Apply,
     Assign,

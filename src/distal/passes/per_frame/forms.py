@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from distal.ir import build
+from distal.ir.constant_arithmetic import ConstantArithmetic
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -47,7 +48,6 @@ from distal.ir.walk import (
     statements_in,
 )
 from distal.passes.cost import rounds
-from distal.passes.fold.arithmetic import Arithmetic
 from distal.passes.fold.fold import never_goes_on
 from distal.passes.fold.rules import Rules
 from distal.passes.versions import assigned_in
@@ -78,7 +78,7 @@ class Forming:
     """The forms of expressions, while the locals that have one are known in ``env``."""
 
     def __init__(self, precision: int, callable: frozenset[str]) -> None:
-        self._rules = Rules(Arithmetic(precision), {}, frozenset())
+        self._rules = Rules(ConstantArithmetic(precision), {}, frozenset())
         self._callable = callable
 
     def simplified(self, e: Expr) -> Expr:

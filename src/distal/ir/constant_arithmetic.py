@@ -1,8 +1,8 @@
 """Arithmetic on constants exactly as the targets do it.
 
-Input: Python numbers that stand for the components of constants. Output: the
-result in the module's precision, or None where folding would need a NaN, an infinity or a
-denormal (GPUs flush those): such an operation is left to the target.
+Input: Python numbers, the components of constants. Output: the result in the module's precision,
+or ``NotFoldableError`` where it would be a NaN, an infinity or a denormal (GPUs flush those): such
+an operation is left to the target.
 
 The sum, difference, product, quotient and square root of two 32-bit floats, computed in 64 bits
 and rounded to 32, are correctly rounded (a 53-bit significand is more than twice 24 bits and two
@@ -38,7 +38,7 @@ def wrap(value: int, kind: Kind) -> int:
     return value - (1 << 32) if kind is Kind.INT and value & 0x80000000 else value
 
 
-class Arithmetic:
+class ConstantArithmetic:
     """Operations on components in 32 or 64 bit floats and in 32-bit integers."""
 
     def __init__(self, precision: int) -> None:
@@ -71,12 +71,13 @@ class Arithmetic:
     def binary(self, op: BinaryOp, a: Number, b: Number, kind: Kind) -> Number:
         """One component of a Binary."""
         if kind is Kind.FLOAT:
-            return self._float_binary(op, float(a), float(b))
+            return self.float_binary(op, float(a), float(b))
         if kind is Kind.BOOL:
             return bool(_BITWISE[op](int(a), int(b)))
         return wrap(_integer_binary(op, int(a), int(b)), kind)
 
-    def _float_binary(self, op: BinaryOp, a: float, b: float) -> float:
+    def float_binary(self, op: BinaryOp, a: float, b: float) -> float:
+        """One component of a Binary of floats."""
         if op in _RING:
             return self.round(_RING[op](a, b))
         if b == 0.0:
@@ -90,6 +91,22 @@ class Arithmetic:
             case _:
                 assert op is BinaryOp.MOD, op
                 return self.round(a - self.round(b * float(math.floor(quotient))))
+
+    def add(self, a: float, b: float) -> float:
+        """A + b."""
+        return self.round(a + b)
+
+    def sub(self, a: float, b: float) -> float:
+        """A - b."""
+        return self.round(a - b)
+
+    def mul(self, a: float, b: float) -> float:
+        """A * b."""
+        return self.round(a * b)
+
+    def div(self, a: float, b: float) -> float:
+        """A / b."""
+        return self.float_binary(BinaryOp.DIV, a, b)
 
     def cast(self, a: Number, source: Kind, target: Kind) -> Number:
         """One component of a Cast."""
