@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from distal.backends import emit, get_target
 from distal.backends.base import Artifact
 from distal.backends.glsl.backend import vocabulary
-from distal.backends.glsl.stages import DIALECTS
+from distal.backends.glsl.targets import GlslTarget
 from distal.backends.numpy import interpreter as reference
 from distal.backends.wgsl.names import VOCABULARY
 from distal.compiler.driver import run_passes
@@ -72,7 +72,8 @@ def plain_functions() -> dict[str, Artifact]:
 
 def reserved(target: str) -> frozenset[str]:
     """The words that the target's own vocabulary lists."""
-    names = VOCABULARY.names if target.startswith("wgsl") else vocabulary(get_target(target)).names
+    found = get_target(target)
+    names = vocabulary(found).names if isinstance(found, GlslTarget) else VOCABULARY.names
     return frozenset(filter(can_be_named, {*names.words, *names.prefixes, *names.parts}))
 
 
@@ -150,7 +151,8 @@ def test_textures_and_the_image_itself_keep_their_meaning(family: tuple[str, ...
 
 def words_of_dialect(family: tuple[str, ...]) -> frozenset[str]:
     """What a GLSL text takes from its host."""
-    return frozenset[str]().union(*(DIALECTS[t].names for t in family if t in DIALECTS))
+    found = [target for target in map(get_target, family) if isinstance(target, GlslTarget)]
+    return frozenset[str]().union(*(target.written_names for target in found))
 
 
 # What a text declares itself, and what stands in the functions that it declares.

@@ -1,25 +1,24 @@
-"""Targets by name. Each backend is a module, imported when one of its targets is asked for."""
+"""Targets by name. A backend is a module, imported when one of its targets is emitted."""
 
 from __future__ import annotations
 
 import importlib
 from typing import Final, cast
 
-from distal.backends.base import Artifact, TextBackend
+from distal.backends.base import Artifact, Backend
+from distal.backends.glsl.targets import TARGETS as GLSL_TARGETS
+from distal.backends.targets import TextTarget
+from distal.backends.wgsl.targets import TARGETS as WGSL_TARGETS
 from distal.ir.nodes import Module
 from distal.ir.target import Target
 
-# Target -> the module that has it in its TARGETS.
+TEXT_TARGETS: Final[dict[str, TextTarget]] = {
+    target.name: target for target in (*GLSL_TARGETS, *WGSL_TARGETS)
+}
+# The modules of all targets, in the order that help texts list them.
 _BACKENDS: Final = {
     "llvm": "distal.backends.llvm",
-    "shadertoy": "distal.backends.glsl.backend",
-    "glslcanvas": "distal.backends.glsl.backend",
-    "isf": "distal.backends.glsl.backend",
-    "glsl-es300": "distal.backends.glsl.backend",
-    "glsl-330": "distal.backends.glsl.backend",
-    "glsl-es100": "distal.backends.glsl.backend",
-    "wgsl": "distal.backends.wgsl.backend",
-    "wgsl-compute": "distal.backends.wgsl.backend",
+    **{name: target.backend for name, target in TEXT_TARGETS.items()},
     "numpy": "distal.backends.numpy.interpreter",
 }
 
@@ -29,8 +28,8 @@ def target_names() -> tuple[str, ...]:
     return tuple(_BACKENDS)
 
 
-def _backend(name: str) -> TextBackend:
-    return cast(TextBackend, importlib.import_module(_BACKENDS[name]))
+def _backend(name: str) -> Backend:
+    return cast(Backend, importlib.import_module(_BACKENDS[name]))
 
 
 def get_target(name: str) -> Target:
@@ -39,7 +38,7 @@ def get_target(name: str) -> Target:
     Raises:
         KeyError: There is no such target.
     """
-    return next(target for target in _backend(name).TARGETS if target.name == name)
+    return TEXT_TARGETS.get(name) or _backend(name).TARGET
 
 
 def emit(module: Module, target: Target) -> Artifact:
@@ -51,4 +50,4 @@ def emit(module: Module, target: Target) -> Artifact:
     return _backend(target.name).emit(module, target)
 
 
-__all__ = ["Artifact", "emit", "get_target", "target_names"]
+__all__ = ["TEXT_TARGETS", "Artifact", "emit", "get_target", "target_names"]

@@ -1,8 +1,9 @@
-"""What a text target gives back, and what a text backend must provide.
+"""What a backend returns, and what it must provide.
 
-A backend is a module with ``TARGETS``, the targets it writes, and ``emit(module, target)``. The
-module it gets has been through every pass for that target; emit never fails on one, except with
-a ``CompileError`` where the target cannot say what the author wrote.
+A backend of texts is a module with ``emit(module, target)``; its targets are declared beside it, in
+``targets.py``. LLVM and the NumPy reference have one target each, their ``TARGET``. The module that
+``emit`` gets has been through every pass for that target; emit never fails on one, except with a
+``CompileError`` where the target cannot express what the author wrote.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ class Artifact:
     vertex_lines: tuple[tuple[str, int] | None, ...] = ()
 
 
-class TextBackend(Protocol):
-    """A module that writes text."""
+class Backend(Protocol):
+    """A module that writes programs."""
 
-    TARGETS: tuple[Target, ...]
+    TARGET: Target  # of a backend that is no text backend
 
     def emit(self, module: Module, target: Target) -> Artifact:
         """Write the whole program."""

@@ -18,6 +18,7 @@ import distal
 from distal.cli import check, export, probe, render, rerender, video, view
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
+from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.export.texts import with_header, write_files
 from distal.images.atomic_files import check_destination
 from distal.loading import EXAMPLE_PREFIX
@@ -34,19 +35,9 @@ _ORDER = (
 __all__ = ["COMMANDS", "TargetName", "application"]
 
 
-class TargetName(StrEnum):
-    """What ``distal compile`` writes."""
-
-    IR = "ir"
-    LLVM = "llvm"
-    SHADERTOY = "shadertoy"
-    GLSLCANVAS = "glslcanvas"
-    ISF = "isf"
-    GLSL_ES300 = "glsl-es300"
-    GLSL_330 = "glsl-330"
-    GLSL_ES100 = "glsl-es100"
-    WGSL = "wgsl"
-    WGSL_COMPUTE = "wgsl-compute"
+# What ``distal compile`` writes.
+_MEMBERS = {name.upper().replace("-", "_"): name for name in COMPILE_TARGETS}
+TargetName = StrEnum("TargetName", _MEMBERS)  # type: ignore[misc]  # members are not literals
 
 
 def _show_version(wanted: bool) -> None:
@@ -88,7 +79,7 @@ def compile(
     ] = None,
 ) -> None:
     """Compile a scene to text: a shader, vector code, or any stage of the compiler."""
-    if after is not None and target is not TargetName.IR:
+    if after is not None and target.value != IR_TARGET:
         raise UsageError("--after belongs to --target ir")
     if after is not None:
         _check_pass(after)

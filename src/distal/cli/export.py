@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from distal.backends import TEXT_TARGETS
 from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
     SceneArgument,
@@ -24,6 +25,8 @@ from distal.cli.base import (
 )
 from distal.cli.messages import say
 
+_SUFFIXES = [f"{t.suffix} {t.place.partition(',')[0]}" for t in TEXT_TARGETS.values() if t.suffix]
+
 
 @application.command()
 @reporting
@@ -34,15 +37,15 @@ def export(
         typer.Option(
             "-o",
             "--output",
-            help="The file: .html a page, .glsl Shadertoy, .fs ISF, .frag WebGL 2, .wgsl WebGPU.",
+            help=f"The file: .html a page, {', '.join(_SUFFIXES)}.",
             show_default=False,
         ),
     ],
     target: Annotated[
         str | None,
         typer.Option(
-            help="What to write, where the suffix does not say it: html, shadertoy, glslcanvas, "
-            "isf, glsl-es300, glsl-330, glsl-es100, wgsl, wgsl-compute.",
+            help="What to write, where the suffix does not say it: "
+            f"{', '.join(('html', *TEXT_TARGETS))}.",
             show_default=False,
         ),
     ] = None,

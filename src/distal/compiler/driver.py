@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
+from typing import Final
 
 from distal.backends import emit, get_target, target_names
 from distal.backends.base import Artifact
@@ -28,6 +29,8 @@ from distal.passes.pipeline import PASS_NAMES, PIPELINE
 VERIFY = os.environ.get("DISTAL_VERIFY", "") == "1"
 
 IR_TARGET = "ir"  # the IR as the CPU's passes leave it, printed
+# The reference is run, not written.
+COMPILE_TARGETS: Final = (IR_TARGET, *(name for name in target_names() if name != "numpy"))
 
 
 def run_passes(
@@ -69,8 +72,7 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
     Args:
         obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point
             (``wgsl-compute``: one that calls it for many points).
-        target: One of ``ir llvm shadertoy glslcanvas isf glsl-es300 glsl-330 glsl-es100 wgsl
-            wgsl-compute``.
+        target: One of ``COMPILE_TARGETS``: "ir", "llvm", or a text: "glsl-es300", "wgsl" ...
         after: For ``ir``: the pass after which to stop; ``"lower"`` for none at all.
 
     Raises:
@@ -92,9 +94,8 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
         if after != "lower":
             module = run_passes(module, get_target("llvm"), after=after)
         return Artifact(print_module(module), {})
-    names = [name for name in target_names() if name != "numpy"]
-    if target not in names:
-        raise ValueError(f"there is no target '{target}'; targets: {', '.join(['ir', *names])}")
+    if target not in COMPILE_TARGETS:
+        raise ValueError(f"there is no target '{target}'; targets: {', '.join(COMPILE_TARGETS)}")
     description = get_target(target)
     return emit(run_passes(lower(obj), description), description)
 

@@ -1,7 +1,7 @@
 """Every kind of file that an export writes, by name and by suffix.
 
-Input: a picture and a path. Output: the file, and what it is made of. To add a
-kind: one module with ``write``, and one row here.
+Input: a picture and a path. Output: the file, and what it is made of. The kinds of texts come from
+the declarations of targets. To add another kind: one module with ``write``, and one row here.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
+from distal.backends import TEXT_TARGETS
 from distal.export.exported import Exported
 from distal.images.atomic_files import SaveError, check_destination
 from distal.scene.viewing.viewable import viewable
@@ -40,14 +41,10 @@ _PAGE: Final = _TEXT | {
 
 KINDS: Final = {
     "html": Kind("distal.export.page", ".html", _PAGE),
-    "shadertoy": Kind("distal.export.texts", ".glsl", _TEXT),
-    "glslcanvas": Kind("distal.export.texts", None, _TEXT),
-    "isf": Kind("distal.export.texts", ".fs", _TEXT),
-    "glsl-es300": Kind("distal.export.texts", ".frag", _TEXT),
-    "glsl-330": Kind("distal.export.texts", None, _TEXT),
-    "glsl-es100": Kind("distal.export.texts", None, _TEXT),
-    "wgsl": Kind("distal.export.texts", ".wgsl", _TEXT),
-    "wgsl-compute": Kind("distal.export.texts", None, _TEXT),
+    **{
+        name: Kind("distal.export.texts", target.suffix, _TEXT)
+        for name, target in TEXT_TARGETS.items()
+    },
 }
 
 
@@ -60,8 +57,8 @@ def export(
         obj: The picture.
         path: The file. Its suffix says what is written where ``target`` does not: .html a page,
             .glsl for Shadertoy, .fs for ISF, .frag for WebGL 2, .wgsl for WebGPU.
-        target: "html", or that of a text: "shadertoy", "glslcanvas", "isf", "glsl-es300",
-            "glsl-330", "wgsl", "wgsl-compute".
+        target: "html", or that of a text, a name of ``distal.backends.TEXT_TARGETS``: "shadertoy",
+            "glsl-es300" ...
         options: ``params`` (values of parameters by name), ``view`` (what is shown first) and
             ``time`` (seconds). Of a page also ``size`` (width and height in pixels), ``duration``
             (seconds after which the time begins anew), ``title``, ``embed`` (a fragment for other

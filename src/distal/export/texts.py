@@ -12,9 +12,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.backends import emit, get_target
+from distal.backends import TEXT_TARGETS, emit
 from distal.backends.base import Artifact
 from distal.backends.clike.module_text import comment_text
+from distal.backends.targets import Declares
 from distal.compiler.driver import run_passes
 from distal.export.exported import Exported
 from distal.frontend import lower
@@ -27,46 +28,11 @@ from distal.version import __version__
 if TYPE_CHECKING:
     from distal.scene.viewing.viewable import Viewable
 
-PLACES: Final = {
-    "shadertoy": (
-        "Shadertoy",
-        "Paste all of this into the Image tab of a new shader on shadertoy.com.",
-    ),
-    "glslcanvas": (
-        "glslCanvas",
-        "Paste all of this into editor.thebookofshaders.com, or give the file to a canvas of class "
-        '"glslCanvas" as data-fragment-url.',
-    ),
-    "isf": (
-        "ISF 2, the Interactive Shader Format",
-        "Put this file into your host's folder for ISF generators; its controls appear there.",
-    ),
-    "glsl-es300": (
-        "WebGL 2",
-        "The fragment stage; the file .vert beside it is its vertex stage. Draw 3 vertices as "
-        "triangles, without buffers.",
-    ),
-    "glsl-330": (
-        "OpenGL 3.3",
-        "The fragment stage; the file .vert beside it is its vertex stage. Draw 3 vertices as "
-        "triangles, without buffers.",
-    ),
-    "glsl-es100": (
-        "WebGL 1",
-        "The fragment stage; draw anything that covers the picture. Set every uniform.",
-    ),
-    "wgsl": (
-        "WebGPU",
-        "vertex_main and fragment_main; draw 3 vertices as triangles. The file .json beside it "
-        "tells bindings and offsets.",
-    ),
-    "wgsl-compute": (
-        "WebGPU",
-        "compute_main, in groups of 8 x 8 pixels. The file .json beside it tells bindings and "
-        "offsets.",
-    ),
+_PARAMETERS: Final = {
+    Declares.NOBODY: "constants below, to be edited",
+    Declares.PLACE: "inputs",
+    Declares.TEXT: "uniforms",
 }
-_CONSTANT: Final = ("shadertoy", "glslcanvas")
 WIDTH: Final = 96
 
 
@@ -78,27 +44,26 @@ def with_header(artifact: Artifact, target: str, file: str) -> str:
         target: For which place.
         file: The name of the author's file, without its folder; may be empty.
     """
-    if target not in PLACES:
+    described = TEXT_TARGETS.get(target)
+    if described is None:
         return artifact.text
-    place, use = PLACES[target]
+    use = described.use
     whose = comment_text(file).replace("*/", "* /") or "A scene"
-    lines = [f"{whose}, written by distal {__version__} for {place}."]
+    lines = [f"{whose}, written by distal {__version__} for {described.place}."]
     if artifact.interface.get("kind") == EntryKind.FUNCTION.value:
         use = "The functions alone: call the last one from a shader of your own."
     lines += _broken(use)
     uniforms = artifact.interface.get("uniforms", ())
     parameters = [u for u in uniforms if u["origin"] == Origin.PARAMETER.value]
     if parameters:
-        kind = "constants below, to be edited" if target in _CONSTANT else "inputs"
-        if target not in (*_CONSTANT, "isf"):
-            kind = "uniforms"
         names = ", ".join(_spelled(u["uniform"]) for u in parameters)
-        lines += _broken(f"Parameters ({kind}): {names}.")
+        lines += _broken(f"Parameters ({_PARAMETERS[described.parameters]}): {names}.")
     for buffer in artifact.interface.get("buffers", ()):
         if "values" in buffer:
             lines += _broken(f"{buffer['uniform']}: constants of the scene, in the file .json.")
-    for texture in artifact.interface["textures"] if target == "glslcanvas" else ():
-        lines.append(f"{texture['uniform']}: {comment_text(texture['name'])}, by data-textures.")
+    for texture in artifact.interface["textures"] if described.textures_by else ():
+        name = comment_text(texture["name"])
+        lines.append(f"{texture['uniform']}: {name}, by {described.textures_by}.")
     comment = "\n".join(("/*", *(f" * {line}" for line in lines), " */", ""))
     return _placed(artifact.text, comment)
 
@@ -140,12 +105,13 @@ def write(
     values = checked_values(seen.parameters, params)
     image = seen.image(view, encoded=True)
     module = lower(image.text() if isinstance(image, Composed) else image)
-    description = get_target(target)
+    description = TEXT_TARGETS[target]
     artifact = emit(run_passes(_set(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
     text = with_header(artifact, target, name)
-    told = target not in ("shadertoy", "glslcanvas", "isf")  # these set their inputs by themselves
-    beside = write_files(path, artifact, text, with_interface=told)
+    # Other places set their inputs by themselves.
+    with_interface = description.parameters is Declares.TEXT
+    beside = write_files(path, artifact, text, with_interface=with_interface)
     return Exported(path, {}, beside)
 
 

@@ -55,7 +55,7 @@ def body(func: Any, types: tuple[Type, ...] | None = None) -> str:
 def value(func: Any, *args: Any, uniforms: dict[str, Any] | None = None) -> Any:
     """The function's value for scalars, by the 64-bit reference."""
     module = lowered(func)
-    context = Context(reference.TARGETS[0], PreludeLibrary(), 64)
+    context = Context(reference.TARGET, PreludeLibrary(), 64)
     for one in _PASSES:
         module = one.run(module, context)
         verify(module)

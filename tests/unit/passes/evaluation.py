@@ -24,7 +24,7 @@ PASSES = (
 )
 
 
-def passed(func, after="bounds", target: Target = reference.TARGETS[0], precision=64) -> Module:
+def passed(func, after="bounds", target: Target = reference.TARGET, precision=64) -> Module:
     """A function lowered and taken through the passes, each verified."""
     module = lower(func)
     verify(module)

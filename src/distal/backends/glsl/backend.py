@@ -13,76 +13,28 @@ from typing import Any, Final
 from distal.backends.base import Artifact
 from distal.backends.clike.interface import interface
 from distal.backends.clike.keywords import (
-    GLSL_CANVAS_MACROS,
-    GLSL_CANVAS_NAMES,
     GLSL_FUNCTIONS,
     GLSL_KEYWORDS,
     GLSL_METHODS,
     GLSL_PREFIXES,
-    ISF_NAMES,
-    ISF_PARTS,
-    ISF_PREFIXES,
-    SHADERTOY_MACROS,
-    SHADERTOY_NAMES,
 )
 from distal.backends.clike.module_names import ModuleNames, Vocabulary, name_module, reachable
 from distal.backends.clike.module_text import joined, per_frame_reads, without_frame
 from distal.backends.clike.names import Reserved
 from distal.backends.clike.packing import Packing, pack
 from distal.backends.glsl.isf import IsfHeader
-from distal.backends.glsl.resources import canvas_textures, shadertoy_channels
-from distal.backends.glsl.stages import DIALECTS, Declares, Program, fragment_lines, vertex_lines
+from distal.backends.glsl.stages import Program, fragment_lines, vertex_lines
+from distal.backends.glsl.targets import GlslTarget
 from distal.backends.glsl.uniforms import beyond_room
 from distal.backends.glsl.writer import trust_macro
+from distal.backends.targets import Declares
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import EntryKind, Module, Origin
-from distal.ir.target import LARGEST_TABLE, FramePlace, Target
+from distal.ir.target import FramePlace, Target
 from distal.ir.types import Type
 from distal.ir.walk import expressions_in
 
 _TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
-
-TARGETS: Final = (
-    Target(
-        "glsl-es300",
-        "glsl",
-        FramePlace.VERTEX,
-        rough=frozenset(_TRUST),
-        one_way=True,
-        largest_table=LARGEST_TABLE,
-    ),
-    Target("glsl-330", "glsl", FramePlace.VERTEX, largest_table=LARGEST_TABLE),
-    *(
-        Target(
-            name,
-            "glsl100",
-            FramePlace.PIXEL,
-            unsigned=False,
-            dynamic_loops=False,
-            dynamic_index=False,
-            texel_fetch=False,
-        )
-        for name in ("glsl-es100", "glslcanvas", "isf")
-    ),
-    Target("shadertoy", "glsl", FramePlace.PIXEL),
-)
-
-_HOST_NAMES: Final = {
-    "glsl-es100": GLSL_CANVAS_NAMES,
-    "glslcanvas": GLSL_CANVAS_NAMES,
-    "isf": ISF_NAMES,
-    "shadertoy": SHADERTOY_NAMES,
-}
-_HOST_MACROS: Final = {"glslcanvas": GLSL_CANVAS_MACROS, "shadertoy": SHADERTOY_MACROS}
-_VERSIONS: Final = {
-    "glsl-es300": "300 es",
-    "glsl-330": "330",
-    "glsl-es100": "100",
-    "glslcanvas": "100",
-    "isf": "100",
-    "shadertoy": "300 es",
-}
-_RESOURCE_NAMES: Final = {"glslcanvas": canvas_textures, "shadertoy": shadertoy_channels}
 
 
 def emit(module: Module, target: Target) -> Artifact:
@@ -91,6 +43,7 @@ def emit(module: Module, target: Target) -> Artifact:
     Raises:
         CompileError: The target cannot say what the author wrote.
     """
+    assert isinstance(target, GlslTarget), target
     program = _program(without_frame(module), target)
     module = program.module
     text, places = joined(fragment_lines(program))
@@ -103,30 +56,25 @@ def emit(module: Module, target: Target) -> Artifact:
     return Artifact(text, _interface(program, target), vertex, places, vertex_places)
 
 
-def vocabulary(target: Target) -> Vocabulary:
+def vocabulary(target: GlslTarget) -> Vocabulary:
     """What no name of the author's may be in a text for the target."""
     # A macro takes its word from everything: from locals and fields too.
-    macros = {*_HOST_MACROS.get(target.name, ()), *(_TRUST.values() if target.rough else ())}
-    is_isf = target.name == "isf"
-    prefixes = (*GLSL_PREFIXES, *(ISF_PREFIXES if is_isf else ()))
+    macros = target.host_macros.union(_TRUST.values() if target.rough else ())
     words = GLSL_KEYWORDS | GLSL_METHODS | macros
-    fields = Reserved(words, prefixes, ISF_PARTS if is_isf else ())
-    host = _HOST_NAMES.get(target.name, frozenset())
-    return Vocabulary(fields, fields | GLSL_FUNCTIONS | host | DIALECTS[target.name].names)
+    fields = Reserved(words, (*GLSL_PREFIXES, *target.host_prefixes), target.host_parts)
+    return Vocabulary(fields, fields | GLSL_FUNCTIONS | target.host_names | target.written_names)
 
 
-def _program(module: Module, target: Target) -> Program:
-    dialect = DIALECTS[target.name]
+def _program(module: Module, target: GlslTarget) -> Program:
     fixed = {
-        uniform.name: dialect.texts[uniform.name]
+        uniform.name: target.texts[uniform.name]
         for uniform in module.uniforms
-        if uniform.origin is Origin.FRAME and uniform.name in dialect.texts
+        if uniform.origin is Origin.FRAME and uniform.name in target.texts
     }
     words = vocabulary(target)
     header: tuple[str, ...] = ()
-    assign = _RESOURCE_NAMES.get(target.name)
-    resources = assign(module.resources) if assign is not None else {}
-    if target.name == "isf" and module.kind is EntryKind.IMAGE:
+    resources = target.resource_names(module.resources) if target.resource_names else {}
+    if target.described and module.kind is EntryKind.IMAGE:
         isf = IsfHeader.of(module, words.names)
         fixed |= isf.texts
         words = replace(words, names=words.names | isf.names)
@@ -135,10 +83,10 @@ def _program(module: Module, target: Target) -> Program:
     packing = None
     if target.frame is FramePlace.VERTEX:
         packing = pack(_sent(module))
-    own = dialect.numbers is Declares.TEXT
+    own = target.numbers is Declares.TEXT
     constants = beyond_room(module.uniforms) if own else frozenset()
     vectors = _vectors(names, packing)
-    return Program(module, names, dialect, target.name, fixed, constants, packing, vectors, header)
+    return Program(module, names, target, fixed, constants, packing, vectors, header)
 
 
 def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
@@ -164,7 +112,7 @@ def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
     return [names.namer.name(f"packed_{i}") for i in range(count)]
 
 
-def _interface(program: Program, target: Target) -> dict[str, Any]:
+def _interface(program: Program, target: GlslTarget) -> dict[str, Any]:
     module, names = program.module, program.names
     result = interface(module, target, names)
     if program.constants:
@@ -176,7 +124,7 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
         # The text makes a vector of what the place hands in: u_mouse of vec4(u_mouse, 0.0, 0.0).
         spelled = uniform["uniform"].removeprefix("vec4(").removeprefix("vec3(")
         uniform["uniform"] = spelled.partition(",")[0].partition(" ")[0]
-    result["version"] = _VERSIONS[target.name]
+    result["version"] = target.version
     if target.rough:
         # Built-in: what a host defines that found its driver's own good (in the fragment stage).
         result["trust"] = _trust(module)
@@ -187,7 +135,7 @@ def _interface(program: Program, target: Target) -> dict[str, Any]:
         result["entry"] = names.functions[module.entry]
         result["stages"] = {}
         return result
-    result["entry"] = "mainImage" if target.name == "shadertoy" else "main"
+    result["entry"] = target.entry
     result["stages"] = {"fragment": result["entry"]}
     if program.packing is not None:
         result["stages"]["vertex"] = "main"

@@ -20,13 +20,13 @@ from distal.backends.clike.code import Code
 from distal.backends.clike.keywords import isf_picture_names
 from distal.backends.clike.module_names import ModuleNames
 from distal.backends.clike.names import Namer, Reserved
+from distal.backends.glsl.targets import ISF_MOUSE
 from distal.backends.glsl.writer import Glsl100Writer
 from distal.diagnostics import CompileError
 from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, UniformDeclaration
 from distal.ir.types import Texture, TextureShape
 from distal.version import __version__
 
-ISF_MOUSE: Final = "mouse"
 MOST_LISTED: Final = 64  # a menu of more whole numbers than these is no menu
 _AXES: Final = "xyz"
 

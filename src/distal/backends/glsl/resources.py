@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from distal.backends.clike.module_names import ModuleNames
 from distal.backends.clike.module_text import comment_text
-from distal.diagnostics import CompileError
+from distal.backends.glsl.targets import GlslTarget
 from distal.ir.nodes import ResourceDeclaration
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
 
@@ -23,54 +23,17 @@ _BUFFER_SAMPLERS = {
     Kind.UINT: "highp usampler2D",
     Kind.BOOL: "highp isampler2D",
 }
-SHADERTOY_CHANNELS = 4
 
 
-def shadertoy_channels(resources: tuple[ResourceDeclaration, ...]) -> dict[str, str]:
-    """Resource -> channel.
-
-    Raises:
-        CompileError: There are more than the place has, or a buffer, which it cannot hold.
-    """
-    for resource in resources:
-        if isinstance(resource.type, Buffer):
-            raise CompileError.at(
-                f"Shadertoy has no buffers, and the scene reads '{resource.name}'",
-                None,
-                "a constant tuple of numbers works on every target",
-            )
-    if len(resources) > SHADERTOY_CHANNELS:
-        raise CompileError.at(
-            f"Shadertoy has {SHADERTOY_CHANNELS} textures, and the scene reads {len(resources)}",
-            None,
-        )
-    return {resource.name: f"iChannel{i}" for i, resource in enumerate(resources)}
-
-
-def canvas_textures(resources: tuple[ResourceDeclaration, ...]) -> dict[str, str]:
-    """Resource -> the name that glslCanvas gives the textures of ``data-textures``, in order.
-
-    Raises:
-        CompileError: There is a texture that the place cannot hold.
-    """
-    for resource in resources:
-        if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
-            raise CompileError.at(
-                f"glslCanvas has pictures only, and the scene reads '{resource.name}' "
-                f"({resource.type})",
-                None,
-            )
-    return {resource.name: f"u_tex{i}" for i, resource in enumerate(resources)}
-
-
-def resource_lines(resource: ResourceDeclaration, names: ModuleNames, target: str) -> list[str]:
+def resource_lines(
+    resource: ResourceDeclaration, names: ModuleNames, target: GlslTarget
+) -> list[str]:
     """The declaration of a resource."""
     name = names.resources[resource.name]
     if isinstance(resource.type, Texture):
-        if target in ("shadertoy", "isf"):
+        if not target.declares_textures:
             return [f"// {name}: {comment_text(resource.name)} ({resource.type}, {resource.wrap})"]
-        precision = "highp " if target == "glsl-es300" else ""
-        return [f"uniform {precision}{_SAMPLERS[resource.type.shape]} {name};"]
+        return [f"uniform {target.sampler_precision}{_SAMPLERS[resource.type.shape]} {name};"]
     assert isinstance(resource.type, Buffer)
     kind = kind_of(resource.type.element)
     assert kind is not None

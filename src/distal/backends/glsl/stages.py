@@ -7,10 +7,8 @@ vertex text that computes the per-frame part. How a function looks is said in
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import assert_never
 
 from distal.backends.clike.code import Code, Line
@@ -19,10 +17,12 @@ from distal.backends.clike.functions import place
 from distal.backends.clike.module_names import ModuleNames, reachable, types_in
 from distal.backends.clike.module_text import per_frame_reads, uniform_comment
 from distal.backends.clike.packing import Packing, value_text, vector_texts
-from distal.backends.glsl.isf import ISF_MOUSE, IsfWriter, sampler_lines
+from distal.backends.glsl.isf import IsfWriter, sampler_lines
 from distal.backends.glsl.resources import accessor_lines, resource_lines
+from distal.backends.glsl.targets import GlslTarget
 from distal.backends.glsl.uniforms import constant_line, constant_lines, default_text
 from distal.backends.glsl.writer import Glsl100Writer, GlslWriter
+from distal.backends.targets import Declares
 from distal.ir.nodes import (
     EntryKind,
     Expr,
@@ -37,103 +37,6 @@ from distal.ir.nodes import (
 from distal.ir.types import VEC2, Array, Buffer, Struct
 from distal.ir.walk import expressions_in, nodes_in
 
-
-class Declares(Enum):
-    """Where a text gets a uniform from."""
-
-    TEXT = "text"  # it declares it, and whoever draws sets it
-    PLACE = "place"  # the place has declared it already
-    NOBODY = "nobody"  # nothing there would set it: it is a constant
-
-
-@dataclass(frozen=True, slots=True)
-class Dialect:
-    """One version of GLSL in one place.
-
-    Attributes:
-        head: The lines before everything else.
-        output: What the entry assigns the color to.
-        coord: The text of the pixel's coordinate.
-        main: The line that opens the entry.
-        frame: Who declares what every picture has: time, resolution …
-        parameters: Who declares the author's parameters.
-        numbers: Who declares a scene's numbers.
-        initialised: Whether a uniform's declaration may give its default.
-        texts: Frame values that the place provides under its own names.
-    """
-
-    head: tuple[str, ...]
-    output: str
-    coord: str
-    main: str
-    frame: Declares
-    parameters: Declares
-    numbers: Declares
-    initialised: bool
-    texts: dict[str, str]
-
-    @property
-    def names(self) -> frozenset[str]:
-        """What stands in its texts by name: no name of the author's is one of them."""
-        texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
-        return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
-
-
-_PRECISION = ("precision highp float;", "precision highp int;")
-
-_TEXT, _PLACE, _NOBODY = Declares.TEXT, Declares.PLACE, Declares.NOBODY
-_HEAD_100 = ("#ifdef GL_ES", *_PRECISION, "#endif")
-_CANVAS = {
-    "resolution": "u_resolution",
-    "time": "u_time",
-    # The place tells where the mouse is, and nothing of its buttons.
-    "mouse": "vec4(u_mouse, 0.0, 0.0)",
-    "index": "u_frame",
-}
-_TOY = {
-    "resolution": "iResolution.xy",
-    "time": "iTime",
-    "mouse": "iMouse",
-    "index": "iFrame",
-}
-_ISF = {
-    "resolution": "RENDERSIZE",
-    "time": "TIME",
-    # The place has no mouse: an input of ours says where it would be, in shares of the picture.
-    "mouse": f"vec4({ISF_MOUSE} * RENDERSIZE, 0.0, 0.0)",
-    "index": "FRAMEINDEX",
-}
-_FRAGMENT = ("fragment_color", "gl_FragCoord.xy", "void main()")
-_OLD = ("gl_FragColor", "gl_FragCoord.xy", "void main()")
-_OWN = (_TEXT, _TEXT, _TEXT)
-
-DIALECTS = {
-    "glsl-es300": Dialect(("#version 300 es", *_PRECISION), *_FRAGMENT, *_OWN, False, {}),
-    "glsl-330": Dialect(("#version 330",), *_FRAGMENT, *_OWN, True, {}),
-    "glsl-es100": Dialect(_HEAD_100, *_OLD, *_OWN, False, _CANVAS),
-    "glslcanvas": Dialect(_HEAD_100, *_OLD, _TEXT, _NOBODY, _NOBODY, False, _CANVAS),
-    "isf": Dialect(
-        _HEAD_100,
-        "gl_FragColor",
-        # Not gl_FragCoord: a host may draw into a part of its target.
-        "isf_FragNormCoord * RENDERSIZE",
-        "void main()",
-        *(_PLACE, _PLACE, _NOBODY),
-        False,
-        _ISF,
-    ),
-    "shadertoy": Dialect(
-        (),
-        "fragColor",
-        "fragCoord",
-        "void mainImage(out vec4 fragColor, in vec2 fragCoord)",
-        *(_PLACE, _NOBODY, _NOBODY),
-        False,
-        _TOY,
-    ),
-}
-OLD_TARGETS = frozenset({"glsl-es100", "glslcanvas", "isf"})  # GLSL ES 1.00
-
 _ES100_TYPES = {"resolution": "vec2 u_resolution", "time": "float u_time", "mouse": "vec2 u_mouse"}
 
 
@@ -143,8 +46,7 @@ class Program:
 
     module: Module
     names: ModuleNames
-    dialect: Dialect
-    target: str
+    target: GlslTarget
     fixed: dict[str, str]  # uniforms that the place provides
     constants: frozenset[str]  # numbers that there is no room for among the uniforms
     packing: Packing | None
@@ -153,8 +55,8 @@ class Program:
 
     def writer(self) -> GlslWriter:
         """A writer for one stage."""
-        kind = Glsl100Writer if self.target in OLD_TARGETS else GlslWriter
-        kind = IsfWriter if self.target == "isf" else kind
+        kind = Glsl100Writer if self.target.family == "glsl100" else GlslWriter
+        kind = IsfWriter if self.target.described else kind
         return kind(self.names, Expense(self.module), self.fixed)
 
 
@@ -175,10 +77,10 @@ def fragment_lines(program: Program) -> list[Line]:
         _write_main(program, writer, entry, in_functions)
     body = writer.lines
     used = (*functions, entry)
-    lines = [Line(text) for text in program.dialect.head]
+    lines = [Line(text) for text in program.target.head]
     lines += _uniform_lines(program, used, frame)
     lines += _frame_lines(program, in_functions)
-    if is_image and program.dialect.output == "fragment_color":
+    if is_image and program.target.output == "fragment_color":
         lines += [Line(""), Line("out vec4 fragment_color;")]
     lines += _type_lines(program, writer, used)
     lines += _table_lines(writer)
@@ -214,7 +116,7 @@ def vertex_lines(program: Program) -> list[Line]:
             writer.line(f"{vector} = {text};")
     writer.depth = 0
     writer.line("}")
-    lines = [Line(text) for text in program.dialect.head]
+    lines = [Line(text) for text in program.target.head]
     lines += _uniform_lines(program, functions, frame)
     if program.packing is not None and program.vectors:
         lines += [Line(""), Line("// The per-frame part, handed to the fragment stage.")]
@@ -238,15 +140,15 @@ def _write_main(
     writer.span = entry.span
     if entry.span is not None:
         writer.line(f"// {place(entry.span)}")
-    dialect = program.dialect
-    writer.line(f"{dialect.main} {{")
+    target = program.target
+    writer.line(f"{target.main} {{")
     writer.name_locals(entry, program.names.local_namer())
     writer.depth = 1
     coord = entry.params[0]
-    if dialect.coord.isidentifier():
-        writer.locals[coord.name] = dialect.coord
+    if target.coord.isidentifier():
+        writer.locals[coord.name] = target.coord
     elif any(getattr(e, "name", None) == coord.name for e in expressions_in(entry.body)):
-        writer.line(f"vec2 {writer.locals[coord.name]} = {dialect.coord};")
+        writer.line(f"vec2 {writer.locals[coord.name]} = {target.coord};")
     if program.packing is None:
         if program.module.frame:
             writer.line(
@@ -255,7 +157,7 @@ def _write_main(
         _write_frame(program, writer, in_functions)
     else:
         _unpack(program, writer, entry, in_functions)
-    writer.output = dialect.output
+    writer.output = target.output
     writer.block(entry.body, tail=True)
     writer.output = None
     writer.depth = 0
@@ -310,7 +212,7 @@ def _uniform_lines(
     for resource in program.module.resources:
         if resource.name in resources:
             lines += resource_lines(resource, program.names, program.target)
-        if program.target == "isf" and resource.name in resources:
+        if program.target.described and resource.name in resources:
             accessors += ["", *sampler_lines(resource, program.names)]
         elif resource.name in fetched_names:
             accessors += ["", *accessor_lines(resource, program.names)]
@@ -319,29 +221,29 @@ def _uniform_lines(
 
 def _uniform_line(program: Program, uniform: UniformDeclaration) -> list[str]:
     spelled = program.names.uniforms[uniform.name]
-    dialect = program.dialect
+    target = program.target
     comment = uniform_comment(uniform)
-    declares = _declares(dialect, uniform)
+    declares = _declares(target, uniform)
     if declares is Declares.PLACE:
         return []
     if declares is Declares.NOBODY:
         return [constant_line(uniform, spelled)]
-    if uniform.origin is Origin.FRAME and uniform.name in dialect.texts:
+    if uniform.origin is Origin.FRAME and uniform.name in target.texts:
         return [f"uniform {_ES100_TYPES.get(uniform.name, 'int u_frame')};"]
-    if dialect.initialised and uniform.origin is not Origin.FRAME:
+    if target.initialised and uniform.origin is not Origin.FRAME:
         return [f"uniform {uniform.type} {spelled} = {default_text(uniform)};{comment}"]
     return [f"uniform {uniform.type} {spelled};{comment}"]
 
 
-def _declares(dialect: Dialect, uniform: UniformDeclaration) -> Declares:
+def _declares(target: GlslTarget, uniform: UniformDeclaration) -> Declares:
     match uniform.origin:
         case Origin.FRAME:
-            known = dialect.frame is Declares.TEXT or uniform.name in dialect.texts
-            return dialect.frame if known else Declares.NOBODY
+            known = target.frame_uniforms is Declares.TEXT or uniform.name in target.texts
+            return target.frame_uniforms if known else Declares.NOBODY
         case Origin.PARAMETER:
-            return dialect.parameters
+            return target.parameters
         case Origin.NUMBER:
-            return dialect.numbers
+            return target.numbers
         case _:
             assert_never(uniform.origin)
 

@@ -24,7 +24,6 @@ TARGET = Target(
     predicated=True,
     outlined=True,
 )
-TARGETS: tuple[Target, ...] = (TARGET,)
 
 
 def emit_for(module: Module, lanes: Lanes) -> Artifact:
@@ -47,4 +46,4 @@ def emit(module: Module, target: Target) -> Artifact:
     return emit_for(module, Lanes())
 
 
-__all__ = ["TARGET", "TARGETS", "Lanes", "emit", "emit_for"]
+__all__ = ["TARGET", "Lanes", "emit", "emit_for"]

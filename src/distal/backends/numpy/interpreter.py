@@ -40,15 +40,13 @@ from distal.ir.nodes import (
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import Kind, Struct
 
-TARGETS: Final = (
-    Target(
-        "numpy",
-        "numpy",
-        FramePlace.NONE,
-        samples=False,
-        integer_floor=True,
-        saturating_cast=True,
-    ),
+TARGET: Final = Target(
+    "numpy",
+    "numpy",
+    FramePlace.NONE,
+    samples=False,
+    integer_floor=True,
+    saturating_cast=True,
 )
 
 # A picture is made in pieces of so many lanes, so that memory stays bounded and progress is seen.

@@ -20,14 +20,10 @@ from distal.backends.wgsl.layout import lay_out
 from distal.backends.wgsl.names import OWN, VOCABULARY
 from distal.backends.wgsl.resources import texture_binding
 from distal.backends.wgsl.stages import Program, program_lines
+from distal.backends.wgsl.targets import WgslTarget
 from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
-from distal.ir.target import LARGEST_TABLE, FramePlace, Target
+from distal.ir.target import Target
 from distal.ir.types import VEC2, Kind, Vector
-
-TARGETS: Final = (
-    Target("wgsl", "wgsl", FramePlace.HOST, largest_table=LARGEST_TABLE),
-    Target("wgsl-compute", "wgsl", FramePlace.HOST, largest_table=LARGEST_TABLE),
-)
 
 _RESOLUTION: Final = "resolution"
 _TILE: Final = "tile"
@@ -35,6 +31,7 @@ _TILE: Final = "tile"
 
 def emit(module: Module, target: Target) -> Artifact:
     """Write the whole program."""
+    assert isinstance(target, WgslTarget), target
     program = _program(_with_resolution(without_frame(module)), target)
     text, places = joined(program_lines(program))
     return Artifact(text, _interface(program, target), None, places)
@@ -52,7 +49,7 @@ def _with_resolution(module: Module) -> Module:
     return replace(module, uniforms=(size, *module.uniforms))
 
 
-def _program(module: Module, target: Target) -> Program:
+def _program(module: Module, target: WgslTarget) -> Program:
     names = name_module(module, VOCABULARY, has_members=True)
     # A value that only later values are made of stays a local of frame_main.
     read = per_frame_reads(module.functions)
@@ -62,8 +59,7 @@ def _program(module: Module, target: Target) -> Program:
     tile = _tile_name(module, names)
     members = [(u.name, u.type) for u in module.uniforms]
     uniforms = lay_out((*members, *([(tile, Vector(Kind.UINT, 4))] if tile else [])))
-    is_compute = target.name == "wgsl-compute"
-    return Program(module, names, resolution, tile, uniforms, frame, is_compute)
+    return Program(module, names, resolution, tile, uniforms, frame, target.compute)
 
 
 def _tile_name(module: Module, names: ModuleNames) -> str:

@@ -1,0 +1,252 @@
+"""The GLSL targets, one declaration each: WebGL 2, desktop 3.30, WebGL 1, and three hosts.
+
+Input: nothing. Output: ``TARGETS``. Imports no writer: the declarations are read whenever
+``distal`` starts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Final, TypeAlias
+
+from distal.backends.clike.keywords import (
+    GLSL_CANVAS_MACROS,
+    GLSL_CANVAS_NAMES,
+    ISF_NAMES,
+    ISF_PARTS,
+    ISF_PREFIXES,
+    SHADERTOY_MACROS,
+    SHADERTOY_NAMES,
+)
+from distal.backends.targets import Declares, TextTarget
+from distal.diagnostics import CompileError
+from distal.ir.intrinsics import INTRINSICS
+from distal.ir.nodes import ResourceDeclaration
+from distal.ir.target import LARGEST_TABLE, FramePlace
+from distal.ir.types import Buffer, Texture, TextureShape
+
+ISF_MOUSE: Final = "mouse"
+SHADERTOY_CHANNELS: Final = 4
+
+Resources: TypeAlias = tuple[ResourceDeclaration, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GlslTarget(TextTarget):
+    """One version of GLSL in one place.
+
+    Attributes:
+        version: The version of the language, without "#version".
+        head: The lines before everything else.
+        output: What the entry assigns the color to.
+        coord: The text of the pixel's coordinate.
+        main: The line that opens the entry.
+        frame_uniforms: Who declares what every picture has: time, resolution ...
+        numbers: Who declares a scene's numbers.
+        initialised: Whether a uniform's declaration may give its default.
+        texts: Frame values that the place provides under its own names.
+        host_names: Names that the host declares before the text.
+        host_macros: What the host replaces as a whole word.
+        host_prefixes: What no name may begin with there.
+        host_parts: What the host replaces also inside longer names.
+        resource_names: The names that the host gives to textures; None: the author's.
+        declares_textures: Whether the text declares its textures.
+        sampler_precision: What stands before a sampler's type.
+        described: Whether the text begins with ISF's description of its inputs as JSON, and
+            reads pictures by ISF's functions (``glsl.isf``).
+    """
+
+    backend: ClassVar[str] = "distal.backends.glsl.backend"
+    version: str
+    head: tuple[str, ...]
+    output: str
+    coord: str = "gl_FragCoord.xy"
+    main: str = "void main()"
+    frame_uniforms: Declares = Declares.TEXT
+    numbers: Declares = Declares.TEXT
+    initialised: bool = False
+    texts: Mapping[str, str] = field(default_factory=dict)
+    host_names: frozenset[str] = frozenset()
+    host_macros: frozenset[str] = frozenset()
+    host_prefixes: tuple[str, ...] = ()
+    host_parts: tuple[str, ...] = ()
+    resource_names: Callable[[Resources], dict[str, str]] | None = None
+    declares_textures: bool = True
+    sampler_precision: str = ""
+    described: bool = False
+
+    @property
+    def entry(self) -> str:
+        """The name of the entry function."""
+        return self.main.partition("(")[0].removeprefix("void ")
+
+    @property
+    def written_names(self) -> frozenset[str]:
+        """The names that stand in its texts: no name of the author's is one of them."""
+        texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
+        return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
+
+
+def shadertoy_channels(resources: Resources) -> dict[str, str]:
+    """Resource -> channel.
+
+    Raises:
+        CompileError: There are more than the place has, or a buffer, which it cannot hold.
+    """
+    for resource in resources:
+        if isinstance(resource.type, Buffer):
+            raise CompileError.at(
+                f"Shadertoy has no buffers, and the scene reads '{resource.name}'",
+                None,
+                "a constant tuple of numbers works on every target",
+            )
+    if len(resources) > SHADERTOY_CHANNELS:
+        raise CompileError.at(
+            f"Shadertoy has {SHADERTOY_CHANNELS} textures, and the scene reads {len(resources)}",
+            None,
+        )
+    return {resource.name: f"iChannel{i}" for i, resource in enumerate(resources)}
+
+
+def canvas_textures(resources: Resources) -> dict[str, str]:
+    """Resource -> the name that glslCanvas gives the textures of ``data-textures``, in order.
+
+    Raises:
+        CompileError: There is a texture that the place cannot hold.
+    """
+    for resource in resources:
+        if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
+            raise CompileError.at(
+                f"glslCanvas has pictures only, and the scene reads '{resource.name}' "
+                f"({resource.type})",
+                None,
+            )
+    return {resource.name: f"u_tex{i}" for i, resource in enumerate(resources)}
+
+
+_PRECISION = ("precision highp float;", "precision highp int;")
+_VERTEX_BESIDE = (
+    "The fragment stage; the file .vert beside it is its vertex stage. Draw 3 vertices as "
+    "triangles, without buffers."
+)
+
+_SHADERTOY = GlslTarget(
+    "shadertoy",
+    "glsl",
+    FramePlace.PIXEL,
+    place="Shadertoy",
+    use="Paste all of this into the Image tab of a new shader on shadertoy.com.",
+    suffix=".glsl",
+    version="300 es",
+    head=(),
+    output="fragColor",
+    coord="fragCoord",
+    main="void mainImage(out vec4 fragColor, in vec2 fragCoord)",
+    frame_uniforms=Declares.PLACE,
+    parameters=Declares.NOBODY,
+    numbers=Declares.NOBODY,
+    texts={
+        "resolution": "iResolution.xy",
+        "time": "iTime",
+        "mouse": "iMouse",
+        "index": "iFrame",
+    },
+    host_names=SHADERTOY_NAMES,
+    host_macros=SHADERTOY_MACROS,
+    resource_names=shadertoy_channels,
+    declares_textures=False,
+)
+
+_WEBGL_1 = GlslTarget(
+    "glsl-es100",
+    "glsl100",
+    FramePlace.PIXEL,
+    unsigned=False,
+    dynamic_loops=False,
+    dynamic_index=False,
+    texel_fetch=False,
+    place="WebGL 1",
+    use="The fragment stage; draw anything that covers the picture. Set every uniform.",
+    version="100",
+    head=("#ifdef GL_ES", *_PRECISION, "#endif"),
+    output="gl_FragColor",
+    texts={
+        "resolution": "u_resolution",
+        "time": "u_time",
+        # The place says where the mouse is, and nothing of its buttons.
+        "mouse": "vec4(u_mouse, 0.0, 0.0)",
+        "index": "u_frame",
+    },
+    host_names=GLSL_CANVAS_NAMES,
+)
+
+_GLSL_CANVAS = replace(
+    _WEBGL_1,
+    name="glslcanvas",
+    place="glslCanvas",
+    use="Paste all of this into editor.thebookofshaders.com, or give the file to a canvas of class "
+    '"glslCanvas" as data-fragment-url.',
+    parameters=Declares.NOBODY,
+    numbers=Declares.NOBODY,
+    textures_by="data-textures",
+    host_macros=GLSL_CANVAS_MACROS,
+    resource_names=canvas_textures,
+)
+
+_ISF = replace(
+    _WEBGL_1,
+    name="isf",
+    place="ISF 2, the Interactive Shader Format",
+    use="Put this file into your host's folder for ISF generators; its controls appear there.",
+    suffix=".fs",
+    # Not gl_FragCoord: a host may draw into a part of its target.
+    coord="isf_FragNormCoord * RENDERSIZE",
+    frame_uniforms=Declares.PLACE,
+    parameters=Declares.PLACE,
+    numbers=Declares.NOBODY,
+    texts={
+        "resolution": "RENDERSIZE",
+        "time": "TIME",
+        # The place has no mouse: an input of ours says where it would be, in shares of the picture.
+        "mouse": f"vec4({ISF_MOUSE} * RENDERSIZE, 0.0, 0.0)",
+        "index": "FRAMEINDEX",
+    },
+    host_names=ISF_NAMES,
+    host_prefixes=ISF_PREFIXES,
+    host_parts=ISF_PARTS,
+    declares_textures=False,
+    described=True,
+)
+
+_WEBGL_2 = GlslTarget(
+    "glsl-es300",
+    "glsl",
+    FramePlace.VERTEX,
+    rough=frozenset(i.name for i in INTRINSICS.values() if i.careful),
+    one_way=True,
+    largest_table=LARGEST_TABLE,
+    place="WebGL 2",
+    use=_VERTEX_BESIDE,
+    suffix=".frag",
+    version="300 es",
+    head=("#version 300 es", *_PRECISION),
+    output="fragment_color",
+    sampler_precision="highp ",
+)
+
+_OPENGL = GlslTarget(
+    "glsl-330",
+    "glsl",
+    FramePlace.VERTEX,
+    largest_table=LARGEST_TABLE,
+    place="OpenGL 3.3",
+    use=_VERTEX_BESIDE,
+    version="330",
+    head=("#version 330",),
+    output="fragment_color",
+    initialised=True,
+)
+
+TARGETS: Final = (_SHADERTOY, _GLSL_CANVAS, _ISF, _WEBGL_2, _OPENGL, _WEBGL_1)
