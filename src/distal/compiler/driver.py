@@ -18,7 +18,7 @@ from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.printer import print_module
 from distal.ir.target import Target
-from distal.ir.verify import verify
+from distal.ir.verify import Verifier
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.passes.call_order import in_call_order
@@ -55,12 +55,13 @@ def _run_passes(module: Module, target: Target, precision: int, after: str | Non
     context = Context(target, PreludeLibrary(), precision)
     # The passes rely on callees before callers; each keeps it, which ``verify`` checks.
     module = replace(module, functions=in_call_order(module.functions, module.entry))
-    if VERIFY:
-        verify(module)
+    verifier = Verifier() if VERIFY else None
+    if verifier is not None:
+        verifier.verify(module)
     for name, run in PIPELINE:
         module = run(module, context)
-        if VERIFY:
-            verify(module, name)
+        if verifier is not None:
+            verifier.verify(module, name)
         if name == after:
             break
     return module

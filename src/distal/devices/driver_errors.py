@@ -19,7 +19,7 @@ from distal.ir.build import builtin, compare, number, read, select
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Builtin, CompareOp, EntryKind, Expr, Function, Module, Param, Return
 from distal.ir.types import FLOAT
-from distal.ir.walk import expressions_in, nodes_in
+from distal.ir.walk import expressions_in
 
 NAMES: Final = tuple(row.name for row in INTRINSICS.values() if row.careful)
 COUNT: Final = 256  # arguments: exact in a shader, and all around the turn
@@ -34,10 +34,9 @@ Measured = Callable[[Module, list[NDArray[np.float32]]], Any]
 def uses_rough(module: Module) -> bool:
     """True when a module calls a built-in that drivers may compute roughly."""
     return any(
-        isinstance(node, Builtin) and node.name in NAMES
+        isinstance(e, Builtin) and e.name in NAMES
         for function in module.functions
         for e in expressions_in(function.body)
-        for node in nodes_in(e)
     )
 
 

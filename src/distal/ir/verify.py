@@ -1,13 +1,14 @@
 """The rules every module must obey; run after each pass under tests and with ``--verify``.
 
-A module flows in, nothing flows out. A failure is our mistake and never the author's, so it is an
-AssertionError that shows the node, and not a CompileError. What each node demands of its operands
-stands in ``distal.ir.verify_types``; here are names, scopes, order and paths.
+Input: a module. Output: nothing, or an AssertionError that shows the node: a failure is our mistake
+and never the author's, so it is no CompileError. What each node demands of its operands is in
+``distal.ir.verify_types``; here are names, scopes, order and paths.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import assert_never
 
 from distal.ir import nodes
@@ -53,7 +54,7 @@ from distal.ir.types import (
     is_static,
 )
 from distal.ir.verify_types import check_types
-from distal.ir.walk import children, expressions, expressions_in, nodes_in, root_of
+from distal.ir.walk import children, expressions, nodes_in, per_frame_reads, root_of
 
 DEEPEST = 200
 
@@ -74,26 +75,113 @@ _PER_FRAME = frozenset(_STAGES[_STAGES.index("frequency") :])
 def verify(module: Module, stage: str | None = None) -> None:
     """Raise AssertionError when the module breaks a rule.
 
-    ``stage`` is the name of the pass that made it: what that pass and those before it promise is
+    ``stage`` is the name of the pass that made it: what that pass and those before it guarantee is
     checked too. None checks what holds of every module.
     """
-    assert stage is None or stage in _STAGES, f"no pass {stage}"
-    functions: dict[str, Function] = {}
-    checker = _Checker(module, stage, functions)
-    checker.frame_part()
-    for function in module.functions:
-        assert function.name not in functions, f"function {function.name} defined twice"
-        checker.function(function)
-        functions[function.name] = function
-    assert module.entry in functions, f"no entry function {module.entry}"
-    if stage in _PER_FRAME:
-        checker.frame_is_read()
-    _unique("uniform", [u.name for u in module.uniforms])
-    _unique("resource", [r.name for r in module.resources])
-    entry = functions[module.entry]
-    if module.kind is EntryKind.IMAGE and stage in _NO_FRAME:
-        assert [p.type for p in entry.params] == [VEC2], f"{entry.name} takes not just coord"
-        assert entry.result is VEC4, f"{entry.name} returns {entry.result}"
+    Verifier().verify(module, stage)
+
+
+class Verifier:
+    """Checks the outputs of one run of the passes; what a pass left alone is checked once.
+
+    A function is not checked again when it is the same object, and everything that its check
+    depends on is equal: the rules of the stage, the types of uniforms, resources and per-frame
+    values, and the signatures of the functions that it mentions. Nodes are interned, so the types
+    of a node's operands are checked once for all functions and passes.
+    """
+
+    def __init__(self) -> None:
+        self._context: _Context | None = None
+        self._depths: dict[Expr, int] = {}
+        self._checked: set[Expr] = set()
+        self._records: dict[int, _Record] = {}  # by the function's id; a record keeps it alive
+
+    def verify(self, module: Module, stage: str | None = None) -> None:
+        """Raise AssertionError when the module breaks a rule; see ``verify``."""
+        assert stage is None or stage in _STAGES, f"no pass {stage}"
+        context = _Context.of(module, stage)
+        if context != self._context:
+            self._context, self._checked, self._records = context, set(), {}
+        functions: dict[str, Function] = {}
+        # Functions of the frame part stand anywhere in the module.
+        every = {f.name: f for f in module.functions}
+        _Checker(context, every, self._depths, set()).frame_part(module)
+        frame_reads = per_frame_reads(*(value for _, value in module.frame))
+        for function in module.functions:
+            assert function.name not in functions, f"function {function.name} defined twice"
+            record = self._records.get(id(function))
+            if record is None or not record.holds(functions):
+                checker = _Checker(context, functions, self._depths, self._checked)
+                checker.function(function)
+                record = _Record(function, checker.mentioned, checker.frame_reads)
+                self._records[id(function)] = record
+            frame_reads |= record.frame_reads
+            functions[function.name] = function
+        assert module.entry in functions, f"no entry function {module.entry}"
+        if stage in _PER_FRAME:
+            # A backend would declare and compute what nobody reads.
+            unread = {name for name, _ in module.frame} - frame_reads
+            assert not unread, f"nothing reads the per-frame values {sorted(unread)}"
+        _unique("uniform", [u.name for u in module.uniforms])
+        _unique("resource", [r.name for r in module.resources])
+        entry = functions[module.entry]
+        if module.kind is EntryKind.IMAGE and stage in _NO_FRAME:
+            assert [p.type for p in entry.params] == [VEC2], f"{entry.name} takes not just coord"
+            assert entry.result is VEC4, f"{entry.name} returns {entry.result}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Context:
+    """What the check of a function depends on besides the function and those that it calls."""
+
+    no_frame: bool
+    no_function_values: bool
+    no_static_parameters: bool
+    no_gradient: bool
+    no_per_frame: bool
+    indices_in_range: bool
+    uniforms: dict[str, Type]
+    resources: dict[str, Type]
+    frame: dict[str, Type]
+
+    @classmethod
+    def of(cls, module: Module, stage: str | None) -> _Context:
+        """The rules that hold after a pass, and what the module declares."""
+        return cls(
+            stage in _NO_FRAME,
+            stage in _NO_FUNCTION_VALUES,
+            stage in _NO_STATIC_PARAMETERS,
+            stage in _NO_GRADIENT,
+            stage is not None and stage not in _PER_FRAME,
+            stage in _INDICES_IN_RANGE,
+            {u.name: u.type for u in module.uniforms},
+            {r.name: r.type for r in module.resources},
+            {name: value.type for name, value in module.frame},
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    """A function that was checked.
+
+    Attributes:
+        function: The function.
+        mentioned: The functions that it calls or refers to, as they were.
+        frame_reads: The per-frame values that it reads.
+    """
+
+    function: Function
+    mentioned: dict[str, Function]
+    frame_reads: set[str]
+
+    def holds(self, functions: Mapping[str, Function]) -> bool:
+        """Whether the functions it mentions still have the same signatures."""
+        return all(
+            (found := functions.get(name)) is not None
+            and found.result is before.result
+            and [p.type for p in found.params] == [p.type for p in before.params]
+            for name, before in self.mentioned.items()
+        )
 
 
 def _unique(what: str, names: list[str]) -> None:
@@ -101,37 +189,39 @@ def _unique(what: str, names: list[str]) -> None:
 
 
 class _Checker:
-    """What is known of the module while its functions are gone through."""
+    """The check of one function, or of the per-frame part."""
 
     def __init__(
-        self, module: Module, stage: str | None, functions: Mapping[str, Function]
+        self,
+        context: _Context,
+        functions: Mapping[str, Function],
+        depths: dict[Expr, int],
+        checked: set[Expr],
     ) -> None:
-        self._module = module
-        self._stage = stage
-        self._functions = functions  # those before the one being checked
-        self._uniforms = {u.name: u.type for u in module.uniforms}
-        self._resources = {r.name: r.type for r in module.resources}
-        self._frame: dict[str, Type] = {}
-        self._depths: dict[Expr, int] = {}
-        self._checked: set[Expr] = set()
+        """Prepare the check.
 
-    def frame_part(self) -> None:
-        for name, value in self._module.frame:
-            assert name not in self._frame, f"per-frame value {name} computed twice"
-            # Functions of the frame part stand anywhere in the module.
-            every = {f.name: f for f in self._module.functions}
-            checker = _Checker(self._module, self._stage, every)
-            checker._frame = self._frame
-            checker.expression(value, {}, f"per-frame value {name}")
-            self._frame[name] = value.type
+        Args:
+            context: What it depends on.
+            functions: Those before the one being checked.
+            depths: The depths of expressions whose types were checked; grows.
+            checked: The expressions that were checked in this context, calls left out; grows.
+        """
+        self._context = context
+        self._functions = functions
+        self._depths = depths
+        self._checked = checked
+        self._frame: Mapping[str, Type] = context.frame
+        self.mentioned: dict[str, Function] = {}
+        self.frame_reads: set[str] = set()
 
-    def frame_is_read(self) -> None:
-        """A backend would declare and compute what nobody reads."""
-        roots = [value for _, value in self._module.frame]
-        for function in self._module.functions:
-            roots += expressions_in(function.body)
-        unread = self._frame.keys() - {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
-        assert not unread, f"nothing reads the per-frame values {sorted(unread)}"
+    def frame_part(self, module: Module) -> None:
+        """Check that each per-frame value reads earlier ones only."""
+        before: dict[str, Type] = {}
+        self._frame = before
+        for name, value in module.frame:
+            assert name not in before, f"per-frame value {name} computed twice"
+            self.expression(value, {}, f"per-frame value {name}")
+            before[name] = value.type
 
     def function(self, function: Function) -> None:
         where = function.name
@@ -147,9 +237,9 @@ class _Checker:
         assert _ends(function.body), f"{where}: a path ends without return"
 
     def _check_boundary_type(self, type: Type, where: str) -> None:
-        if self._stage in _NO_FRAME:
+        if self._context.no_frame:
             assert type is not FRAME, f"{where}: Frame after the entry pass"
-        if self._stage in _NO_STATIC_PARAMETERS:
+        if self._context.no_static_parameters:
             assert not is_static(type), f"{where}: a parameter of type {type} after specialise"
 
     def expression(self, root: Expr, scope: Mapping[str, Type], where: str) -> None:
@@ -158,38 +248,42 @@ class _Checker:
             if isinstance(e, Read):
                 found = scope.get(e.name)
                 assert found is e.type, f"{where}: {e.name} is {found}, read as {e.type}"
+            if isinstance(e, PerFrame):
+                self.frame_reads.add(e.name)
             if e in self._checked:
                 continue
-            self._checked.add(e)
             try:
-                check_types(e)
+                if e not in self._depths:
+                    check_types(e)
+                    depth = 1 + max((self._depths[c] for c in children(e)), default=0)
+                    assert depth <= DEEPEST, f"deeper than {DEEPEST}"
+                    self._depths[e] = depth
                 self._references(e)
                 self._stage_rules(e)
-                depth = 1 + max((self._depths[c] for c in children(e)), default=0)
-                assert depth <= DEEPEST, f"deeper than {DEEPEST}"
             except AssertionError as broken:
                 text = print_expression(e)
                 raise AssertionError(f"{where}: {broken}: {e.type}\n{text}") from broken
-            self._depths[e] = depth
+            if not isinstance(e, Call | FunctionRef):
+                self._checked.add(e)
 
     def _references(self, e: Expr) -> None:
         """Names that lead out of the function."""
         match e:
-            case Uniform(nodes.FRAME_TIME, type) if self._stage not in _NO_FRAME:
+            case Uniform(nodes.FRAME_TIME, type) if not self._context.no_frame:
                 assert type is FLOAT, "the time is a float"
             case Uniform(name, type):
-                assert self._uniforms.get(name) is type, "no such uniform"
+                assert self._context.uniforms.get(name) is type, "no such uniform"
             case PerFrame(name, type):
                 assert self._frame.get(name) is type, "no such per-frame value"
             case ResourceNode(name, type):
-                assert self._resources.get(name) is type, "no such resource"
+                assert self._context.resources.get(name) is type, "no such resource"
             case Call(name, args, type):
-                called = self._functions.get(name)
+                called = self._mentioned(name)
                 assert called is not None, f"{name} does not stand before its caller"
                 _match([p.type for p in called.params], args, name)
                 assert called.result is type, f"{name} returns {called.result}"
             case FunctionRef(name, captures, type):
-                called = self._functions.get(name)
+                called = self._mentioned(name)
                 assert called is not None, f"{name} does not stand before its user"
                 assert isinstance(type, FunctionType), "not of a function type"
                 types = [p.type for p in called.params]
@@ -200,21 +294,27 @@ class _Checker:
             case _:
                 pass
 
+    def _mentioned(self, name: str) -> Function | None:
+        found = self._functions.get(name)
+        if found is not None:
+            self.mentioned[name] = found
+        return found
+
     def _stage_rules(self, e: Expr) -> None:
-        if self._stage in _NO_FRAME:
+        if self._context.no_frame:
             assert e.type is not FRAME, "Frame after the entry pass"
-        if self._stage in _NO_FUNCTION_VALUES:
+        if self._context.no_function_values:
             assert not isinstance(e, Apply), "Apply after specialise"
             for child in children(e):
                 bound = isinstance(child, FunctionRef) and isinstance(e, Gradient)
                 assert bound or not isinstance(child.type, FunctionType), "a function value"
-        if self._stage in _NO_GRADIENT:
+        if self._context.no_gradient:
             assert not isinstance(e, Gradient | FunctionRef), "Gradient after its pass"
-        if self._stage is not None and self._stage not in _PER_FRAME:
+        if self._context.no_per_frame:
             assert not isinstance(e, PerFrame), "PerFrame before the frequency pass"
-        if self._stage in _NO_STATIC_PARAMETERS and isinstance(e, Read):
+        if self._context.no_static_parameters and isinstance(e, Read):
             assert not is_static(e.type), f"a {e.type} parameter after specialise"
-        if self._stage in _INDICES_IN_RANGE:
+        if self._context.indices_in_range:
             _index_in_range(e)
 
 

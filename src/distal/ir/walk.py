@@ -6,7 +6,7 @@ treat most nodes alike stand on them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Any, Final, assert_never, get_args
 
 from distal.ir.nodes import (
@@ -25,6 +25,7 @@ from distal.ir.nodes import (
     Expr,
     Field,
     For,
+    Function,
     FunctionRef,
     Gradient,
     If,
@@ -229,6 +230,29 @@ def expressions_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
             if e not in seen:
                 seen.add(e)
                 yield e
+
+
+def is_unchanging(e: Expr, variables: Collection[str]) -> bool:
+    """True for a leaf that means the same everywhere in a function.
+
+    ``variables`` are the locals that an Assign may change.
+    """
+    if isinstance(e, Read):
+        return e.name not in variables
+    return isinstance(e, Const | Uniform | PerFrame | Resource)
+
+
+def per_frame_reads(*roots: Expr) -> set[str]:
+    """The names of the per-frame values that expressions read."""
+    return {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
+
+
+def per_frame_reads_in(functions: Iterable[Function]) -> set[str]:
+    """The names of the per-frame values that functions read themselves."""
+    found = set()
+    for function in functions:
+        found |= {e.name for e in expressions_in(function.body) if isinstance(e, PerFrame)}
+    return found
 
 
 def names_read(body: tuple[Stmt, ...]) -> set[str]:

@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from distal.ir.nodes import Call, Expr, Function, FunctionRef, Module
-from distal.ir.walk import expressions_in, nodes_in
-from distal.passes.per_frame.values import reads
+from distal.ir.walk import expressions_in, nodes_in, per_frame_reads, per_frame_reads_in
 
 
 def called_in(*roots: Expr) -> set[str]:
@@ -56,11 +55,9 @@ def _reached(module: Module) -> tuple[set[str], set[str]]:
     called, read = closure(module.functions, {module.entry}), set[str]()
     new_functions, new_values = called, read
     while True:
-        roots = [values[name] for name in new_values]
-        for function in module.functions:
-            if function.name in new_functions:
-                roots += expressions_in(function.body)
-        new_values = reads(roots) - read
+        functions = (f for f in module.functions if f.name in new_functions)
+        found = per_frame_reads(*(values[name] for name in new_values))
+        new_values = (found | per_frame_reads_in(functions)) - read
         if not new_values:
             return called, read
         read = read | new_values

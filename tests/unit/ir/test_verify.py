@@ -32,6 +32,7 @@ from distal.ir.nodes import (
     LogicalOp,
     MatMul,
     Module,
+    Origin,
     Param,
     PerFrame,
     Read,
@@ -45,6 +46,7 @@ from distal.ir.nodes import (
     Unary,
     UnaryOp,
     Uniform,
+    UniformDeclaration,
     Var,
     While,
 )
@@ -65,7 +67,7 @@ from distal.ir.types import (
     FunctionType,
     Struct,
 )
-from distal.ir.verify import verify
+from distal.ir.verify import Verifier, verify
 
 X = read("x", FLOAT)
 P = read("p", VEC3)
@@ -231,3 +233,39 @@ def test_the_entry_of_an_image_takes_coord():
     verify(image, "entry")
     with pytest.raises(AssertionError):
         verify(replace(image, functions=(replace(main, params=()),)), "entry")
+
+
+def test_a_verifier_checks_again_what_has_changed_around_a_function() -> None:
+    """The same function object, with other uniforms, callees or rules around it."""
+    size = UniformDeclaration("size", FLOAT, Origin.NUMBER, 1.0)
+    value = builtin("max", Uniform("size", FLOAT), Call("sphere", (P,), FLOAT))
+    caller = function(Return(value))
+    sound = replace(module(SPHERE, caller), uniforms=(size,))
+    verifier = Verifier()
+    verifier.verify(sound, "fold")
+    verifier.verify(sound, "inline")
+    for broken in (
+        replace(sound, uniforms=()),
+        replace(sound, uniforms=(replace(size, type=INT, default=1),)),
+        replace(sound, functions=(caller,)),
+        replace(sound, functions=(replace(SPHERE, params=()), caller)),
+        replace(sound, functions=(caller, SPHERE)),
+        replace(sound, frame=(("unread", number(1.0)),)),
+    ):
+        with pytest.raises(AssertionError):
+            verifier.verify(broken, "inline")
+        verifier.verify(sound, "inline")
+    early = replace(sound, functions=(SPHERE, function(Return(PerFrame("f", FLOAT)))))
+    early = replace(early, frame=(("f", number(1.0)),))
+    verifier.verify(early)
+    with pytest.raises(AssertionError, match="before the frequency pass"):
+        verifier.verify(early, "fold")
+
+
+def test_a_verifier_checks_the_order_of_per_frame_values() -> None:
+    first, second = ("a", number(1.0)), ("b", PerFrame("a", FLOAT))
+    reads = function(Return(PerFrame("b", FLOAT)))
+    verifier = Verifier()
+    verifier.verify(replace(module(reads), frame=(first, second)), "frequency")
+    with pytest.raises(AssertionError, match="no such per-frame value"):
+        verifier.verify(replace(module(reads), frame=(second, first)), "frequency")

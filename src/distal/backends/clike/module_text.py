@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from distal.backends.clike.code import Line
 from distal.backends.clike.wrapping import wrapped
-from distal.ir.nodes import EntryKind, Expr, Function, Module, PerFrame, UniformDeclaration
-from distal.ir.walk import expressions_in, map_expressions, nodes_in, substitute
+from distal.ir.nodes import EntryKind, Expr, Module, PerFrame, UniformDeclaration
+from distal.ir.walk import map_expressions, substitute
 
 
 def without_frame(module: Module) -> Module:
@@ -25,14 +25,6 @@ def without_frame(module: Module) -> Module:
         for f in module.functions
     )
     return replace(module, functions=functions, frame=())
-
-
-def per_frame_reads(functions: Iterable[Function], roots: Iterable[Expr] = ()) -> set[str]:
-    """The per-frame values that functions and expressions read themselves."""
-    found = {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
-    for function in functions:
-        found |= {e.name for e in expressions_in(function.body) if isinstance(e, PerFrame)}
-    return found
 
 
 def comment_text(text: str) -> str:

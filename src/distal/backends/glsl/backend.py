@@ -19,7 +19,7 @@ from distal.backends.clike.keywords import (
     GLSL_PREFIXES,
 )
 from distal.backends.clike.module_names import ModuleNames, Vocabulary, name_module, reachable
-from distal.backends.clike.module_text import joined, per_frame_reads, without_frame
+from distal.backends.clike.module_text import joined, without_frame
 from distal.backends.clike.names import Reserved
 from distal.backends.clike.packing import Packing, pack
 from distal.backends.glsl.isf import IsfHeader
@@ -32,7 +32,7 @@ from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import Type
-from distal.ir.walk import expressions_in
+from distal.ir.walk import expressions_in, per_frame_reads_in
 
 _TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
 
@@ -93,7 +93,7 @@ def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
     """The per-frame values that the fragment stage reads."""
     entry = module.function(module.entry)
     functions = reachable(module, expressions_in(entry.body))
-    read = per_frame_reads((*functions, entry))
+    read = per_frame_reads_in((*functions, entry))
     return tuple((name, value.type) for name, value in module.frame if name in read)
 
 

@@ -15,7 +15,7 @@ from distal.backends.clike.code import Code, Line
 from distal.backends.clike.expense import Expense
 from distal.backends.clike.functions import place
 from distal.backends.clike.module_names import ModuleNames, reachable, types_in
-from distal.backends.clike.module_text import per_frame_reads, uniform_comment
+from distal.backends.clike.module_text import uniform_comment
 from distal.backends.clike.packing import Packing, value_text, vector_texts
 from distal.backends.glsl.isf import IsfWriter, sampler_lines
 from distal.backends.glsl.resources import accessor_lines, resource_lines
@@ -35,7 +35,7 @@ from distal.ir.nodes import (
     UniformDeclaration,
 )
 from distal.ir.types import VEC2, Array, Buffer, Struct
-from distal.ir.walk import expressions_in, nodes_in
+from distal.ir.walk import expressions_in, nodes_in, per_frame_reads_in
 
 _ES100_TYPES = {"resolution": "vec2 u_resolution", "time": "float u_time", "mouse": "vec2 u_mouse"}
 
@@ -72,7 +72,7 @@ def fragment_lines(program: Program) -> list[Line]:
     frame = [value for _, value in module.frame] if here else []
     functions = reachable(module, [*roots, *frame])
     _write_functions(writer, functions if is_image else (*functions, entry))
-    in_functions = per_frame_reads(functions)
+    in_functions = per_frame_reads_in(functions)
     if is_image:
         _write_main(program, writer, entry, in_functions)
     body = writer.lines
@@ -98,7 +98,7 @@ def vertex_lines(program: Program) -> list[Line]:
     frame = [value for _, value in module.frame]
     functions = reachable(module, frame)
     _write_functions(writer, functions)
-    in_functions = per_frame_reads(functions)
+    in_functions = per_frame_reads_in(functions)
     writer.span = None
     writer.line("void main() {")
     writer.depth = 1
@@ -178,7 +178,7 @@ def _write_frame(program: Program, writer: GlslWriter, in_functions: set[str]) -
 
 def _unpack(program: Program, writer: GlslWriter, entry: Function, in_functions: set[str]) -> None:
     assert program.packing is not None
-    wanted = per_frame_reads((entry,)) | in_functions
+    wanted = per_frame_reads_in((entry,)) | in_functions
     for name, type in program.packing.values:
         if name not in wanted:
             continue

@@ -13,7 +13,7 @@ from typing import Any, Final
 from distal.backends.base import Artifact
 from distal.backends.clike.interface import interface
 from distal.backends.clike.module_names import ModuleNames, name_module
-from distal.backends.clike.module_text import joined, per_frame_reads, without_frame
+from distal.backends.clike.module_text import joined, without_frame
 from distal.backends.clike.names import Namer
 from distal.backends.wgsl.functions import function_interface
 from distal.backends.wgsl.layout import lay_out
@@ -24,6 +24,7 @@ from distal.backends.wgsl.targets import WgslTarget
 from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
 from distal.ir.target import Target
 from distal.ir.types import VEC2, Kind, Vector
+from distal.ir.walk import per_frame_reads_in
 
 _RESOLUTION: Final = "resolution"
 _TILE: Final = "tile"
@@ -52,7 +53,7 @@ def _with_resolution(module: Module) -> Module:
 def _program(module: Module, target: WgslTarget) -> Program:
     names = name_module(module, VOCABULARY, has_members=True)
     # A value that only later values are made of stays a local of frame_main.
-    read = per_frame_reads(module.functions)
+    read = per_frame_reads_in(module.functions)
     frame = lay_out(tuple((name, value.type) for name, value in module.frame if name in read))
     size = next((u.name for u in module.uniforms if _is_resolution(u)), "")
     resolution = names.uniforms.get(size, "")

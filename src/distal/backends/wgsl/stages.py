@@ -19,7 +19,7 @@ from typing import Final
 from distal.backends.clike.code import Code, Line
 from distal.backends.clike.expense import Expense
 from distal.backends.clike.module_names import ModuleNames, called_by, reachable, types_in
-from distal.backends.clike.module_text import per_frame_reads, uniform_comment
+from distal.backends.clike.module_text import uniform_comment
 from distal.backends.wgsl.functions import function_binding_lines, function_entry_lines
 from distal.backends.wgsl.layout import Layout, shared_type
 from distal.backends.wgsl.names import OWN
@@ -27,7 +27,7 @@ from distal.backends.wgsl.resources import accessor_lines, binding_lines, fetche
 from distal.backends.wgsl.writer import WgslWriter
 from distal.ir.nodes import EntryKind, Expr, Function, Module, Resource
 from distal.ir.types import Kind, Matrix, Struct, Type, Vector, kind_of
-from distal.ir.walk import expressions_in, nodes_in
+from distal.ir.walk import expressions_in, nodes_in, per_frame_reads_in
 
 # Uniforms and per-frame values are read once a pixel, into variables of its own. Where a uniform is
 # a load like any other it would be loaded each time that a loop comes by: on lavapipe 8 % of the
@@ -86,7 +86,7 @@ def _write_frame(
     # What reads per-frame values must read those being computed: such functions stand twice.
     stale: set[str] = set()
     for function in needed:
-        if per_frame_reads((function,)) or called_by(function) & stale:
+        if per_frame_reads_in((function,)) or called_by(function) & stale:
             stale.add(function.name)
     others = {
         names.functions[f]: names.namer.name(f"{names.functions[f]}_of_frame")

@@ -29,6 +29,7 @@ from distal.ir.nodes import (
     Uniform,
 )
 from distal.ir.types import Kind, Matrix, Scalar, Type, Vector, component_count, kind_of
+from distal.ir.walk import is_unchanging
 
 
 def constant(type: Type, values: Components) -> Expr:
@@ -98,9 +99,7 @@ class Constants:
             e = e.base
         if isinstance(e, Splat):
             e = e.value
-        if isinstance(e, Read):
-            return e.name not in self._mutable
-        return isinstance(e, Const | Uniform | PerFrame | Resource)
+        return is_unchanging(e, self._mutable)
 
     def components(self, e: Expr) -> Components | None:
         """The components of a constant scalar, vector or matrix, rounded; else None."""

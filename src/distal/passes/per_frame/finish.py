@@ -12,16 +12,17 @@ from dataclasses import replace
 
 from distal.ir.nodes import Call, Expr, Function, Let, Module, PerFrame, Read, Stmt
 from distal.ir.walk import (
-    expressions_in,
     map_expressions,
     map_statement,
     names_read,
+    per_frame_reads,
+    per_frame_reads_in,
     rewrite,
     substitute,
 )
 from distal.passes.fold.fold import fold_function
 from distal.passes.naming import Names, local_names, module_names
-from distal.passes.per_frame.values import Slots, reads
+from distal.passes.per_frame.values import Slots
 from distal.passes.reachable import called_in, callees, closure, drop_unused
 
 
@@ -30,7 +31,7 @@ def finished(
 ) -> Module:
     """The module, with at most ``limit`` components of per-frame values for the pixels."""
     pixels = _without_unread_params(before.entry, pixels, precision)
-    wanted = reads(e for f in pixels for e in expressions_in(f.body))
+    wanted = per_frame_reads_in(pixels)
     chosen = slots.chosen(wanted, limit)
     entries = slots.program(wanted)
     values = {name: value for name, _, value in entries}
@@ -92,7 +93,7 @@ def _frame_functions(
             continue
         twin = pixel.get(function.name)
         if twin is not None and twin.params == function.params:
-            is_same = not reads(expressions_in(twin.body))
+            is_same = not per_frame_reads_in((twin,))
             if is_same and not callees(function) & renamed.keys():
                 result.append(twin)
                 continue
@@ -121,13 +122,13 @@ def _needed(roots: set[str], values: Mapping[str, Expr], given: frozenset[str]) 
         name = stack.pop()
         if name not in found and name not in given:
             found.add(name)
-            stack.extend(reads((values[name],)))
+            stack.extend(per_frame_reads(values[name]))
     return found
 
 
 def _with_steps(function: Function, values: Mapping[str, Expr], chosen: set[str]) -> Function:
     """The function with values that do not travel computed at its top."""
-    rest = reads(expressions_in(function.body)) - chosen
+    rest = per_frame_reads_in((function,)) - chosen
     if not rest:
         return function
     needed = _needed(rest, values, frozenset(chosen))

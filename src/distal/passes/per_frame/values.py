@@ -7,7 +7,6 @@ Output: the ordered list of the module's per-frame values, each written over ear
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -157,8 +156,3 @@ class _Program:
             self.entries.append((name, None, substitute(let.value, steps, {})))
             steps[Read(let.name, let.value.type)] = PerFrame(name, let.value.type)
         return substitute(value, steps, {}) if steps else value
-
-
-def reads(roots: Iterable[Expr]) -> set[str]:
-    """The per-frame values that expressions read."""
-    return {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}

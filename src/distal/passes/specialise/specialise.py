@@ -29,17 +29,15 @@ from distal.ir.nodes import (
     Let,
     Module,
     Param,
-    PerFrame,
     Read,
     Resource,
     Select,
     Stmt,
-    Uniform,
     Var,
     span_in,
 )
 from distal.ir.types import FunctionType, Type, is_static
-from distal.ir.walk import children, map_statement, rebuild, statements_in
+from distal.ir.walk import children, is_unchanging, map_statement, rebuild, statements_in
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.naming import Names, local_names
@@ -219,9 +217,7 @@ class _Clone:
         for capture in bound.captures:
             if is_static(capture.type):
                 captures.append(self._kept(capture, stmt, written))
-            elif isinstance(capture, Const | Uniform | PerFrame) or (
-                isinstance(capture, Read) and capture.name not in self._vars
-            ):
+            elif is_unchanging(capture, self._vars):
                 captures.append(capture)
             else:
                 name = self._names.fresh(f"{stmt.name}_captured")
@@ -278,12 +274,7 @@ class _Clone:
         """A call of the clone for the static ones of these rewritten arguments."""
         steering = self._clones.steering.of(name)
         bindings: tuple[_Binding, ...] = tuple(
-            _shape(a)
-            if is_static(a.type)
-            else a
-            if i in steering and isinstance(a, Const)
-            else None
-            for i, a in enumerate(args)
+            _binding(a, steers=i in steering) for i, a in enumerate(args)
         )
         new = self._clones.instance(name, bindings, self._span)
         plain = [a for a, b in zip(args, bindings, strict=True) if b is None]

@@ -30,13 +30,13 @@ from distal.ir.nodes import (
     Return,
     Select,
     Stmt,
-    Uniform,
     Var,
 )
 from distal.ir.types import BOOL, INT, Array, Struct, Type
 from distal.ir.walk import (
     children,
     expressions_in,
+    is_unchanging,
     map_indices,
     map_statement,
     nodes_in,
@@ -178,10 +178,7 @@ class _Body:
         """The place as it is when it gets its name: variables may change after that."""
         operands: list[Expr] = []
         for operand in place.operands:
-            settled = isinstance(operand, Const | Uniform | PerFrame)
-            if isinstance(operand, Read):
-                settled = operand.name not in self._variables
-            if not settled:
+            if not is_unchanging(operand, self._variables):
                 name = self._names.fresh(f"{stmt.name}_at")
                 written.append(Let(name, operand, span=stmt.span))
                 operand = Read(name, operand.type)
