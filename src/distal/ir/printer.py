@@ -77,7 +77,7 @@ def print_module(module: Module) -> str:
     lines.extend(f"resource &{r.name}: {r.type} {r.wrap}" for r in module.resources)
     if module.frame:
         lines.append("frame")
-        writer = _Writer()
+        writer = _ModulePrinter()
         for name, value in module.frame:
             writer.line(1, [value], f"${name}: {value.type} =")
         lines.extend(writer.lines)
@@ -97,7 +97,7 @@ def print_identity(module: Module) -> str:
 
 def print_expression(e: Expr) -> str:
     """Write one expression on a line; shared parts before it, each on its own."""
-    writer = _Writer()
+    writer = _ModulePrinter()
     writer.line(0, [e], "")
     return "\n".join(line.strip() for line in writer.lines)
 
@@ -136,14 +136,14 @@ def _types(module: Module) -> Iterator[Type]:
 
 def _function_lines(function: Function) -> list[str]:
     params = ", ".join(f"{p.name}: {p.type}" for p in function.params)
-    writer = _Writer()
+    writer = _ModulePrinter()
     writer.block(1, function.body)
     name = function.name
     said = "" if function.source_name == name else f" of {function.source_name}"
     return [f"fn {name}({params}) -> {function.result}{said}", *writer.lines]
 
 
-class _Writer:
+class _ModulePrinter:
     """Lines of one function; numbers the parts that are named."""
 
     def __init__(self) -> None:

@@ -91,15 +91,17 @@ class Verifier:
     """
 
     def __init__(self) -> None:
-        self._context: _Context | None = None
+        self._context: _CheckContext | None = None
         self._depths: dict[Expr, int] = {}
         self._checked: set[Expr] = set()
-        self._records: dict[int, _Record] = {}  # by the function's id; a record keeps it alive
+        self._records: dict[
+            int, _CheckedFunction
+        ] = {}  # by the function's id; a record keeps it alive
 
     def verify(self, module: Module, stage: str | None = None) -> None:
         """Raise AssertionError when the module breaks a rule; see ``verify``."""
         assert stage is None or stage in _STAGES, f"no pass {stage}"
-        context = _Context.of(module, stage)
+        context = _CheckContext.of(module, stage)
         if context != self._context:
             self._context, self._checked, self._records = context, set(), {}
         functions: dict[str, Function] = {}
@@ -113,7 +115,7 @@ class Verifier:
             if record is None or not record.holds(functions):
                 checker = _Checker(context, functions, self._depths, self._checked)
                 checker.function(function)
-                record = _Record(function, checker.mentioned, checker.frame_reads)
+                record = _CheckedFunction(function, checker.mentioned, checker.frame_reads)
                 self._records[id(function)] = record
             frame_reads |= record.frame_reads
             functions[function.name] = function
@@ -131,7 +133,7 @@ class Verifier:
 
 
 @dataclass(frozen=True, slots=True)
-class _Context:
+class _CheckContext:
     """What the check of a function depends on besides the function and those that it calls."""
 
     no_frame: bool
@@ -145,7 +147,7 @@ class _Context:
     frame: dict[str, Type]
 
     @classmethod
-    def of(cls, module: Module, stage: str | None) -> _Context:
+    def of(cls, module: Module, stage: str | None) -> _CheckContext:
         """The rules that hold after a pass, and what the module declares."""
         return cls(
             stage in _NO_FRAME,
@@ -161,7 +163,7 @@ class _Context:
 
 
 @dataclass(frozen=True, slots=True)
-class _Record:
+class _CheckedFunction:
     """A function that was checked.
 
     Attributes:
@@ -193,7 +195,7 @@ class _Checker:
 
     def __init__(
         self,
-        context: _Context,
+        context: _CheckContext,
         functions: Mapping[str, Function],
         depths: dict[Expr, int],
         checked: set[Expr],

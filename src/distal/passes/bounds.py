@@ -32,7 +32,7 @@ def run(module: Module, context: Context) -> Module:
     if not any(_indexes(f) for f in module.functions):
         return module
     meanings = _bounding_functions(module, context)
-    functions = tuple(_Body(meanings).function(f) for f in module.functions)
+    functions = tuple(_IndexBounder(meanings).function(f) for f in module.functions)
     return replace(module, functions=functions)
 
 
@@ -55,7 +55,7 @@ def _bounding_functions(module: Module, context: Context) -> dict[str, str]:
     return found
 
 
-class _Body:
+class _IndexBounder:
     """One function, gone through in order so that every local is known where it is read."""
 
     def __init__(self, meanings: dict[str, str]) -> None:

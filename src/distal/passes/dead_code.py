@@ -12,16 +12,16 @@ from typing import TypeAlias
 from distal.ir.nodes import Assign, Expr, For, If, Let, Read, Stmt, Var, While
 from distal.ir.walk import blocks, children, expressions, map_statement, nodes_in, root_of
 
-Names: TypeAlias = frozenset[str]
+FreshNames: TypeAlias = frozenset[str]
 
 
 class ReadNames:
     """The locals that expressions read, remembered for each node."""
 
     def __init__(self) -> None:
-        self._found: dict[Expr, Names] = {}
+        self._found: dict[Expr, FreshNames] = {}
 
-    def of(self, root: Expr) -> Names:
+    def of(self, root: Expr) -> FreshNames:
         """The names of the Reads in an expression."""
         found = self._found
         known = found.get(root)

@@ -44,7 +44,7 @@ from distal.ir.nodes import (
 from distal.ir.types import FRAME, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.ir.walk import children, map_statement, rebuild
 from distal.passes.context import Context
-from distal.passes.naming import Names, local_names
+from distal.passes.naming import FreshNames, local_names
 
 _DEFAULTS: Final = {
     "resolution": (640.0, 480.0),
@@ -64,7 +64,7 @@ def run(module: Module, context: Context) -> Module:
     """Replace ``Frame`` and wrap an image."""
     renamed = renamed_parameters(module.uniforms)
     used: set[str] = set()
-    functions = [_Body(f, renamed, used).function() for f in module.functions]
+    functions = [_FrameReplacer(f, renamed, used).function() for f in module.functions]
     entry = module.entry
     if module.kind is EntryKind.IMAGE:
         wrapper = _wrapper(functions, entry)
@@ -75,20 +75,13 @@ def run(module: Module, context: Context) -> Module:
     return replace(module, functions=tuple(functions), entry=entry, uniforms=(*frame, *parameters))
 
 
-def parameter_name(uniform: UniformDeclaration) -> str:
-    """The name under which people set a parameter; the uniform's own unless it was renamed."""
-    name = dict(uniform.interface).get("parameter", uniform.name)
-    assert isinstance(name, str)
-    return name
-
-
 def renamed_parameters(uniforms: Iterable[UniformDeclaration]) -> dict[str, str]:
     """The new names of the parameters that are called like a value of the frame."""
     declared = [u.name for u in uniforms]
     alike = [name for name in declared if name in _FRAME_UNIFORMS]
     if not alike:
         return {}
-    names = Names([*_FRAME_UNIFORMS, *declared])
+    names = FreshNames([*_FRAME_UNIFORMS, *declared])
     return {name: names.fresh(f"{name}_value") for name in alike}
 
 
@@ -119,7 +112,7 @@ def _wrapper(functions: list[Function], entry: str) -> Function:
             image.span,
             "an image returns vec3 or vec4",
         )
-    name = Names(f.name for f in functions).fresh("main")
+    name = FreshNames(f.name for f in functions).fresh("main")
     body = (Return(color, span=image.span),)
     return Function(name, (Param("coord", VEC2),), VEC4, body, "main", span=image.span)
 
@@ -134,7 +127,7 @@ def _without_frame(type: Type) -> Type:
     return type
 
 
-class _Body:
+class _FrameReplacer:
     """One function: its frames by name, and how its expressions are rewritten."""
 
     def __init__(self, function: Function, renamed: dict[str, str], used: set[str]) -> None:
@@ -151,7 +144,7 @@ class _Body:
             raise CompileError.at(
                 f"'{fn.source_name}' returns a Frame", fn.span, "return the values it needs instead"
             )
-        names = Names(local_names(fn))
+        names = FreshNames(local_names(fn))
         params = []
         for param in fn.params:
             name = param.name

@@ -12,7 +12,7 @@ from distal.ir.nodes import For, Function, Let, Module, Var
 from distal.ir.walk import statements_in
 
 
-class Names:
+class FreshNames:
     """A growing set of taken names."""
 
     def __init__(self, taken: Iterable[str]) -> None:

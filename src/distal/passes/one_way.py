@@ -32,7 +32,7 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import BOOL
 from distal.passes.context import Context
-from distal.passes.naming import Names, local_names
+from distal.passes.naming import FreshNames, local_names
 from distal.passes.predicate import zero
 
 _Block = tuple[Stmt, ...]
@@ -47,11 +47,11 @@ def run(module: Module, context: Context) -> Module:
 
 def parted(function: Function) -> Function:
     """The function without an If whose two ways may be equally long."""
-    names = Names(local_names(function))
+    names = FreshNames(local_names(function))
     return replace(function, body=_parted(_joined(function, names), names))
 
 
-def _joined(function: Function, names: Names) -> _Block:
+def _joined(function: Function, names: FreshNames) -> _Block:
     """The body; where it ends in two ways to return, these assign, and one Return follows."""
     *before, last = function.body
     after: list[Stmt] = []
@@ -75,7 +75,7 @@ def _joined(function: Function, names: Names) -> _Block:
             return function.body
 
 
-def _parted(block: _Block, names: Names) -> _Block:
+def _parted(block: _Block, names: FreshNames) -> _Block:
     done: list[Stmt] = []
     for stmt in block:
         match stmt:
@@ -93,7 +93,7 @@ def _parted(block: _Block, names: Names) -> _Block:
     return tuple(done)
 
 
-def _two(fork: If, names: Names) -> list[Stmt]:
+def _two(fork: If, names: FreshNames) -> list[Stmt]:
     """Both ways, one after the other; the first may change what the condition reads."""
     name = names.fresh("first")
     first = Read(name, BOOL)

@@ -34,8 +34,8 @@ from distal.ir.types import INT, Array, Struct, Type
 from distal.ir.walk import map_statement, names_read, statements_in
 from distal.passes.context import Context
 from distal.passes.cost import size
-from distal.passes.naming import Names, local_names, module_names
-from distal.passes.places import leaves
+from distal.passes.naming import FreshNames, local_names, module_names
+from distal.passes.regions import leaves
 from distal.passes.versions import assigned_in
 
 # The largest function of the examples has 3600. A union of 150 shapes has 5700: cut, it compiles in
@@ -51,7 +51,7 @@ def run(module: Module, context: Context) -> Module:
         return module
     if all(size(f.body) <= LARGE for f in module.functions):
         return module
-    names = Names(module_names(module))
+    names = FreshNames(module_names(module))
     functions: list[Function] = []
     for function in module.functions:
         if size(function.body) > LARGE:
@@ -72,10 +72,10 @@ class _Run:
 class _Outlining:
     """One large function."""
 
-    def __init__(self, function: Function, names: Names) -> None:
+    def __init__(self, function: Function, names: FreshNames) -> None:
         self._function = function
         self._names = names
-        self._locals = Names(local_names(function))
+        self._locals = FreshNames(local_names(function))
         self._types: dict[str, Type] = {p.name: p.type for p in function.params}
         for stmt in statements_in(function.body):
             if isinstance(stmt, Let | Var):

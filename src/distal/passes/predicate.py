@@ -90,7 +90,7 @@ def zero(type: Type) -> Expr:
 
 
 @dataclass(slots=True)
-class _Loop:
+class _LoopFlags:
     """The loop being rewritten: its flags, made when first needed."""
 
     leave: str | None = None  # this loop ends
@@ -180,7 +180,7 @@ class _Predicate:
         self.names.add(name)
         return name
 
-    def _block(self, block: _Block, loop: _Loop | None) -> _Block:
+    def _block(self, block: _Block, loop: _LoopFlags | None) -> _Block:
         """A block without exits: what follows one is moved or guarded."""
         done: list[Stmt] = []
         for position, stmt in enumerate(block):
@@ -213,7 +213,7 @@ class _Predicate:
                     assert_never(stmt)
         return tuple(done)
 
-    def _branch(self, stmt: If, rest: _Block, loop: _Loop | None) -> Iterator[Stmt]:
+    def _branch(self, stmt: If, rest: _Block, loop: _LoopFlags | None) -> Iterator[Stmt]:
         """An If that may exit, and what follows it."""
         then, otherwise = stmt.then, stmt.otherwise
         if _always_exits(then):
@@ -232,7 +232,7 @@ class _Predicate:
             yield self._if(stmt, self._marked(then, flag), self._marked(otherwise, flag), loop)
             yield from self._unless(flag, self._block(rest, loop), stmt.span)
 
-    def _if(self, stmt: If, then: _Block, otherwise: _Block, loop: _Loop | None) -> If:
+    def _if(self, stmt: If, then: _Block, otherwise: _Block, loop: _LoopFlags | None) -> If:
         condition, yes, no = stmt.condition, self._block(then, loop), self._block(otherwise, loop)
         if not yes:
             condition, yes, no = Unary(UnaryOp.NOT, condition, BOOL), no, ()
@@ -261,7 +261,7 @@ class _Predicate:
 
     def _loop(self, stmt: For | While) -> Stmt:
         """A loop whose only exit is its last statement."""
-        loop = _Loop()
+        loop = _LoopFlags()
         body = self._block(stmt.body, loop)
         head: list[Stmt] = []
         tail: list[Stmt] = []
@@ -278,7 +278,7 @@ class _Predicate:
             self.returned = self._fresh("returned")
         return self.returned
 
-    def _leave(self, loop: _Loop) -> str:
+    def _leave(self, loop: _LoopFlags) -> str:
         if loop.leave is None:
             loop.leave = self._fresh("leave")
         return loop.leave

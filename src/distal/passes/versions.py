@@ -28,7 +28,7 @@ from distal.ir.nodes import (
     While,
 )
 from distal.ir.walk import children, map_indices, nodes_in, rebuild, root_of, statements_in
-from distal.passes.places import Place
+from distal.passes.regions import Region
 
 MARK = "#"  # in no name of a module
 
@@ -47,9 +47,9 @@ class Versions:
         # Name of a Var or of a Let that went away -> what a read of it is at this point.
         self._now: dict[str, str] = {}
         self._available: list[dict[Expr, str]] = []
-        self._place = Place(None, 0)
-        self.births = {param.name: self._place for param in function.params}
-        self.root = self._place
+        self._region = Region(None, 0)
+        self.births = {param.name: self._region for param in function.params}
+        self.root = self._region
         self._fill(self.root, function.body)
 
     def _fresh(self, names: Iterable[str]) -> None:
@@ -57,7 +57,7 @@ class Versions:
             if name in self._mutable:
                 self._count += 1
                 self._now[name] = f"{name}{MARK}{self._count}"
-                self.births[self._now[name]] = self._place
+                self.births[self._now[name]] = self._region
 
     def _expr(self, root: Expr) -> Expr:
         memo: dict[Expr, Expr] = {}
@@ -69,19 +69,19 @@ class Versions:
                 memo[e] = rebuild(e, tuple([memo[c] for c in children(e)]))
         return memo[root]
 
-    def _fill(self, place: Place, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-        """Number a block, its statements going into ``place``."""
-        outer, self._place = self._place, place
+    def _fill(self, region: Region, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+        """Number a block, its statements going into ``region``."""
+        outer, self._region = self._region, region
         self._available.append({})
         numbered: list[Stmt] = []
         for stmt in body:
             done = self._statement(stmt, len(numbered))
             if done is not None:
                 numbered.append(done)
-        place.body = tuple(numbered)
+        region.body = tuple(numbered)
         self._available.pop()
-        self._place = outer
-        return place.body
+        self._region = outer
+        return region.body
 
     def _statement(self, stmt: Stmt, position: int) -> Stmt | None:
         span = stmt.span
@@ -90,7 +90,7 @@ class Versions:
                 return self._let(stmt, name, self._expr(value))
             case Var(name, value):
                 value = self._expr(value)
-                self.births[name] = self._place
+                self.births[name] = self._region
                 self._fresh((name,))
                 return Var(name, value, span=span)
             case Assign(target, value):
@@ -115,13 +115,13 @@ class Versions:
                 self._now[name] = known
                 return None
         self._available[-1][value] = name
-        self.births[name] = self._place
+        self.births[name] = self._region
         return Let(name, value, span=stmt.span)
 
     def _if(self, stmt: If, position: int) -> If:
         condition, before = self._expr(stmt.condition), dict(self._now)
-        ways = (Place(self._place, position), Place(self._place, position))
-        self._place.inner[position] = ways
+        ways = (Region(self._region, position), Region(self._region, position))
+        self._region.inner[position] = ways
         then = self._fill(ways[0], stmt.then)
         self._now = dict(before)
         otherwise = self._fill(ways[1], stmt.otherwise)
@@ -131,28 +131,28 @@ class Versions:
 
     def _for(self, stmt: For, position: int) -> For:
         start, stop = self._expr(stmt.start), self._expr(stmt.stop)
-        outer, inside = self._place, Place(self._place, position, repeats=True)
+        outer, inside = self._region, Region(self._region, position, repeats=True)
         outer.inner[position] = (inside,)
         changed = assigned_in(stmt.body)
-        self._place = inside
+        self._region = inside
         self.births[stmt.name] = inside
         self._fresh(changed)
         body = self._fill(inside, stmt.body)
-        self._place = outer
+        self._region = outer
         self._fresh(changed)
         return For(stmt.name, start, stop, stmt.step, body, span=stmt.span)
 
     def _while(self, stmt: While, position: int) -> While:
-        outer, head = self._place, Place(self._place, position, repeats=True, is_head=True)
-        inside = Place(head, 0, repeats=True)
+        outer, head = self._region, Region(self._region, position, repeats=True, is_head=True)
+        inside = Region(head, 0, repeats=True)
         outer.inner[position] = (head,)
         head.inner[0] = (inside,)
         changed = assigned_in(stmt.body)
-        self._place = head
+        self._region = head
         self._fresh(changed)
         condition = self._expr(stmt.condition)
         body = self._fill(inside, stmt.body)
-        self._place = outer
+        self._region = outer
         self._fresh(changed)
         return While(condition, body, span=stmt.span)
 

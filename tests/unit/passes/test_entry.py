@@ -99,7 +99,8 @@ def test_a_parameter_named_like_a_frame_value_is_renamed():
     module = image(picture, uniforms=(slider, other))
     assert "(add (add @time_value_2 @time) @time_value)" in print_module(module)
     assert [u.name for u in module.uniforms] == ["time", "time_value_2", "time_value"]
-    assert [entry.parameter_name(u) for u in module.uniforms] == ["time", "time", "time_value"]
+    set_by = [dict(u.interface).get("parameter", u.name) for u in module.uniforms]
+    assert set_by == ["time", "time", "time_value"]
 
 
 @pytest.mark.parametrize(

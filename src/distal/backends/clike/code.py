@@ -12,7 +12,7 @@ from typing import NamedTuple
 from distal.diagnostics import Span
 
 
-class Level(IntEnum):
+class Precedence(IntEnum):
     """How tightly the outermost operator of a text binds."""
 
     TERNARY = 0
@@ -31,7 +31,7 @@ class Code(NamedTuple):
     """An expression's text, and its outermost operator."""
 
     text: str
-    level: Level = Level.PRIMARY
+    level: Precedence = Precedence.PRIMARY
     op: str = ""
 
 
@@ -42,33 +42,36 @@ class Line(NamedTuple):
     span: Span | None = None
 
 
-def _needs_brackets(operand: Code, level: Level, op: str, *, right: bool) -> bool:
+def _needs_brackets(operand: Code, level: Precedence, op: str, *, right: bool) -> bool:
     """Whether an operand of an infix operator is bracketed: WGSL's grammar, the stricter one."""
     inner = operand.level
-    if inner is Level.PRIMARY:
+    if inner is Precedence.PRIMARY:
         return False
-    if inner is Level.UNARY:
-        return right and level is not Level.RELATION and operand.text.startswith("-")
-    if inner is Level.TERNARY:
+    if inner is Precedence.UNARY:
+        return right and level is not Precedence.RELATION and operand.text.startswith("-")
+    if inner is Precedence.TERNARY:
         return True
-    if level in (Level.SUM, Level.PRODUCT):
+    if level in (Precedence.SUM, Precedence.PRODUCT):
         return inner < level or (right and inner is level)
-    if level is Level.RELATION:
-        return inner not in (Level.SUM, Level.PRODUCT)
-    if level in (Level.AND, Level.OR):
-        return inner in (Level.AND, Level.OR, Level.BITS, Level.SHIFT) and inner is not level
+    if level is Precedence.RELATION:
+        return inner not in (Precedence.SUM, Precedence.PRODUCT)
+    if level in (Precedence.AND, Precedence.OR):
+        return (
+            inner in (Precedence.AND, Precedence.OR, Precedence.BITS, Precedence.SHIFT)
+            and inner is not level
+        )
     # Operands of bit operators: only a chain of the very same operator stands without.
-    return not (level is Level.BITS and operand.op == op and not right)
+    return not (level is Precedence.BITS and operand.op == op and not right)
 
 
 def literal_code(text: str) -> Code:
     """A literal, which may have a sign, or be a difference."""
     if " " in text:
-        return Code(text, Level.SUM)
-    return Code(text, Level.UNARY if text.startswith("-") else Level.PRIMARY)
+        return Code(text, Precedence.SUM)
+    return Code(text, Precedence.UNARY if text.startswith("-") else Precedence.PRIMARY)
 
 
-def infix(op: str, level: Level, lhs: Code, rhs: Code) -> Code:
+def infix(op: str, level: Precedence, lhs: Code, rhs: Code) -> Code:
     """``lhs op rhs``."""
     left, right = (
         f"({side.text})" if _needs_brackets(side, level, op, right=at_right) else side.text
@@ -79,9 +82,9 @@ def infix(op: str, level: Level, lhs: Code, rhs: Code) -> Code:
 
 def tight(code: Code) -> str:
     """The text as an operand of the tightest operators: dots, indices, signs."""
-    return code.text if code.level is Level.PRIMARY else f"({code.text})"
+    return code.text if code.level is Precedence.PRIMARY else f"({code.text})"
 
 
 def prefix(op: str, operand: Code) -> Code:
     """``op operand``."""
-    return Code(f"{op}{tight(operand)}", Level.UNARY)
+    return Code(f"{op}{tight(operand)}", Precedence.UNARY)

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable
 from typing import assert_never
 
-from distal.backends.clike.code import Code, Level, Line, infix, prefix, tight
+from distal.backends.clike.code import Code, Line, Precedence, infix, prefix, tight
 from distal.backends.clike.constants import is_table
 from distal.backends.clike.dialect import Dialect
 from distal.backends.clike.module_names import ModuleNames
@@ -52,15 +52,15 @@ from distal.ir.nodes import (
 from distal.ir.types import Array, Buffer, Kind, Struct, Type, Vector, kind_of
 
 INFIX = {
-    BinaryOp.ADD: Level.SUM,
-    BinaryOp.SUB: Level.SUM,
-    BinaryOp.MUL: Level.PRODUCT,
-    BinaryOp.DIV: Level.PRODUCT,
-    BinaryOp.AND: Level.BITS,
-    BinaryOp.OR: Level.BITS,
-    BinaryOp.XOR: Level.BITS,
-    BinaryOp.SHL: Level.SHIFT,
-    BinaryOp.SHR: Level.SHIFT,
+    BinaryOp.ADD: Precedence.SUM,
+    BinaryOp.SUB: Precedence.SUM,
+    BinaryOp.MUL: Precedence.PRODUCT,
+    BinaryOp.DIV: Precedence.PRODUCT,
+    BinaryOp.AND: Precedence.BITS,
+    BinaryOp.OR: Precedence.BITS,
+    BinaryOp.XOR: Precedence.BITS,
+    BinaryOp.SHL: Precedence.SHIFT,
+    BinaryOp.SHR: Precedence.SHIFT,
 }
 
 # What both languages apply to a scalar beside a vector without a constructor.
@@ -132,11 +132,13 @@ class ExpressionWriter(Dialect):
             case Binary():
                 return self._binary(e)
             case MatMul(lhs, rhs):
-                return infix("*", Level.PRODUCT, self.expression(lhs), self.expression(rhs))
+                return infix("*", Precedence.PRODUCT, self.expression(lhs), self.expression(rhs))
             case Compare(op, lhs, rhs):
                 if isinstance(lhs.type, Vector):
                     return self.vector_compare(e)
-                return infix(op.value, Level.RELATION, self.expression(lhs), self.expression(rhs))
+                return infix(
+                    op.value, Precedence.RELATION, self.expression(lhs), self.expression(rhs)
+                )
             case Logical():
                 return self._logical(e)
             case Select():
@@ -205,7 +207,7 @@ class ExpressionWriter(Dialect):
             if isinstance(type, Vector):
                 return self.bool_vector_binary(op, lhs, rhs, type)
             spelled = {BinaryOp.AND: "&&", BinaryOp.OR: "||", BinaryOp.XOR: "!="}[op]
-            level = {"&&": Level.AND, "||": Level.OR, "!=": Level.RELATION}[spelled]
+            level = {"&&": Precedence.AND, "||": Precedence.OR, "!=": Precedence.RELATION}[spelled]
             return infix(spelled, level, lhs, rhs)
         scaled = self.matrix_scale(e)
         if scaled is not None:
@@ -245,7 +247,7 @@ class ExpressionWriter(Dialect):
         self.depth -= 1
         needed = self.lines[mark:]
         if not needed:
-            op, level = ("&&", Level.AND) if is_and else ("||", Level.OR)
+            op, level = ("&&", Precedence.AND) if is_and else ("||", Precedence.OR)
             return infix(op, level, lhs, rhs)
         # The right side has lines of its own, run only when the left side leaves it open.
         del self.lines[mark:]

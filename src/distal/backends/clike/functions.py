@@ -10,7 +10,7 @@ from abc import abstractmethod
 from pathlib import PurePath
 from typing import assert_never
 
-from distal.backends.clike.code import Code, Level, Line, infix, prefix
+from distal.backends.clike.code import Code, Line, Precedence, infix, prefix
 from distal.backends.clike.expressions import ExpressionWriter
 from distal.backends.clike.literals import INT_MIN
 from distal.backends.clike.module_text import comment_text
@@ -303,7 +303,7 @@ class FunctionWriter(ExpressionWriter):
         stop = self.expression(stmt.stop)
         if not self._is_fixed(stmt.stop):
             stop = self.temporary(f"{name}_stop", stop, INT)
-        test = infix("<" if step > 0 else ">", Level.RELATION, Code(name), stop)
+        test = infix("<" if step > 0 else ">", Precedence.RELATION, Code(name), stop)
         sign = "+" if step > 0 else "-"
         advance = f"{name}{sign}{sign}" if abs(step) == 1 else f"{name} {sign}= {abs(step)}"
         self.line(f"for ({self.loop_start(name, start, INT)}; {test.text}; {advance}) {{")
@@ -322,19 +322,19 @@ class FunctionWriter(ExpressionWriter):
         start = self.temporary(f"{name}_start", self.expression(stmt.start), INT)
         stop = self.temporary(f"{name}_stop", self.expression(stmt.stop), INT)
         low, high = (start, stop) if step > 0 else (stop, start)
-        span = infix("-", Level.SUM, self.unsigned(high), self.unsigned(low))
+        span = infix("-", Precedence.SUM, self.unsigned(high), self.unsigned(low))
         # ceil(span / step) without leaving 32 bits; the loop is not entered when it is empty.
         rounds = f"({span.text} - 1u) / {abs(step)}u + 1u"
-        last = self.temporary(f"{name}_rounds", Code(rounds, Level.SUM), UINT)
-        entered = infix("<", Level.RELATION, low, high)
+        last = self.temporary(f"{name}_rounds", Code(rounds, Precedence.SUM), UINT)
+        entered = infix("<", Precedence.RELATION, low, high)
         self.line(f"if ({entered.text}) {{")
         self.depth += 1
         index = self.local_namer.name(f"{name}_round")
         header = self.loop_start(index, Code("0u"), UINT)
         self.line(f"for ({header}; {index} < {last.text}; {index}++) {{")
         self.depth += 1
-        away = self.signed(infix("*", Level.PRODUCT, Code(index), Code(f"{abs(step)}u")))
-        here = infix("+" if step > 0 else "-", Level.SUM, start, away)
+        away = self.signed(infix("*", Precedence.PRODUCT, Code(index), Code(f"{abs(step)}u")))
+        here = infix("+" if step > 0 else "-", Precedence.SUM, start, away)
         self.line(self.declaration(name, here, INT, mutable=False))
         self.block(stmt.body)
         self.depth -= 1

@@ -19,7 +19,7 @@ LANES = "xyzw"
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class PackedLane:
     """Where one component travels: ``vectors[vector]``, lane 0 to 3."""
 
     integer: bool
@@ -39,7 +39,7 @@ class Packing:
     """
 
     values: tuple[tuple[str, Type], ...]
-    places: dict[str, tuple[Place, ...]]
+    places: dict[str, tuple[PackedLane, ...]]
     float_vectors: int
     int_vectors: int
 
@@ -85,9 +85,9 @@ def _column_size(type: Type) -> int:
 
 def _placed(
     found: dict[str, list[tuple[int, int]]], first: int, *, integer: bool
-) -> dict[str, tuple[Place, ...]]:
+) -> dict[str, tuple[PackedLane, ...]]:
     return {
-        name: tuple(Place(integer, first + vector, lane) for vector, lane in lanes)
+        name: tuple(PackedLane(integer, first + vector, lane) for vector, lane in lanes)
         for name, lanes in found.items()
     }
 
@@ -108,11 +108,11 @@ def _dense(
         int_count = -(-(len(int_lanes) + spill) // 4)
     assert float_count + int_count <= MAX_VECTORS, "more per-frame values than vectors hold"
     kept = len(float_lanes) - spill
-    places: dict[str, list[Place]] = {name: [] for name, _ in values}
+    places: dict[str, list[PackedLane]] = {name: [] for name, _ in values}
     for i, name in enumerate(float_lanes[:kept]):
-        places[name].append(Place(False, i // 4, i % 4))
+        places[name].append(PackedLane(False, i // 4, i % 4))
     for i, name in enumerate(int_lanes + float_lanes[kept:]):
-        places[name].append(Place(True, float_count + i // 4, i % 4))
+        places[name].append(PackedLane(True, float_count + i // 4, i % 4))
     frozen = {name: tuple(lanes) for name, lanes in places.items()}
     return Packing(values, frozen, float_count, int_count)
 
@@ -191,7 +191,7 @@ def value_text(packing: Packing, name: str, type: Type, vectors: list[str]) -> s
     return _taken(places, type, vectors)
 
 
-def _taken(places: tuple[Place, ...], type: Type, vectors: list[str]) -> str:
+def _taken(places: tuple[PackedLane, ...], type: Type, vectors: list[str]) -> str:
     """A scalar or vector out of its lanes."""
     kind = kind_of(type)
     runs = []

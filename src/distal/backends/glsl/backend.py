@@ -23,7 +23,7 @@ from distal.backends.clike.module_text import joined, without_frame
 from distal.backends.clike.names import Reserved
 from distal.backends.clike.packing import Packing, pack
 from distal.backends.glsl.isf import IsfHeader
-from distal.backends.glsl.stages import Program, fragment_lines, vertex_lines
+from distal.backends.glsl.stages import GlslProgram, fragment_lines, vertex_lines
 from distal.backends.glsl.targets import GlslTarget
 from distal.backends.glsl.uniforms import beyond_room
 from distal.backends.glsl.writer import trust_macro
@@ -65,7 +65,7 @@ def vocabulary(target: GlslTarget) -> Vocabulary:
     return Vocabulary(fields, fields | GLSL_FUNCTIONS | target.host_names | target.written_names)
 
 
-def _program(module: Module, target: GlslTarget) -> Program:
+def _program(module: Module, target: GlslTarget) -> GlslProgram:
     fixed = {
         uniform.name: target.texts[uniform.name]
         for uniform in module.uniforms
@@ -86,7 +86,7 @@ def _program(module: Module, target: GlslTarget) -> Program:
     own = target.numbers is Declares.TEXT
     constants = beyond_room(module.uniforms) if own else frozenset()
     vectors = _vectors(names, packing)
-    return Program(module, names, target, fixed, constants, packing, vectors, header)
+    return GlslProgram(module, names, target, fixed, constants, packing, vectors, header)
 
 
 def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
@@ -112,7 +112,7 @@ def _vectors(names: ModuleNames, packing: Packing | None) -> list[str]:
     return [names.namer.name(f"packed_{i}") for i in range(count)]
 
 
-def _interface(program: Program, target: GlslTarget) -> dict[str, Any]:
+def _interface(program: GlslProgram, target: GlslTarget) -> dict[str, Any]:
     module, names = program.module, program.names
     result = interface(module, target, names)
     if program.constants:

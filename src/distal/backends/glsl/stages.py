@@ -41,7 +41,7 @@ _ES100_TYPES = {"resolution": "vec2 u_resolution", "time": "float u_time", "mous
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class GlslProgram:
     """What the stages are written from."""
 
     module: Module
@@ -60,7 +60,7 @@ class Program:
         return kind(self.names, Expense(self.module), self.fixed)
 
 
-def fragment_lines(program: Program) -> list[Line]:
+def fragment_lines(program: GlslProgram) -> list[Line]:
     """The fragment stage; of a ``@func`` its functions alone."""
     module = program.module
     entry = module.function(module.entry)
@@ -87,7 +87,7 @@ def fragment_lines(program: Program) -> list[Line]:
     return [*lines, Line(""), *body]
 
 
-def vertex_lines(program: Program) -> list[Line]:
+def vertex_lines(program: GlslProgram) -> list[Line]:
     """The vertex stage: one triangle over the whole picture, and the per-frame part.
 
     Three vertices cost nothing, and nobody measures the driver's functions in this stage: the
@@ -135,7 +135,7 @@ def _write_functions(writer: GlslWriter, functions: Sequence[Function]) -> None:
 
 
 def _write_main(
-    program: Program, writer: GlslWriter, entry: Function, in_functions: set[str]
+    program: GlslProgram, writer: GlslWriter, entry: Function, in_functions: set[str]
 ) -> None:
     writer.span = entry.span
     if entry.span is not None:
@@ -165,7 +165,7 @@ def _write_main(
     writer.line("}")
 
 
-def _write_frame(program: Program, writer: GlslWriter, in_functions: set[str]) -> None:
+def _write_frame(program: GlslProgram, writer: GlslWriter, in_functions: set[str]) -> None:
     """Compute the per-frame values; those that functions read are globals, the rest locals."""
     for name, value in program.module.frame:
         spelled = program.names.frame[name]
@@ -176,7 +176,9 @@ def _write_frame(program: Program, writer: GlslWriter, in_functions: set[str]) -
             writer.line(writer.declaration(spelled, code, value.type, mutable=False))
 
 
-def _unpack(program: Program, writer: GlslWriter, entry: Function, in_functions: set[str]) -> None:
+def _unpack(
+    program: GlslProgram, writer: GlslWriter, entry: Function, in_functions: set[str]
+) -> None:
     assert program.packing is not None
     wanted = per_frame_reads_in((entry,)) | in_functions
     for name, type in program.packing.values:
@@ -191,7 +193,7 @@ def _unpack(program: Program, writer: GlslWriter, entry: Function, in_functions:
 
 
 def _uniform_lines(
-    program: Program, functions: Iterable[Function], roots: Iterable[Expr]
+    program: GlslProgram, functions: Iterable[Function], roots: Iterable[Expr]
 ) -> list[Line]:
     used = [*nodes_in(*roots)]
     for function in functions:
@@ -219,7 +221,7 @@ def _uniform_lines(
     return [Line(""), *map(Line, lines), *map(Line, accessors)] if lines else []
 
 
-def _uniform_line(program: Program, uniform: UniformDeclaration) -> list[str]:
+def _uniform_line(program: GlslProgram, uniform: UniformDeclaration) -> list[str]:
     spelled = program.names.uniforms[uniform.name]
     target = program.target
     comment = uniform_comment(uniform)
@@ -248,7 +250,7 @@ def _declares(target: GlslTarget, uniform: UniformDeclaration) -> Declares:
             assert_never(uniform.origin)
 
 
-def _frame_lines(program: Program, in_functions: set[str]) -> list[Line]:
+def _frame_lines(program: GlslProgram, in_functions: set[str]) -> list[Line]:
     lines: list[Line] = []
     if program.packing is not None and program.vectors:
         lines += [Line(""), Line("// Computed once a frame, by the vertex stage.")]
@@ -256,7 +258,7 @@ def _frame_lines(program: Program, in_functions: set[str]) -> list[Line]:
     return lines + _globals(program, [n for n, _ in program.module.frame if n in in_functions])
 
 
-def _vector_declarations(program: Program, direction: str) -> list[str]:
+def _vector_declarations(program: GlslProgram, direction: str) -> list[str]:
     assert program.packing is not None
     return [
         f"flat {direction} {'vec4' if i < program.packing.float_vectors else 'ivec4'} {name};"
@@ -264,13 +266,15 @@ def _vector_declarations(program: Program, direction: str) -> list[str]:
     ]
 
 
-def _globals(program: Program, wanted: list[str]) -> list[Line]:
+def _globals(program: GlslProgram, wanted: list[str]) -> list[Line]:
     types = {name: value.type for name, value in program.module.frame}
     lines = [Line(f"{types[name]} {program.names.frame[name]};") for name in wanted]
     return [Line(""), Line("// Per-frame values that functions read."), *lines] if lines else []
 
 
-def _type_lines(program: Program, writer: GlslWriter, functions: Iterable[Function]) -> list[Line]:
+def _type_lines(
+    program: GlslProgram, writer: GlslWriter, functions: Iterable[Function]
+) -> list[Line]:
     types = list(types_in(program.module, functions))
     held = {t.element for t in types if isinstance(t, Array)}
     lines: list[Line] = []

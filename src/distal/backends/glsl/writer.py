@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import assert_never
 
-from distal.backends.clike.code import Code, Level, infix, literal_code, tight
+from distal.backends.clike.code import Code, Precedence, infix, literal_code, tight
 from distal.backends.clike.constants import is_table
 from distal.backends.clike.expense import EAGER_OPERATIONS, Expense
 from distal.backends.clike.functions import FunctionWriter
@@ -232,7 +232,7 @@ class GlslWriter(FunctionWriter):
         # No version has && or & of bool vectors: count what is true, as floats.
         as_floats = f"vec{component_count(type)}"
         sides = (self.call(as_floats, [side]) for side in (lhs, rhs))
-        operator = ("*", Level.PRODUCT) if op is BinaryOp.AND else ("+", Level.SUM)
+        operator = ("*", Precedence.PRODUCT) if op is BinaryOp.AND else ("+", Precedence.SUM)
         joined = infix(*operator, *sides)
         return self.call(str(type), [joined])
 
@@ -242,7 +242,7 @@ class GlslWriter(FunctionWriter):
         if isinstance(count, Const):
             wide = "u" if kind_of(count.type) is Kind.UINT else ""
             rhs = Code(f"{int(count.value) & 31}{wide}")
-        return infix(e.op.value, Level.SHIFT, lhs, rhs)
+        return infix(e.op.value, Precedence.SHIFT, lhs, rhs)
 
     def chosen(self, e: Select, condition: Code, yes: Code, no: Code) -> Code | None:
         if not isinstance(e.type, Scalar | Vector | Matrix):
@@ -251,9 +251,9 @@ class GlslWriter(FunctionWriter):
             lanes = component_count(e.type) if isinstance(e.type, Vector) else 1
             picks = self.call(f"bvec{lanes}", [condition]) if lanes > 1 else condition
             return self.call("mix", [no, yes, picks])
-        test = f"({condition.text})" if condition.level is Level.TERNARY else condition.text
-        first = f"({yes.text})" if yes.level is Level.TERNARY else yes.text
-        return Code(f"{test} ? {first} : {no.text}", Level.TERNARY)
+        test = f"({condition.text})" if condition.level is Precedence.TERNARY else condition.text
+        first = f"({yes.text})" if yes.level is Precedence.TERNARY else yes.text
+        return Code(f"{test} ? {first} : {no.text}", Precedence.TERNARY)
 
     def _is_picked(self, e: Select) -> bool:
         """Whether both values are computed: ``?:`` may be a branch, ``mix`` by a bool never is.

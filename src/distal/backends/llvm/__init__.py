@@ -30,9 +30,9 @@ def emit_for(module: Module, lanes: Lanes) -> Artifact:
     """The LLVM text of a module for one shape of vectors."""
     # A kernel found in the cache is run without any of this.
     from distal.backends.llvm.kernels import kernels  # noqa: PLC0415
-    from distal.backends.llvm.program import Program  # noqa: PLC0415
+    from distal.backends.llvm.program import LaneProgram  # noqa: PLC0415
 
-    program = Program(module, lanes)
+    program = LaneProgram(module, lanes)
     frame_apart = kernels(program)
     interface = description(module)
     interface["target"] = TARGET.name

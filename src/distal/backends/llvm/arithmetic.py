@@ -1,6 +1,6 @@
 """Operations on leaves: once when every operand is uniform, else once for each chunk.
 
-Input: leaves. Output: instructions in a ``Writer``, and leaves that name their
+Input: leaves. Output: instructions in a ``LlvmWriter``, and leaves that name their
 results. A uniform operand is broadcast as late as possible, and once for each stretch of code that
 is certain to run together. Knows nothing of IR nodes, variables or control flow.
 """
@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves
-from distal.backends.llvm.writer import Writer
+from distal.backends.llvm.writer import LlvmWriter
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind
 
@@ -42,10 +42,10 @@ _INTEGER_OPS = {
 }
 
 
-class Arithmetic:
+class LaneArithmetic:
     """Writes operations; keeps the broadcasts of uniform leaves."""
 
-    def __init__(self, lanes: Lanes, writer: Writer, declarations: set[str]) -> None:
+    def __init__(self, lanes: Lanes, writer: LlvmWriter, declarations: set[str]) -> None:
         self.lanes = lanes
         self.writer = writer
         self.declarations = declarations

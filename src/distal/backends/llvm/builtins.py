@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from distal.backends.llvm.arithmetic import Arithmetic
+from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.lanes import Leaf, Leaves, leaf_count
 from distal.backends.llvm.roots import inverse_square_root, square_root
 from distal.ir.intrinsics import INTRINSICS
@@ -22,7 +22,7 @@ _ROUNDING = {"floor": "floor", "ceil": "ceil", "round": "rint", "trunc": "trunc"
 
 
 def builtin(
-    arithmetic: Arithmetic, name: str, args: tuple[Leaves, ...], types: tuple[Type, ...]
+    arithmetic: LaneArithmetic, name: str, args: tuple[Leaves, ...], types: tuple[Type, ...]
 ) -> Leaves:
     """A built-in applied to arguments."""
     first = args[0]
@@ -48,7 +48,7 @@ def builtin(
             return tuple(_component(arithmetic, name, row) for row in zip(*args, strict=True))
 
 
-def _dot(arithmetic: Arithmetic, a: Leaves, b: Leaves) -> Leaf:
+def _dot(arithmetic: LaneArithmetic, a: Leaves, b: Leaves) -> Leaf:
     total = arithmetic.binary(BinaryOp.MUL, a[0], b[0])
     for x, y in zip(a[1:], b[1:], strict=True):
         product = arithmetic.binary(BinaryOp.MUL, x, y)
@@ -56,7 +56,7 @@ def _dot(arithmetic: Arithmetic, a: Leaves, b: Leaves) -> Leaf:
     return total
 
 
-def _cross(arithmetic: Arithmetic, a: Leaves, b: Leaves) -> Leaves:
+def _cross(arithmetic: LaneArithmetic, a: Leaves, b: Leaves) -> Leaves:
     def minor(i: int, j: int) -> Leaf:
         plus = arithmetic.binary(BinaryOp.MUL, a[i], b[j])
         return arithmetic.binary(BinaryOp.SUB, plus, arithmetic.binary(BinaryOp.MUL, a[j], b[i]))
@@ -64,14 +64,14 @@ def _cross(arithmetic: Arithmetic, a: Leaves, b: Leaves) -> Leaves:
     return minor(1, 2), minor(2, 0), minor(0, 1)
 
 
-def _joined(arithmetic: Arithmetic, op: str, leaves: Leaves) -> Leaf:
+def _joined(arithmetic: LaneArithmetic, op: str, leaves: Leaves) -> Leaf:
     joined = leaves[0]
     for leaf in leaves[1:]:
         joined = arithmetic.apply(Kind.BOOL, f"{op} {{t0}} {{0}}, {{1}}", joined, leaf)
     return joined
 
 
-def _component(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
+def _component(arithmetic: LaneArithmetic, name: str, args: Leaves) -> Leaf:
     x, kind = args[0], args[0].kind
     match name:
         case "abs":
@@ -111,7 +111,7 @@ def _component(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
             return _library(arithmetic, name, args)
 
 
-def _sign(arithmetic: Arithmetic, x: Leaf) -> Leaf:
+def _sign(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
     zero = arithmetic.constant(0, x.kind)
     below = arithmetic.compare(CompareOp.LT, x, zero)
     above = arithmetic.compare(CompareOp.LT, zero, x)
@@ -119,7 +119,7 @@ def _sign(arithmetic: Arithmetic, x: Leaf) -> Leaf:
     return arithmetic.select(above, arithmetic.constant(1, x.kind), negative)
 
 
-def _bits_of(arithmetic: Arithmetic, x: Leaf, kind: Kind) -> Leaf:
+def _bits_of(arithmetic: LaneArithmetic, x: Leaf, kind: Kind) -> Leaf:
     """The bits of a float of 32 bits, whatever the precision."""
     if arithmetic.lanes.precision == 32:
         return arithmetic.apply(kind, "bitcast {t0} {0} to {r}", x)
@@ -133,7 +133,7 @@ def _bits_of(arithmetic: Arithmetic, x: Leaf, kind: Kind) -> Leaf:
     return Leaf(kind, tuple(names), x.uniform)
 
 
-def _float_of(arithmetic: Arithmetic, x: Leaf) -> Leaf:
+def _float_of(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
     """The float of 32 bits with these bits, widened to the precision."""
     if arithmetic.lanes.precision == 32:
         return arithmetic.apply(Kind.FLOAT, "bitcast {t0} {0} to {r}", x)
@@ -147,7 +147,7 @@ def _float_of(arithmetic: Arithmetic, x: Leaf) -> Leaf:
     return Leaf(Kind.FLOAT, tuple(names), x.uniform)
 
 
-def _library(arithmetic: Arithmetic, name: str, args: Leaves) -> Leaf:
+def _library(arithmetic: LaneArithmetic, name: str, args: Leaves) -> Leaf:
     """An elementary function of the C library; pow's first argument is held above 0."""
     if name in ("atan2", "raw_atan2"):
         # On the axis the signs of zeros count for nothing; the library turns by pi for x = -0, and

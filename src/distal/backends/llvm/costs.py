@@ -37,7 +37,7 @@ _DIVISION = 8  # also of a square root: vector dividers take about eight multipl
 _HEAVY = frozenset(("sqrt", "inversesqrt"))
 
 
-class Costs:
+class LaneCosts:
     """Costs within one module; a call costs what its function costs, a loop counts as endless."""
 
     LOOP = 1000

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
-from distal.backends.llvm.arithmetic import Arithmetic
+from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.builtins import builtin
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored, field_offset, leaf_count, leaf_kinds
 from distal.backends.llvm.layout import RESOURCE_BYTES
@@ -65,7 +65,7 @@ from distal.ir.types import (
 )
 
 if TYPE_CHECKING:
-    from distal.backends.llvm.program import Program
+    from distal.backends.llvm.program import LaneProgram
 
 # A branch around one side of a conditional expression is worth about this much work.
 BRANCH_COST = 40
@@ -73,10 +73,12 @@ BRANCH_COST = 40
 _Value = Leaves | Stored
 
 
-class Expressions:
+class LaneExpressions:
     """Computes expressions for one function under construction."""
 
-    def __init__(self, program: Program, arithmetic: Arithmetic, uniformity: Uniformity) -> None:
+    def __init__(
+        self, program: LaneProgram, arithmetic: LaneArithmetic, uniformity: Uniformity
+    ) -> None:
         self.program = program
         self.uniformity = uniformity
         self.arithmetic = arithmetic

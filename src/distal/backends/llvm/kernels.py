@@ -1,14 +1,14 @@
 """The loops around a scene: tiles of a picture, the per-frame part, batches of points.
 
-Input: a ``Program``. Output: exported LLVM functions that take a job (see
+Input: a ``LaneProgram``. Output: exported LLVM functions that take a job (see
 ``layout``). Every thread calls the same kernel once; it takes one tile after the other from a
 shared counter until none is left or the stop flag is up.
 """
 
 from __future__ import annotations
 
-from distal.backends.llvm.arithmetic import Arithmetic
-from distal.backends.llvm.expressions import Expressions
+from distal.backends.llvm.arithmetic import LaneArithmetic
+from distal.backends.llvm.expressions import LaneExpressions
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, Stored, leaf_kinds
 from distal.backends.llvm.layout import (
     BATCH,
@@ -21,15 +21,15 @@ from distal.backends.llvm.layout import (
     TILE_WIDTH,
 )
 from distal.backends.llvm.pixels import channels, chunk_pixels, interleaved, pixel_address
-from distal.backends.llvm.program import Program, prologue
+from distal.backends.llvm.program import LaneProgram, prologue
 from distal.backends.llvm.storage import Storage
 from distal.backends.llvm.uniformity import Uniformity
-from distal.backends.llvm.writer import Writer
+from distal.backends.llvm.writer import LlvmWriter
 from distal.ir.nodes import EntryKind, Function, PerFrame
 from distal.ir.types import FLOAT, VEC4, Kind, Scalar
 
 
-def kernels(program: Program) -> bool:
+def kernels(program: LaneProgram) -> bool:
     """Define every kernel that the module needs; whether the per-frame one needs a thread."""
     frame_apart = False
     if program.module.frame:
@@ -44,17 +44,17 @@ def kernels(program: Program) -> bool:
     return frame_apart
 
 
-def _define(program: Program, name: str, writer: Writer) -> None:
+def _define(program: LaneProgram, name: str, writer: LlvmWriter) -> None:
     program.define(f"define void @{name}(ptr noalias %job) #0 {{\n{writer.text()}\n}}")
 
 
-def _frame(program: Program) -> None:
+def _frame(program: LaneProgram) -> None:
     """Scalar code that fills the per-frame values, each of which may read those before it."""
     arithmetic = program.arithmetic()
     writer = arithmetic.writer
     prologue(writer)
     nothing = Function("frame", (), FLOAT, (), "frame")
-    expressions = Expressions(program, arithmetic, Uniformity(nothing, frozenset()))
+    expressions = LaneExpressions(program, arithmetic, Uniformity(nothing, frozenset()))
     storage = Storage(arithmetic)
     for name, value in program.module.frame:
         leaves = expressions.value(value)
@@ -66,7 +66,7 @@ def _frame(program: Program) -> None:
     _define(program, FRAME, writer)
 
 
-def _field(writer: Writer, name: str, type: str = "i32") -> str:
+def _field(writer: LlvmWriter, name: str, type: str = "i32") -> str:
     at = writer.value(f"getelementptr i8, ptr %job, i64 {JOB_OFFSET[name]}")
     return writer.value(f"load {type}, ptr {at}, !invariant.load !0")
 
@@ -74,7 +74,7 @@ def _field(writer: Writer, name: str, type: str = "i32") -> str:
 class _Tiles:
     """The loop that takes tiles from the counter."""
 
-    def __init__(self, writer: Writer) -> None:
+    def __init__(self, writer: LlvmWriter) -> None:
         self.writer = writer
         counter, tiles = _field(writer, "counter", "ptr"), _field(writer, "tiles")
         self.next, self.done = writer.label("tile"), writer.label("done")
@@ -99,7 +99,7 @@ class _Tiles:
 class _Count:
     """A loop over ``start, start + step …`` below ``stop``, at least once."""
 
-    def __init__(self, writer: Writer, start: str, stop: str, step: int) -> None:
+    def __init__(self, writer: LlvmWriter, start: str, stop: str, step: int) -> None:
         self.writer, self.stop, self.step = writer, stop, step
         self.label, self.done = writer.label("row"), writer.label("past")
         self.start, self.before = start, writer.block
@@ -118,12 +118,12 @@ class _Count:
         writer.begin(self.done)
 
 
-def _least(writer: Writer, a: str, b: str) -> str:
+def _least(writer: LlvmWriter, a: str, b: str) -> str:
     less = writer.value(f"icmp slt i32 {a}, {b}")
     return writer.value(f"select i1 {less}, i32 {a}, i32 {b}")
 
 
-def _render(program: Program) -> None:
+def _render(program: LaneProgram) -> None:
     """Blocks of a picture, the top row first in memory, though coordinates count from below."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes
@@ -155,7 +155,7 @@ def _render(program: Program) -> None:
 
 
 def _pixels(
-    program: Program, arithmetic: Arithmetic, x: str, y: str, size: tuple[str, str]
+    program: LaneProgram, arithmetic: LaneArithmetic, x: str, y: str, size: tuple[str, str]
 ) -> Leaves:
     """The colours of a block whose upper left pixel is at column x, row y from the top."""
     lanes, writer = program.lanes, arithmetic.writer
@@ -188,7 +188,7 @@ def _pixels(
     return arithmetic.spread_all(result)
 
 
-def _within(writer: Writer, type: str, position: str, edge: tuple[str, str]) -> str:
+def _within(writer: LlvmWriter, type: str, position: str, edge: tuple[str, str]) -> str:
     """Positions that compare rightly with an edge; the edge instead of others."""
     order, limit = edge
     bools = type.replace("i32", "i1")
@@ -197,7 +197,7 @@ def _within(writer: Writer, type: str, position: str, edge: tuple[str, str]) -> 
 
 
 def _write(
-    arithmetic: Arithmetic,
+    arithmetic: LaneArithmetic,
     color: Leaves,
     corner: tuple[str, str],
     size: tuple[str, str],
@@ -245,7 +245,7 @@ def _write(
     writer.begin(done)
 
 
-def _batch(program: Program) -> None:
+def _batch(program: LaneProgram) -> None:
     """Blocks of points: each leaf of the arguments is a run of ``stride`` slots."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes
@@ -282,21 +282,23 @@ def _batch(program: Program) -> None:
     _define(program, BATCH, writer)
 
 
-def _leaf_at(writer: Writer, lanes: Lanes, base: str, leaf: int, stride: str, points: str) -> str:
+def _leaf_at(
+    writer: LlvmWriter, lanes: Lanes, base: str, leaf: int, stride: str, points: str
+) -> str:
     run = writer.value(f"mul i64 {stride}, {leaf}")
     slot = writer.value(f"add i64 {run}, {points}")
     byte = writer.value(f"mul i64 {slot}, {lanes.slot}")
     return writer.value(f"getelementptr i8, ptr {base}, i64 {byte}")
 
 
-def _maps_pixels(program: Program) -> bool:
+def _maps_pixels(program: LaneProgram) -> bool:
     """Whether the function makes a pixel of a pixel: what encodes pictures for display does."""
     entry = program.module.function(program.module.entry)
     types = [param.type for param in entry.params]
     return types == [VEC4] and entry.result is VEC4 and program.lanes.precision == 32
 
 
-def _map_pixels(program: Program) -> None:
+def _map_pixels(program: LaneProgram) -> None:
     """Pixels in, pixels out, four floats each: a picture need not be taken apart for it."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes

@@ -70,7 +70,7 @@ def kinds_in(shape: Any) -> list[str]:
 
 
 @dataclass(slots=True)
-class Layout:
+class KernelLayout:
     """Slots of everything a kernel reads."""
 
     uniforms: dict[str, int] = field(default_factory=dict)
@@ -80,9 +80,9 @@ class Layout:
     resources: dict[str, int] = field(default_factory=dict)
 
     @staticmethod
-    def of(module: Module) -> Layout:
+    def of(module: Module) -> KernelLayout:
         """The layout of a module."""
-        layout = Layout()
+        layout = KernelLayout()
         for uniform in module.uniforms:
             layout.uniforms[uniform.name] = layout.uniform_slots
             layout.uniform_slots += len(leaf_kinds(uniform.type))
@@ -95,7 +95,7 @@ class Layout:
 
 def description(module: Module) -> dict[str, Any]:
     """What a host needs to call the kernels of a module, as plain data."""
-    layout = Layout.of(module)
+    layout = KernelLayout.of(module)
     entry = module.function(module.entry)
     image = module.kind is EntryKind.IMAGE
     return {

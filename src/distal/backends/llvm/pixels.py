@@ -6,13 +6,13 @@ pixels in the order in which a picture holds them. Knows nothing of the loops ar
 
 from __future__ import annotations
 
-from distal.backends.llvm.arithmetic import Arithmetic
+from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.lanes import Leaf, Leaves
-from distal.backends.llvm.writer import Writer
+from distal.backends.llvm.writer import LlvmWriter
 from distal.ir.types import Kind
 
 
-def pixel_address(writer: Writer, base: str, x: str, y: str, width: str) -> str:
+def pixel_address(writer: LlvmWriter, base: str, x: str, y: str, width: str) -> str:
     """The address of a pixel of four floats."""
     wide = [writer.value(f"zext i32 {n} to i64") for n in (x, y, width)]
     row = writer.value(f"mul i64 {wide[1]}, {wide[2]}")
@@ -20,7 +20,7 @@ def pixel_address(writer: Writer, base: str, x: str, y: str, width: str) -> str:
     return writer.value(f"getelementptr <4 x float>, ptr {base}, i64 {index}")
 
 
-def interleaved(arithmetic: Arithmetic, color: Leaves) -> list[str]:
+def interleaved(arithmetic: LaneArithmetic, color: Leaves) -> list[str]:
     """The block's rows as pixels of red, green, blue and alpha, always floats of 32 bits."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     parts, across = chunk_pixels(arithmetic, color), lanes.block_width * 4
@@ -30,7 +30,7 @@ def interleaved(arithmetic: Arithmetic, color: Leaves) -> list[str]:
     ]
 
 
-def chunk_pixels(arithmetic: Arithmetic, color: Leaves) -> list[str]:
+def chunk_pixels(arithmetic: LaneArithmetic, color: Leaves) -> list[str]:
     """Each chunk of lanes as pixels."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     width, narrow = lanes.width, f"<{lanes.width} x float>"
@@ -57,7 +57,7 @@ def chunk_pixels(arithmetic: Arithmetic, color: Leaves) -> list[str]:
     return parts
 
 
-def _run(writer: Writer, parts: list[str], size: int, first: int, count: int) -> str:
+def _run(writer: LlvmWriter, parts: list[str], size: int, first: int, count: int) -> str:
     """``count`` consecutive numbers out of vectors of ``size`` laid end to end."""
     if count <= size:
         part, start = parts[first // size], first % size
@@ -76,7 +76,7 @@ def _run(writer: Writer, parts: list[str], size: int, first: int, count: int) ->
     return writer.value(f"shufflevector {type} {low}, {type} {high}, <{count} x i32> <{order}>")
 
 
-def channels(arithmetic: Arithmetic, pointers: list[str]) -> Leaves:
+def channels(arithmetic: LaneArithmetic, pointers: list[str]) -> Leaves:
     """Red, green, blue and alpha of the pixels at each chunk's address."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     type = f"<{lanes.width * 4} x float>"

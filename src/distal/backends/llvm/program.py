@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from collections import Counter
 
-from distal.backends.llvm.arithmetic import Arithmetic
-from distal.backends.llvm.costs import Costs
-from distal.backends.llvm.expressions import Expressions
+from distal.backends.llvm.arithmetic import LaneArithmetic
+from distal.backends.llvm.costs import LaneCosts
+from distal.backends.llvm.expressions import LaneExpressions
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, leaf_kinds
-from distal.backends.llvm.layout import JOB_OFFSET, Layout
+from distal.backends.llvm.layout import JOB_OFFSET, KernelLayout
 from distal.backends.llvm.statements import Statements
 from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import Uniformity
-from distal.backends.llvm.writer import Writer
+from distal.backends.llvm.writer import LlvmWriter
 from distal.diagnostics import CompileError
 from distal.ir.nodes import Call, Expr, Function, Module
 from distal.ir.types import Kind
@@ -33,14 +33,14 @@ ARRAY_BYTES = 8 * 2**20
 _SMALL_ARRAY_BYTES = 2**18
 
 
-class Program:
+class LaneProgram:
     """What the functions of one LLVM module share."""
 
     def __init__(self, module: Module, lanes: Lanes) -> None:
         self.module = module
         self.lanes = lanes
-        self.layout = Layout.of(module)
-        self.costs = Costs(module.functions)
+        self.layout = KernelLayout.of(module)
+        self.costs = LaneCosts(module.functions)
         self.declarations: set[str] = set()
         self.polls = False
         self._array_bytes = 0
@@ -76,9 +76,9 @@ class Program:
                 "put constant numbers into a Buffer",
             )
 
-    def arithmetic(self) -> Arithmetic:
+    def arithmetic(self) -> LaneArithmetic:
         """For a new function."""
-        return Arithmetic(self.lanes, Writer(), self.declarations)
+        return LaneArithmetic(self.lanes, LlvmWriter(), self.declarations)
 
     def table(self, leaves: Leaves) -> str:
         """The name of a constant table, one slot for each leaf."""
@@ -101,7 +101,7 @@ class Program:
         value = {"true": "1", "false": "0"}.get(leaf.names[0], leaf.names[0])
         return f"{self._slot_type(leaf.kind)} {value}"
 
-    def call(self, caller: Expressions, name: str, args: tuple[Expr, ...]) -> Leaves:
+    def call(self, caller: LaneExpressions, name: str, args: tuple[Expr, ...]) -> Leaves:
         """Call a function with the caller's active lanes."""
         function = self._functions[name]
         # A static argument (a texture) was bound by the specialise pass.
@@ -143,7 +143,7 @@ class Program:
         return f"{{ {', '.join(names)} }}"
 
     def _unpacked(
-        self, writer: Writer, result: str, type: str, kinds: tuple[Kind, ...], *, uniform: bool
+        self, writer: LlvmWriter, result: str, type: str, kinds: tuple[Kind, ...], *, uniform: bool
     ) -> Leaves:
         per_leaf = 1 if uniform else self.lanes.chunks
         names = [
@@ -211,7 +211,7 @@ class Program:
 
     def run(
         self,
-        arithmetic: Arithmetic,
+        arithmetic: LaneArithmetic,
         function: Function,
         args: list[Leaves],
         varying: tuple[bool, ...],
@@ -219,7 +219,7 @@ class Program:
     ) -> Leaves:
         """Write a function's body where the writer stands."""
         names = frozenset(p.name for p, vary in zip(function.params, varying, strict=True) if vary)
-        expressions = Expressions(self, arithmetic, Uniformity(function, names))
+        expressions = LaneExpressions(self, arithmetic, Uniformity(function, names))
         expressions.mask = mask
         statements = Statements(expressions, function)
         for param, leaves in zip(function.params, args, strict=True):
@@ -255,7 +255,7 @@ class Program:
         return "\n\n".join(parts) + "\n"
 
 
-def prologue(writer: Writer) -> None:
+def prologue(writer: LlvmWriter) -> None:
     """Name what a job points to; what is not used is removed later."""
     for name in ("stop", "uniforms", "frame", "resources"):
         at = writer.value(f"getelementptr i8, ptr %job, i64 {JOB_OFFSET[name]}")

@@ -9,7 +9,7 @@ of the first example: 64 lanes took 7.7 ms a picture with it and 5.9 ms without.
 
 from __future__ import annotations
 
-from distal.backends.llvm.arithmetic import Arithmetic
+from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.lanes import Leaf
 from distal.ir.nodes import CompareOp
 from distal.ir.types import Kind
@@ -23,13 +23,13 @@ _INFINITIES = 0x00110000
 _SMALLEST, _LARGEST = 2.0**-100, 2.0**100
 
 
-def _estimates(arithmetic: Arithmetic, *leaves: Leaf) -> bool:
+def _estimates(arithmetic: LaneArithmetic, *leaves: Leaf) -> bool:
     lanes = arithmetic.lanes
     varying = not all(leaf.uniform for leaf in leaves)
     return lanes.level == "avx512" and lanes.precision == 32 and varying
 
 
-def square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
+def square_root(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
     """The square root; of 0, infinity and NaN themselves, NaN below 0."""
     if not _estimates(arithmetic, x):
         return arithmetic.intrinsic("sqrt", Kind.FLOAT, x)
@@ -46,7 +46,7 @@ def square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
     return Leaf(Kind.FLOAT, tuple(names), False)
 
 
-def inverse_square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
+def inverse_square_root(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
     """``1 / sqrt(x)``: infinite for 0, 0 for infinity."""
     if not _estimates(arithmetic, x):
         one = arithmetic.constant(1.0, Kind.FLOAT)
@@ -64,7 +64,7 @@ def inverse_square_root(arithmetic: Arithmetic, x: Leaf) -> Leaf:
     return Leaf(Kind.FLOAT, tuple(names), False)
 
 
-def quotient(arithmetic: Arithmetic, a: Leaf, b: Leaf) -> Leaf:
+def quotient(arithmetic: LaneArithmetic, a: Leaf, b: Leaf) -> Leaf:
     """``a / b``, by the reciprocal of a divisor that all lanes share.
 
     The product with the rounded reciprocal is put right by what it leaves over (P. Markstein,
@@ -96,7 +96,7 @@ def quotient(arithmetic: Arithmetic, a: Leaf, b: Leaf) -> Leaf:
     return Leaf(Kind.FLOAT, tuple(names), False)
 
 
-def _reciprocals(arithmetic: Arithmetic, b: Leaf, one: Leaf) -> tuple[Leaf, Leaf]:
+def _reciprocals(arithmetic: LaneArithmetic, b: Leaf, one: Leaf) -> tuple[Leaf, Leaf]:
     """``1 / b``, and the same again for the correction: 0 where ``b`` is near the range's ends."""
     reciprocal = arithmetic.divide(one, b)
     size = arithmetic.intrinsic("fabs", Kind.FLOAT, b)
@@ -106,7 +106,7 @@ def _reciprocals(arithmetic: Arithmetic, b: Leaf, one: Leaf) -> tuple[Leaf, Leaf
     return reciprocal, arithmetic.select(arithmetic.both(above, below), reciprocal, zero)
 
 
-def _estimate(arithmetic: Arithmetic, name: str) -> str:
+def _estimate(arithmetic: LaneArithmetic, name: str) -> str:
     vector = arithmetic.lanes.vector(Kind.FLOAT)
     arithmetic.declarations.add(f"declare {vector} {_RSQRT}({vector}, {vector}, i16)")
     return arithmetic.writer.value(
@@ -114,7 +114,7 @@ def _estimate(arithmetic: Arithmetic, name: str) -> str:
     )
 
 
-def _fused(arithmetic: Arithmetic, a: str, b: str, c: str) -> str:
+def _fused(arithmetic: LaneArithmetic, a: str, b: str, c: str) -> str:
     """``a * b + c`` rounded once."""
     vector = arithmetic.lanes.vector(Kind.FLOAT)
     name = f"@llvm.fma.v{arithmetic.lanes.width}f32"
@@ -124,7 +124,7 @@ def _fused(arithmetic: Arithmetic, a: str, b: str, c: str) -> str:
     )
 
 
-def _except(arithmetic: Arithmetic, value: str, own: str, classes: int) -> str:
+def _except(arithmetic: LaneArithmetic, value: str, own: str, classes: int) -> str:
     """``value``, but ``own`` where that is of one of some classes of numbers."""
     vector, whole = arithmetic.lanes.vector(Kind.FLOAT), arithmetic.lanes.vector(Kind.INT)
     arithmetic.declarations.add(
@@ -136,7 +136,7 @@ def _except(arithmetic: Arithmetic, value: str, own: str, classes: int) -> str:
     )
 
 
-def _unless_nan(arithmetic: Arithmetic, value: str, otherwise: str) -> str:
+def _unless_nan(arithmetic: LaneArithmetic, value: str, otherwise: str) -> str:
     vector, bools = arithmetic.lanes.vector(Kind.FLOAT), arithmetic.lanes.vector(Kind.BOOL)
     nan = arithmetic.writer.value(f"fcmp uno {vector} {value}, {value}")
     return arithmetic.writer.value(f"select {bools} {nan}, {vector} {otherwise}, {vector} {value}")

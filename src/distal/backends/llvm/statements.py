@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
-from distal.backends.llvm.expressions import Expressions
+from distal.backends.llvm.expressions import LaneExpressions
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored, field_offset
 from distal.backends.llvm.loops import Loops
 from distal.backends.llvm.uniformity import reads_in
@@ -43,7 +43,7 @@ SKIP_COST = 40
 class Statements:
     """Writes the statements of one function."""
 
-    def __init__(self, expressions: Expressions, function: Function) -> None:
+    def __init__(self, expressions: LaneExpressions, function: Function) -> None:
         self.expressions = expressions
         self.arithmetic = expressions.arithmetic
         self.writer = expressions.writer

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from distal.backends.llvm.arithmetic import Arithmetic
+from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored, leaf_kinds
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import FLOAT, Kind, Type
@@ -22,7 +22,7 @@ _SLOT_KIND = {Kind.FLOAT: Kind.FLOAT, Kind.INT: Kind.INT, Kind.UINT: Kind.UINT, 
 class Storage:
     """Loads and stores."""
 
-    def __init__(self, arithmetic: Arithmetic) -> None:
+    def __init__(self, arithmetic: LaneArithmetic) -> None:
         self.arithmetic = arithmetic
         self.lanes = arithmetic.lanes
         self.writer = arithmetic.writer

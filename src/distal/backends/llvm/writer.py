@@ -10,7 +10,7 @@ by ``distal compile --target llvm`` without LLVM being installed.
 from __future__ import annotations
 
 
-class Writer:
+class LlvmWriter:
     """Lines of a function under construction."""
 
     def __init__(self) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from distal.backends.numpy import operations
 from distal.backends.numpy.operations import Leaf, Value
-from distal.backends.numpy.scopes import Frame, Scope
+from distal.backends.numpy.scopes import FunctionCall, Scope
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Apply,
@@ -52,7 +52,7 @@ from distal.ir.walk import children
 Memo = dict[Expr, Value]
 
 
-class Expressions:
+class ReferenceExpressions:
     """Computes expressions of one module with one set of uniforms and resources.
 
     Args:
@@ -83,7 +83,7 @@ class Expressions:
         self._calls: dict[Expr, bool] = {}
         self._constants: Memo = {}
         self._per_frame: dict[str, Value] = {}
-        nowhere = Scope(Frame(1), 1)
+        nowhere = Scope(FunctionCall(1), 1)
         with np.errstate(all="ignore"):
             for name, value in module.frame:
                 self._per_frame[name] = self._evaluate(value, nowhere, {})

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.backends.numpy import operations
-from distal.backends.numpy.expressions import Expressions, Memo
+from distal.backends.numpy.expressions import Memo, ReferenceExpressions
 from distal.backends.numpy.operations import Leaf, Value
-from distal.backends.numpy.scopes import Frame, Scope, Way
+from distal.backends.numpy.scopes import FunctionCall, Scope, Way
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -58,8 +58,8 @@ Ways = NDArray[np.int8]
 Rounds = Callable[[NDArray[np.intp], Scope, int], tuple[Leaf, Leaf]]
 
 
-class Interpreter(Expressions):
-    """Runs functions of one module; see ``Expressions`` for what it is given."""
+class Interpreter(ReferenceExpressions):
+    """Runs functions of one module; see ``ReferenceExpressions`` for what it is given."""
 
     def run(self, name: str, args: Sequence[Value]) -> Value:
         """The value of a function in every lane of its arguments."""
@@ -69,7 +69,7 @@ class Interpreter(Expressions):
     def _call(self, name: str, args: Sequence[Value]) -> Value:
         function = self._functions[name]
         lanes = max((operations.width(arg) for arg in args), default=1)
-        frame = Frame(lanes)
+        frame = FunctionCall(lanes)
         scope = Scope(frame, lanes)
         for param, arg in zip(function.params, args, strict=True):
             scope.bind(param.name, arg)

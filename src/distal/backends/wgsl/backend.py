@@ -19,7 +19,7 @@ from distal.backends.wgsl.functions import function_interface
 from distal.backends.wgsl.layout import lay_out
 from distal.backends.wgsl.names import OWN, VOCABULARY
 from distal.backends.wgsl.resources import texture_binding
-from distal.backends.wgsl.stages import Program, program_lines
+from distal.backends.wgsl.stages import WgslProgram, program_lines
 from distal.backends.wgsl.targets import WgslTarget
 from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
 from distal.ir.target import Target
@@ -50,7 +50,7 @@ def _with_resolution(module: Module) -> Module:
     return replace(module, uniforms=(size, *module.uniforms))
 
 
-def _program(module: Module, target: WgslTarget) -> Program:
+def _program(module: Module, target: WgslTarget) -> WgslProgram:
     names = name_module(module, VOCABULARY, has_members=True)
     # A value that only later values are made of stays a local of frame_main.
     read = per_frame_reads_in(module.functions)
@@ -60,7 +60,7 @@ def _program(module: Module, target: WgslTarget) -> Program:
     tile = _tile_name(module, names)
     members = [(u.name, u.type) for u in module.uniforms]
     uniforms = lay_out((*members, *([(tile, Vector(Kind.UINT, 4))] if tile else [])))
-    return Program(module, names, resolution, tile, uniforms, frame, target.compute)
+    return WgslProgram(module, names, resolution, tile, uniforms, frame, target.compute)
 
 
 def _tile_name(module: Module, names: ModuleNames) -> str:
@@ -70,7 +70,7 @@ def _tile_name(module: Module, names: ModuleNames) -> str:
     return Namer(VOCABULARY.fields, names.uniforms.values()).name(_TILE)
 
 
-def _interface(program: Program, target: Target) -> dict[str, Any]:
+def _interface(program: WgslProgram, target: Target) -> dict[str, Any]:
     module, names = program.module, program.names
     result = interface(module, target, names)
     members = program.uniforms.members

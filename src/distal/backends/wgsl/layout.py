@@ -27,7 +27,7 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class StructLayout:
     """Members in order, and the size of the whole buffer."""
 
     members: tuple[Member, ...]
@@ -54,7 +54,7 @@ def _size(type: Type) -> int:
     return 4 * component_count(type)
 
 
-def lay_out(members: tuple[tuple[str, Type], ...]) -> Layout:
+def lay_out(members: tuple[tuple[str, Type], ...]) -> StructLayout:
     """Offsets of members in the given order."""
     placed, end = [], 0
     for name, type in members:
@@ -62,7 +62,7 @@ def lay_out(members: tuple[tuple[str, Type], ...]) -> Layout:
         offset = -(-end // alignment) * alignment
         placed.append(Member(name, type, offset, _size(type)))
         end = offset + _size(type)
-    return Layout(tuple(placed), max(16, -(-end // 16) * 16))
+    return StructLayout(tuple(placed), max(16, -(-end // 16) * 16))
 
 
 def shared_type(type: Type) -> Type:

@@ -21,7 +21,7 @@ from distal.backends.clike.expense import Expense
 from distal.backends.clike.module_names import ModuleNames, called_by, reachable, types_in
 from distal.backends.clike.module_text import uniform_comment
 from distal.backends.wgsl.functions import function_binding_lines, function_entry_lines
-from distal.backends.wgsl.layout import Layout, shared_type
+from distal.backends.wgsl.layout import StructLayout, shared_type
 from distal.backends.wgsl.names import OWN
 from distal.backends.wgsl.resources import accessor_lines, binding_lines, fetched_resources
 from distal.backends.wgsl.writer import WgslWriter
@@ -37,19 +37,19 @@ _COPIED_BYTES: Final = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class WgslProgram:
     """What the text is written from."""
 
     module: Module
     names: ModuleNames
     resolution: str  # the member of the uniforms that is the picture's size
     tile: str  # the member that says which part of the picture is computed; "" of a function
-    uniforms: Layout
-    frame: Layout
+    uniforms: StructLayout
+    frame: StructLayout
     compute: bool
 
 
-def program_lines(program: Program) -> list[Line]:
+def program_lines(program: WgslProgram) -> list[Line]:
     """The whole text."""
     module, names = program.module, program.names
     is_image = module.kind is EntryKind.IMAGE
@@ -78,7 +78,7 @@ def program_lines(program: Program) -> list[Line]:
 
 
 def _write_frame(
-    program: Program, writer: WgslWriter, written: tuple[Function, ...]
+    program: WgslProgram, writer: WgslWriter, written: tuple[Function, ...]
 ) -> list[Function]:
     """The entry point of the per-frame part, and the functions that it alone calls."""
     module, names = program.module, program.names
@@ -131,7 +131,7 @@ def _to_shared(value: Code, type: Type) -> str:
     return f"{converter}({value.text})"
 
 
-def copy_lines(program: Program, *, frame: bool = True) -> list[str]:
+def copy_lines(program: WgslProgram, *, frame: bool = True) -> list[str]:
     """The first lines of an entry point: what it reads of uniforms and of per-frame values."""
     lines = []
     if program.module.uniforms and program.uniforms.size <= _COPIED_BYTES:
@@ -142,7 +142,7 @@ def copy_lines(program: Program, *, frame: bool = True) -> list[str]:
     return lines
 
 
-def _copy(name: str, source: str, layout: Layout, names: Mapping[str, str]) -> list[str]:
+def _copy(name: str, source: str, layout: StructLayout, names: Mapping[str, str]) -> list[str]:
     """The copy of a struct; member by member where naga 29 fails on the whole (matrices of two)."""
     if not any(isinstance(m.type, Matrix) and m.type.size == 2 for m in layout.members):
         return [f"    {name} = {source};"]
@@ -158,7 +158,7 @@ def _input_lines(binding: int, name: str, source: str, type: str, size: int) -> 
     return [f"{here} {source}: {type};", f"var<private> {name}: {type};"]
 
 
-def _entry_points(program: Program) -> list[str]:
+def _entry_points(program: WgslProgram) -> list[str]:
     tile, resolution = (f"{OWN.uniforms}.{n}" for n in (program.tile, program.resolution))
     if program.compute:
         return [
@@ -196,7 +196,7 @@ def _entry_points(program: Program) -> list[str]:
     ]
 
 
-def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line]:
+def _binding_lines(program: WgslProgram, functions: Iterable[Function]) -> list[Line]:
     module, names = program.module, program.names
     lines: list[str] = []
     writer = WgslWriter(names, Expense(module), {}, {})
@@ -241,7 +241,9 @@ def _binding_lines(program: Program, functions: Iterable[Function]) -> list[Line
     return [Line(text) for text in [*lines, *accessors]]
 
 
-def _type_lines(program: Program, writer: WgslWriter, functions: Iterable[Function]) -> list[Line]:
+def _type_lines(
+    program: WgslProgram, writer: WgslWriter, functions: Iterable[Function]
+) -> list[Line]:
     lines: list[Line] = []
     for type in types_in(program.module, functions):
         if isinstance(type, Struct):

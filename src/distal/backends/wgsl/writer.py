@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import assert_never
 
-from distal.backends.clike.code import Code, Level, infix, literal_code, tight
+from distal.backends.clike.code import Code, Precedence, infix, literal_code, tight
 from distal.backends.clike.constants import is_literal_operation, is_table
 from distal.backends.clike.expense import EAGER_OPERATIONS, Expense
 from distal.backends.clike.functions import FunctionWriter
@@ -174,7 +174,7 @@ class WgslWriter(FunctionWriter):
         if kind_of(type) is not Kind.BOOL:
             return Code(text)
         zero = "0u" if isinstance(type, Scalar) else f"vec{component_count(type)}u()"
-        return Code(f"{text} != {zero}", Level.RELATION)
+        return Code(f"{text} != {zero}", Precedence.RELATION)
 
     def call(self, function: str, args: Iterable[Code]) -> Code:
         return super().call(self.other_functions.get(function, function), args)
@@ -237,7 +237,7 @@ class WgslWriter(FunctionWriter):
 
     def arguments(self, args: list[Code]) -> str:
         # f(a < b, c > d) would be read as one argument, a<b, c>.
-        loose = (Level.RELATION, Level.AND, Level.OR)
+        loose = (Precedence.RELATION, Precedence.AND, Precedence.OR)
         first = [f"({a.text})" if a.level in loose else a.text for a in args[:-1]]
         return ", ".join([*first, *(a.text for a in args[-1:])])
 
@@ -246,10 +246,10 @@ class WgslWriter(FunctionWriter):
 
     def unary_special(self, e: Unary) -> Code | None:
         if e.op is UnaryOp.NEGATE and kind_of(e.type) is Kind.UINT:
-            return infix("-", Level.SUM, Code("0u"), self.expression(e.operand))
+            return infix("-", Precedence.SUM, Code("0u"), self.expression(e.operand))
         if isinstance(e.type, Matrix):
             # The language has no minus before a matrix (WGSL, "Arithmetic Expressions").
-            return infix("*", Level.PRODUCT, Code("-1.0"), self.expression(e.operand))
+            return infix("*", Precedence.PRODUCT, Code("-1.0"), self.expression(e.operand))
         return None
 
     def matrix_scale(self, e: Binary) -> Code | None:
@@ -265,20 +265,22 @@ class WgslWriter(FunctionWriter):
                 code if isinstance(side, Splat) else Code(f"{tight(code)}[{i}]")
                 for side, code in ((e.lhs, lhs), (e.rhs, rhs))
             )
-            columns.append(infix("/", Level.PRODUCT, *sides))
+            columns.append(infix("/", Precedence.PRODUCT, *sides))
         return self.call(self.type_name(e.type), columns)
 
     def vector_compare(self, e: Compare) -> Code:
-        return infix(e.op.value, Level.RELATION, self.expression(e.lhs), self.expression(e.rhs))
+        return infix(
+            e.op.value, Precedence.RELATION, self.expression(e.lhs), self.expression(e.rhs)
+        )
 
     def bool_vector_binary(self, op: BinaryOp, lhs: Code, rhs: Code, type: Type) -> Code:
         if op is BinaryOp.XOR:
-            return infix("!=", Level.RELATION, lhs, rhs)
-        return infix(op.value, Level.BITS, lhs, rhs)
+            return infix("!=", Precedence.RELATION, lhs, rhs)
+        return infix(op.value, Precedence.BITS, lhs, rhs)
 
     def shift(self, e: Binary) -> Code:
         lhs = self.expression(e.lhs)
-        return infix(e.op.value, Level.SHIFT, lhs, self._count(e.rhs))
+        return infix(e.op.value, Precedence.SHIFT, lhs, self._count(e.rhs))
 
     def _count(self, e: Expr) -> Code:
         """A shift's count, which WGSL wants as u32."""

@@ -59,7 +59,7 @@ from distal.passes.decompose.edges import (
 )
 from distal.passes.decompose.indices import assignments, picked_element, settled_index
 from distal.passes.decompose.limits import Blame, constant_loop, refuse_expression, refuse_statement
-from distal.passes.naming import Names, local_names, module_names
+from distal.passes.naming import FreshNames, local_names, module_names
 from distal.passes.ranges import Ranges, declared_ranges
 
 _SAMPLERS: Final = {
@@ -78,7 +78,7 @@ def run(module: Module, context: Context) -> Module:
     while len(done) < len(linker.module.functions):
         for function in linker.module.functions:
             if function.name not in done:
-                done[function.name] = _Body(linker, context, function).function()
+                done[function.name] = _Decomposer(linker, context, function).function()
     standing_in = [replace(f, native=linker.natives.get(f.name)) for f in done.values()]
     functions = in_call_order(standing_in, module.entry)
     return replace(linker.module, functions=functions)
@@ -132,7 +132,7 @@ class _Linker:
         reads = [Read(p.name, p.type) for p in params]
         lanes = [components(r) if isinstance(r.type, Vector) else (r,) * type.size for r in reads]
         calls = (Call(scalar, args, Scalar(type.kind)) for args in zip(*lanes, strict=True))
-        new = Names(module_names(self.module)).fresh(f"{scalar}_{type}")
+        new = FreshNames(module_names(self.module)).fresh(f"{scalar}_{type}")
         body = (Return(Compose(tuple(calls), type), span=found.span),)
         function = Function(new, params, type, body, found.source_name, span=found.span)
         self.module = replace(self.module, functions=(*self.module.functions, function))
@@ -140,7 +140,7 @@ class _Linker:
         return new
 
 
-class _Body:
+class _Decomposer:
     """One function."""
 
     def __init__(self, linker: _Linker, context: Context, function: Function) -> None:
@@ -149,7 +149,7 @@ class _Body:
         self._target = context.target
         self._original = function
         self._blame = linker.blame(function.name)
-        self._names = Names(local_names(function))
+        self._names = FreshNames(local_names(function))
         # A host that leaves a parameter's declared range gets a loop of that range's length.
         self._ranges = Ranges(uniforms=declared_ranges(linker.module.uniforms))
         self._known: dict[Expr, Expr] = {}

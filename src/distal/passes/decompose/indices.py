@@ -22,7 +22,7 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import Buffer, index_count
 from distal.ir.walk import rebuild
-from distal.passes.naming import Names
+from distal.passes.naming import FreshNames
 from distal.passes.ranges import Ranges
 
 
@@ -54,7 +54,7 @@ def picked_element(e: Index) -> Expr:
     return chain
 
 
-def assignments(assign: Assign, names: Names) -> list[Stmt]:
+def assignments(assign: Assign, names: FreshNames) -> list[Stmt]:
     """The statement, or a ladder of Ifs that assigns the element a dynamic index means."""
     found = _outermost_dynamic(assign.target)
     if found is None:

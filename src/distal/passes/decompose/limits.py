@@ -33,7 +33,7 @@ from distal.ir.nodes import (
 )
 from distal.ir.target import Target
 from distal.ir.types import INT, Array, Buffer, Kind, Struct, Type, kind_of
-from distal.passes.naming import Names
+from distal.passes.naming import FreshNames
 from distal.passes.ranges import Ranges
 
 _BIT_ROWS: Final = frozenset(
@@ -103,7 +103,7 @@ def refuse_statement(stmt: Stmt, target: Target, blame: Blame) -> None:
 
 
 def constant_loop(
-    loop: For, ranges: Ranges, names: Names, target: Target, blame: Blame, before: list[Stmt]
+    loop: For, ranges: Ranges, names: FreshNames, target: Target, blame: Blame, before: list[Stmt]
 ) -> For:
     """The loop with constant bounds; ``before`` gets the statements that go in front of it.
 
@@ -137,7 +137,7 @@ def constant_loop(
     return replace(loop, start=integer(first), stop=integer(last), body=body)
 
 
-def _bound_before(name: str, value: Expr, loop: For, names: Names, before: list[Stmt]) -> Expr:
+def _bound_before(name: str, value: Expr, loop: For, names: FreshNames, before: list[Stmt]) -> Expr:
     """A bound, computed once before the loop."""
     fresh = names.fresh(name)
     before.append(Let(fresh, value, span=loop.span))

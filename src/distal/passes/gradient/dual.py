@@ -70,7 +70,7 @@ from distal.ir.types import BOOL, tuple_type
 from distal.ir.walk import children, rebuild, root_of, substitute
 from distal.passes.gradient.activity import FunctionActivity
 from distal.passes.gradient.dual_rules import node_tangent
-from distal.passes.naming import Names
+from distal.passes.naming import FreshNames
 
 # What is deeper gets a name: rules use their arguments several times, and text must stay small.
 _DEEP_TANGENT = 8
@@ -120,7 +120,7 @@ class DualBody:
     def __init__(
         self,
         derive: Derive,
-        names: Names,
+        names: FreshNames,
         activity: FunctionActivity,
         tangents: dict[str, Lanes],
         count: int,

@@ -44,7 +44,7 @@ from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.gradient.activity import Activity
 from distal.passes.gradient.dual import DualBody, Returned, Version, tangent_name
-from distal.passes.naming import Names, local_names
+from distal.passes.naming import FreshNames, local_names
 
 
 class _Form(Enum):
@@ -93,7 +93,7 @@ def _without_gradients(function: Function, derived: _Derived) -> Function:
 
 
 @dataclass(slots=True)
-class _Made:
+class _DerivativeFunction:
     """A finished derivative function."""
 
     name: str
@@ -105,9 +105,9 @@ class _Derived:
 
     def __init__(self, module: Module) -> None:
         self.functions: dict[str, Function] = {}
-        self._names = Names(f.name for f in module.functions)
+        self._names = FreshNames(f.name for f in module.functions)
         self._activity = Activity(self.functions)
-        self._made: dict[_Key, _Made] = {}
+        self._made: dict[_Key, _DerivativeFunction] = {}
 
     def add(self, function: Function) -> None:
         """Take in a function whose callees are here already."""
@@ -133,20 +133,24 @@ class _Derived:
         ]
         return Version(made.name, made.directions, tuple(passed))
 
-    def _version(self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]) -> _Made:
+    def _version(
+        self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]
+    ) -> _DerivativeFunction:
         key = (name, form, changes)
         found = self._made.get(key)
         if found is None:
             found = self._made[key] = self._make(name, form, changes)
         return found
 
-    def _make(self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]) -> _Made:
+    def _make(
+        self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]
+    ) -> _DerivativeFunction:
         original = self.functions[name]
         masks = tuple(
             sum(1 << k for k, change in enumerate(along) if change is not None) for along in changes
         )
         activity = self._activity.of(name, masks)
-        names = Names(local_names(original))
+        names = FreshNames(local_names(original))
         extra: list[Param] = []
         tangents: dict[str, Lanes] = {}
         for param, along in zip(original.params, changes, strict=True):
@@ -162,7 +166,7 @@ class _Derived:
             result=result,
             body=body.function_body(original.body, returned),
         )
-        return _Made(new, activity.result)
+        return _DerivativeFunction(new, activity.result)
 
 
 def _change(tangent: Tangent) -> _Change:
@@ -184,7 +188,7 @@ def _passed(tangent: Tangent, change: _Change) -> tuple[Expr, ...]:
 
 
 def _parameter_tangents(
-    param: Param, along: tuple[_Change, ...], names: Names, extra: list[Param]
+    param: Param, along: tuple[_Change, ...], names: FreshNames, extra: list[Param]
 ) -> Lanes:
     """A parameter's tangents; those that are passed become parameters in ``extra``."""
     found: list[Tangent] = []
@@ -203,7 +207,7 @@ def _parameter_tangents(
     return tuple(found)
 
 
-def _parameter(wish: str, type: Type, names: Names, extra: list[Param]) -> Expr:
+def _parameter(wish: str, type: Type, names: FreshNames, extra: list[Param]) -> Expr:
     name = names.fresh(wish)
     extra.append(Param(name, type))
     return Read(name, type)

@@ -48,7 +48,7 @@ from distal.passes.cost import Costs, block_cost, size
 from distal.passes.dead_code import ReadNames
 from distal.passes.fold.constants import is_plain
 from distal.passes.inline.straighten import RESULT, Straight, straighten
-from distal.passes.naming import Names, local_names
+from distal.passes.naming import FreshNames, local_names
 from distal.passes.reachable import drop_unused
 
 SMALL: Final = 60  # inlined wherever called (a polynomial sine is about 30)
@@ -71,7 +71,7 @@ def run(module: Module, context: Context) -> Module:
         inlined = _Inliner(function, callees, sites).function()
         functions.append(inlined)
         costs[function.name] = block_cost(inlined.body, costs)
-        straight = straighten(inlined, Names(local_names(inlined)).fresh(RESULT), Costs(costs))
+        straight = straighten(inlined, FreshNames(local_names(inlined)).fresh(RESULT), Costs(costs))
         if straight is not None:
             callees[function.name] = _Callee(inlined, straight, costs[function.name])
     return drop_unused(replace(module, functions=tuple(functions)))
@@ -103,7 +103,7 @@ class _Inliner:
         self._function = function
         self._callees = callees
         self._sites = sites
-        self._names = Names(local_names(function))
+        self._names = FreshNames(local_names(function))
         self._size = size(function.body)
         self._reads = ReadNames()
         self._mutable = set(_assigned(function.body))
@@ -193,7 +193,7 @@ class _Inliner:
 class _Renaming:
     """A callee's statements with its parameters replaced and its locals renamed."""
 
-    def __init__(self, names: Names, reads: dict[Expr, Expr]) -> None:
+    def __init__(self, names: FreshNames, reads: dict[Expr, Expr]) -> None:
         self._names = names
         self._reads = reads
         self._memo: dict[Expr, Expr] = {}

@@ -14,7 +14,7 @@ from distal.ir.nodes import Call, Construct, Expr, Function, Let, Read, Splat
 from distal.ir.walk import children, expressions, nodes_in, statements_in
 from distal.passes.cost import Costs, node_cost
 from distal.passes.per_frame.forms import Here
-from distal.passes.per_frame.values import WORTH_A_SLOT, is_carried, is_exploded
+from distal.passes.per_frame.values import LEAST_COST, is_carried, is_exploded
 
 
 class Picking:
@@ -45,7 +45,7 @@ class Picking:
         if form is None:
             return False
         if isinstance(e, Read | Call):
-            return self._costs.of(form) >= WORTH_A_SLOT
+            return self._costs.of(form) >= LEAST_COST
         cost = 0
         for n in nodes_in(e):
             if isinstance(n, Read) and n.name in self._read_once:
@@ -53,7 +53,7 @@ class Picking:
                 assert known is not None
                 cost += self._costs.of(known)
             cost += node_cost(n, self._costs.calls)
-            if cost >= WORTH_A_SLOT:
+            if cost >= LEAST_COST:
                 return True
         return False
 

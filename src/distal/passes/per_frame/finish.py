@@ -21,19 +21,23 @@ from distal.ir.walk import (
     substitute,
 )
 from distal.passes.fold.fold import fold_function
-from distal.passes.naming import Names, local_names, module_names
-from distal.passes.per_frame.values import Slots
+from distal.passes.naming import FreshNames, local_names, module_names
+from distal.passes.per_frame.values import FrameValues
 from distal.passes.reachable import called_in, callees, closure, drop_unused
 
 
 def finished(
-    before: Module, pixels: tuple[Function, ...], slots: Slots, limit: int | None, precision: int
+    before: Module,
+    pixels: tuple[Function, ...],
+    frame_values: FrameValues,
+    limit: int | None,
+    precision: int,
 ) -> Module:
     """The module, with at most ``limit`` components of per-frame values for the pixels."""
     pixels = _without_unread_params(before.entry, pixels, precision)
     wanted = per_frame_reads_in(pixels)
-    chosen = slots.chosen(wanted, limit)
-    entries = slots.program(wanted)
+    chosen = frame_values.chosen(wanted, limit)
+    entries = frame_values.entries(wanted)
     values = {name: value for name, _, value in entries}
     renamed, frame_functions = _frame_functions(before, pixels, values)
     values = {name: _with_callees(value, renamed) for name, value in values.items()}
@@ -45,7 +49,7 @@ def finished(
         functions=(*frame_functions, *(f for f in pixels if f.name not in placed)),
         frame=tuple((name, value) for name, value in values.items() if name in needed),
     )
-    return _named(drop_unused(module), {name: wish for name, wish, _ in entries})
+    return _named(drop_unused(module), {name: hint for name, hint, _ in entries})
 
 
 def _without_unread_params(
@@ -85,7 +89,7 @@ def _frame_functions(
     """
     needed = closure(before.functions, called_in(*values.values()))
     pixel = {f.name: f for f in pixels}
-    names = Names(module_names(before))
+    names = FreshNames(module_names(before))
     renamed: dict[str, str] = {}
     result: list[Function] = []
     for function in before.functions:
@@ -143,12 +147,14 @@ def _with_steps(function: Function, values: Mapping[str, Expr], chosen: set[str]
     return replace(function, body=(*steps, *body))
 
 
-def _named(module: Module, wishes: Mapping[str, str | None]) -> Module:
+def _named(module: Module, hints: Mapping[str, str | None]) -> Module:
     """The module with marks replaced by names, the author's where there are any and free."""
-    names = Names({*module_names(module), *(n for f in module.functions for n in local_names(f))})
+    names = FreshNames(
+        {*module_names(module), *(n for f in module.functions for n in local_names(f))}
+    )
     final: dict[str, str] = {}
-    for mark, wish in wishes.items():
-        final[mark] = names.fresh(wish) if wish else names.numbered("frame")
+    for mark, hint in hints.items():
+        final[mark] = names.fresh(hint) if hint else names.numbered("frame")
     memo: dict[Expr, Expr] = {}
 
     def change(e: Expr) -> Expr:

@@ -30,14 +30,14 @@ from distal.ir.types import Struct, Type
 from distal.ir.walk import children, nodes_in, rebuild
 from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs
-from distal.passes.naming import Names, local_names
+from distal.passes.naming import FreshNames, local_names
 from distal.passes.per_frame.choice import Picking
 from distal.passes.per_frame.finish import finished
 from distal.passes.per_frame.forms import FlowWalk, Forming, Here, hoistable_calls
 from distal.passes.per_frame.values import (
-    WORTH_A_SLOT,
-    Slots,
-    Wish,
+    LEAST_COST,
+    FrameValues,
+    NameHint,
     is_carried,
     is_exploded,
     suggestion,
@@ -54,7 +54,7 @@ def run(module: Module, context: Context) -> Module:
     hoisting = _Hoisting(module, context)
     functions = hoisting.functions()
     limit = VERTEX_ROOM if place is FramePlace.VERTEX else None
-    return finished(module, functions, hoisting.slots, limit, context.precision)
+    return finished(module, functions, hoisting.frame_values, limit, context.precision)
 
 
 @dataclass(slots=True)
@@ -92,7 +92,7 @@ class _Hoisting:
         self._module = module
         self.costs = Costs(function_costs(module.functions))
         self.forming = Forming(context.precision, hoistable_calls(module.functions))
-        self.slots = Slots(self.costs)
+        self.frame_values = FrameValues(self.costs)
         self.keeps_constants = not context.target.inline
         self.params = {f.name: f.params for f in module.functions}
         self.calls: dict[str, _Calls] = {}
@@ -141,7 +141,7 @@ class _Rewriting:
         self._picking = Picking(function, hoisting.costs)
         self._calls = hoisting.calls[function.name]
         self._params = hoisting.forms_of(function)
-        self._names = Names(local_names(function))
+        self._names = FreshNames(local_names(function))
         self._memo: dict[Expr, Expr] = {}
 
     def function(self) -> Function:
@@ -154,13 +154,13 @@ class _Rewriting:
     def _visit(self, root: Expr, here: Here) -> Expr:
         self._memo = {}
         if here.name is not None and self._picking.picks(root, here):
-            return self._computed(root, here, Wish(here.name, 2))
+            return self._computed(root, here, NameHint(here.name, 2))
         return self._rewritten(root, here)
 
-    def _computed(self, e: Expr, here: Here, wish: Wish | None = None) -> Expr:
+    def _computed(self, e: Expr, here: Here, hint: NameHint | None = None) -> Expr:
         form = here.form(e)
         assert form is not None
-        return self._carried(form, wish or suggestion(form), here.rate * self._calls.rate)
+        return self._carried(form, hint or suggestion(form), here.rate * self._calls.rate)
 
     def _rewritten(self, e: Expr, here: Here) -> Expr:
         done = self._memo.get(e)
@@ -171,7 +171,7 @@ class _Rewriting:
     def _node(self, e: Expr, here: Here) -> Expr:
         if self._picking.picks(e, here):
             if isinstance(e, Read):
-                return self._computed(e, here, Wish(e.name, 1 if e.name in self._params else 2))
+                return self._computed(e, here, NameHint(e.name, 1 if e.name in self._params else 2))
             return self._computed(e, here)
         if isinstance(e, Read):
             return self._param(e)
@@ -189,7 +189,7 @@ class _Rewriting:
             # A number an author hands on reads better as an argument.
             return e
         # Never a call: what it calls may stand after this function.
-        return self._carried(form, Wish(e.name, 1), self._calls.rate)
+        return self._carried(form, NameHint(e.name, 1), self._calls.rate)
 
     def _call(self, call: Call, args: tuple[Expr, ...], here: Here) -> Expr:
         """A call that stays, with the work that its callee left to it."""
@@ -203,24 +203,24 @@ class _Rewriting:
                 forms[param.name] = form
         rate = here.rate * self._calls.rate
         work = tuple(
-            self._carried(self._hoisting.forming.replaced(form, forms), Wish(name, 1), rate)
+            self._carried(self._hoisting.forming.replaced(form, forms), NameHint(name, 1), rate)
             for form, name in callee.added.items()
         )
         return Call(call.function, (*args, *work), call.type, span=call.span)
 
-    def _carried(self, form: Expr, wish: Wish, rate: int) -> Expr:
+    def _carried(self, form: Expr, hint: NameHint, rate: int) -> Expr:
         """A form as this function has it: from the frame, from its callers, or computed here."""
         if isinstance(form.type, Struct):
             parts = []
             for field_name, type in form.type.fields:
                 part = self._hoisting.forming.simplified(Field(form, field_name, type))
-                parts.append(self._carried(part, wish.part(field_name), rate))
+                parts.append(self._carried(part, hint.part(field_name), rate))
             return Construct(tuple(parts), form.type)
-        if self._hoisting.costs.of(form) < WORTH_A_SLOT and not _leaves(form, Call):
+        if self._hoisting.costs.of(form) < LEAST_COST and not _leaves(form, Call):
             return form
         if not _leaves(form, Read):
-            return self._hoisting.slots.read(form, wish, rate)
+            return self._hoisting.frame_values.read(form, hint, rate)
         name = self._calls.added.get(form)
         if name is None:
-            name = self._calls.added[form] = self._names.fresh(wish.name or "per_frame")
+            name = self._calls.added[form] = self._names.fresh(hint.name or "per_frame")
         return Read(name, form.type)

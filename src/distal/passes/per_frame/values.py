@@ -14,14 +14,14 @@ from distal.ir.nodes import Builtin, Call, Expr, Let, PerFrame, Read, Return, St
 from distal.ir.types import Matrix, Scalar, Struct, Type, Vector, component_count
 from distal.ir.walk import children, nodes_in, rebuild, substitute
 from distal.passes.cost import Costs, node_cost
-from distal.passes.naming import Names
+from distal.passes.naming import FreshNames
 from distal.passes.share.split_deep import split_expression
 
-# The least cost of what is worth computing once a frame: a division, a square root, or four
-# sums. A value costs a register or a load in every pixel, so a product of two uniforms is not.
-WORTH_A_SLOT: Final = 4
+# The least cost of what is computed once a frame: a division, a square root, or four sums. A value
+# costs a register or a load in every pixel, so a product of two uniforms stays where it is.
+LEAST_COST: Final = 4
 
-MARK: Final = "#"  # begins the names of values that have no settled name yet
+MARK: Final = "#"  # begins the names of values that have no final name yet
 
 
 def is_carried(type: Type) -> bool:
@@ -30,108 +30,109 @@ def is_carried(type: Type) -> bool:
 
 
 def is_exploded(type: Type) -> bool:
-    """True for structs that are handed on field by field."""
+    """True for structs that are passed field by field."""
     return isinstance(type, Struct) and all(is_carried(t) or is_exploded(t) for _, t in type.fields)
 
 
-class Wish(NamedTuple):
-    """What a value should be called, and how good a name that is (see ``Slot.rank``)."""
+class NameHint(NamedTuple):
+    """What a value should be called, and how good a name that is (see ``FrameValue.rank``)."""
 
     name: str | None
     rank: int = 0
 
-    def part(self, field: str) -> Wish:
-        """The wish for a field of the value."""
-        return Wish(f"{self.name}_{field}" if self.name else field, self.rank)
+    def part(self, field: str) -> NameHint:
+        """The hint for a field of the value."""
+        return NameHint(f"{self.name}_{field}" if self.name else field, self.rank)
 
 
-def suggestion(form: Expr) -> Wish:
+def suggestion(form: Expr) -> NameHint:
     """``cos_angle`` for a built-in or a function of one named thing."""
     if isinstance(form, Builtin | Call):
         leaves = {n.name for n in nodes_in(form) if isinstance(n, Read | Uniform)}
         if len(leaves) == 1:
             name = form.name if isinstance(form, Builtin) else form.function
-            return Wish(f"{name}_{leaves.pop()}")
-    return Wish(None)
+            return NameHint(f"{name}_{leaves.pop()}")
+    return NameHint(None)
 
 
 @dataclass(slots=True)
-class Slot:
+class FrameValue:
     """A value computed once a frame.
 
     Attributes:
         form: What it is.
         name: What code that reads it calls it until all names are known.
-        wish: What it should be called, if there is a good name for it.
+        hint: What it should be called, if there is a good name for it.
         rank: How good: 2 for the author's name of the value itself, 1 for that of a parameter.
         weight: What it saves: its cost, times how often pixels would compute it.
     """
 
     form: Expr
     name: str
-    wish: str | None = None
+    hint: str | None = None
     rank: int = -1
     weight: int = 0
 
 
-class Slots:
+class FrameValues:
     """All per-frame values of a module."""
 
     def __init__(self, costs: Costs) -> None:
         self.costs = costs
-        self._slots: dict[Expr, Slot] = {}
+        self._values: dict[Expr, FrameValue] = {}
 
-    def read(self, form: Expr, wish: Wish, rate: int) -> Expr:
+    def read(self, form: Expr, hint: NameHint, rate: int) -> Expr:
         """A read of the value of that form."""
-        slot = self._slots.get(form)
-        if slot is None:
-            slot = self._slots[form] = Slot(form, f"{MARK}{len(self._slots)}")
-        if wish.name is not None and wish.rank > slot.rank:
-            slot.wish, slot.rank = wish
-        slot.weight += self.costs.of(form) * rate
-        return PerFrame(slot.name, form.type)
+        found = self._values.get(form)
+        if found is None:
+            found = self._values[form] = FrameValue(form, f"{MARK}{len(self._values)}")
+        if hint.name is not None and hint.rank > found.rank:
+            found.hint, found.rank = hint
+        found.weight += self.costs.of(form) * rate
+        return PerFrame(found.name, form.type)
 
     def chosen(self, wanted: set[str], limit: int | None) -> set[str]:
-        """The wanted values that find room: those that save most for each component."""
-        slots = [s for s in self._slots.values() if s.name in wanted]
-        if limit is None or sum(component_count(s.form.type) for s in slots) <= limit:
-            return {s.name for s in slots}
+        """The wanted values within ``limit``: those that save most for each component."""
+        values = [v for v in self._values.values() if v.name in wanted]
+        if limit is None or sum(component_count(v.form.type) for v in values) <= limit:
+            return {v.name for v in values}
         found: set[str] = set()
-        room = limit
-        for slot in sorted(slots, key=lambda s: -s.weight / component_count(s.form.type)):
-            size = component_count(slot.form.type)
-            if size <= room:
-                room -= size
-                found.add(slot.name)
+        left = limit
+        for value in sorted(values, key=lambda v: -v.weight / component_count(v.form.type)):
+            size = component_count(value.form.type)
+            if size <= left:
+                left -= size
+                found.add(value.name)
         return found
 
-    def program(self, wanted: set[str]) -> list[tuple[str, str | None, Expr]]:
-        """Name, wished name and value of everything that the wanted values need, in order."""
-        return _Program([s for s in self._slots.values() if s.name in wanted], self.costs).entries
+    def entries(self, wanted: set[str]) -> list[tuple[str, str | None, Expr]]:
+        """Name, name hint and value of everything that the wanted values need, in order."""
+        values = [v for v in self._values.values() if v.name in wanted]
+        return _FrameEntries(values, self.costs).entries
 
 
-class _Program:
+class _FrameEntries:
     """Writes forms over each other, and over values that several of them share."""
 
-    def __init__(self, slots: list[Slot], costs: Costs) -> None:
+    def __init__(self, values: list[FrameValue], costs: Costs) -> None:
         self.entries: list[tuple[str, str | None, Expr]] = []
         self._costs = costs
-        self._names = {s.form: s.name for s in slots}
-        self._wishes = {s.form: s.wish for s in slots}
+        self._names = {s.form: s.name for s in values}
+        self._hints = {s.form: s.hint for s in values}
         self._done: dict[Expr, Expr] = {}
-        self._deep = Names(())
+        self._deep = FreshNames(())
         users: Counter[Expr] = Counter()
         for e in nodes_in(*self._names):
             users.update(set(children(e)))
         self._shared = {e for e, count in users.items() if count > 1 and self._is_worth(e)}
-        for slot in slots:
-            for e in nodes_in(slot.form):
+        for value in values:
+            for e in nodes_in(value.form):
                 self._write(e)
 
     def _is_worth(self, e: Expr) -> bool:
         if not is_carried(e.type) or not children(e) or not node_cost(e, self._costs.calls):
             return False
-        return self._costs.of(e) >= WORTH_A_SLOT
+        return self._costs.of(e) >= LEAST_COST
 
     def _write(self, e: Expr) -> None:
         if e in self._done:
@@ -141,7 +142,7 @@ class _Program:
         if name is None and e in self._shared:
             name = f"{MARK}shared{len(self.entries)}"
         if name is not None:
-            self.entries.append((name, self._wishes.get(e), self._cut(value)))
+            self.entries.append((name, self._hints.get(e), self._cut(value)))
             value = PerFrame(name, e.type)
         self._done[e] = value
 

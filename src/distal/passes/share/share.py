@@ -37,11 +37,11 @@ from distal.ir.types import is_static
 from distal.ir.walk import children, expressions, map_indices, map_statement, nodes_in, rebuild
 from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs, node_cost
-from distal.passes.naming import Names, local_names, module_names
-from distal.passes.places import (
-    Place,
-    Site,
-    Sites,
+from distal.passes.naming import FreshNames, local_names, module_names
+from distal.passes.regions import (
+    Region,
+    UseSite,
+    UseSites,
     cleared,
     first_position,
     in_loop,
@@ -67,7 +67,7 @@ def run(module: Module, context: Context) -> Module:
 
 def share_function(function: Function, calls: Mapping[str, int], taken: set[str]) -> Function:
     """One function; ``taken`` holds names that new Lets must not hide."""
-    names = Names(taken | set(local_names(function)))
+    names = FreshNames(taken | set(local_names(function)))
     for _ in range(MOST_ROUNDS):
         sharing = _Sharing(function, calls)
         function = sharing.function(names)
@@ -77,11 +77,11 @@ def share_function(function: Function, calls: Mapping[str, int], taken: set[str]
 
 
 @dataclass(eq=False, slots=True)
-class _Binding:
+class _EarlyLet:
     """A value computed before a statement; ``let`` is the author's own, moved there."""
 
     value: Expr
-    place: Place
+    region: Region
     position: int
     let: Let | None
     name: str = ""
@@ -93,16 +93,16 @@ class _Sharing:
         self._versions = Versions(function)
         self._costs = Costs(calls)
         # Where each node is computed, as its users so far say; every node, operands first.
-        self._sites: dict[Expr, dict[Site, int]] = {}
+        self._sites: dict[Expr, dict[UseSite, int]] = {}
         self._heights: dict[Expr, int] = {}
-        self._homes: dict[Expr, Place] = {}
-        self._lets: dict[Expr, list[tuple[Place, int]]] = {}
-        self._replaced: dict[tuple[Expr, Site], _Binding] = {}
-        self._before: dict[tuple[Place, int], list[_Binding]] = {}
-        self._moved: set[tuple[Place, int]] = set()
+        self._homes: dict[Expr, Region] = {}
+        self._lets: dict[Expr, list[tuple[Region, int]]] = {}
+        self._replaced: dict[tuple[Expr, UseSite], _EarlyLet] = {}
+        self._before: dict[tuple[Region, int], list[_EarlyLet]] = {}
+        self._moved: set[tuple[Region, int]] = set()
         self.left_a_loop = False
 
-    def function(self, names: Names) -> Function:
+    def function(self, names: FreshNames) -> Function:
         """The function with shared values bound."""
         root = self._versions.root
         self._collect(root)
@@ -118,21 +118,21 @@ class _Sharing:
 
     # Where every expression is computed
 
-    def _collect(self, place: Place) -> None:
-        for position, stmt in enumerate(place.body):
-            inner = place.inner.get(position, ())
+    def _collect(self, region: Region) -> None:
+        for position, stmt in enumerate(region.body):
+            inner = region.inner.get(position, ())
             head = inner[0] if inner and inner[0].is_head else None
-            site = Site(place, position) if head is None else Site(head, 0)
+            site = UseSite(region, position) if head is None else UseSite(head, 0)
             for root in _computed(stmt):
                 self._learn(root)
                 self._use(root, site, 1)
             if isinstance(stmt, Let):
-                self._lets.setdefault(stmt.value, []).append((place, position))
+                self._lets.setdefault(stmt.value, []).append((region, position))
             for below in head.inner[0] if head is not None else inner:
                 self._collect(below)
 
     def _learn(self, root: Expr) -> None:
-        """Heights, and the innermost place that something in the expression belongs to."""
+        """Heights, and the innermost region that something in the expression belongs to."""
         heights, homes, top = self._heights, self._homes, self._versions.root
         for e in nodes_in(root):
             if e in heights:
@@ -146,29 +146,29 @@ class _Sharing:
                     home = homes[c]
             heights[e], homes[e] = height, home
 
-    def _use(self, e: Expr, site: Site, uses: int) -> None:
+    def _use(self, e: Expr, site: UseSite, uses: int) -> None:
         sites = self._sites.setdefault(e, {})
         sites[site] = min(2, sites.get(site, 0) + uses)
 
-    def _hand_down(self, e: Expr, sites: Sites) -> None:
+    def _hand_down(self, e: Expr, sites: UseSites) -> None:
         """The operands are computed where ``e`` is: where it is bound, or where it is used."""
-        bound: set[_Binding] = set()
+        bound: set[_EarlyLet] = set()
         for site, uses in sites.items():
             binding = self._replaced.get((e, site))
             if binding is not None:
                 if binding in bound:
                     continue
                 bound.add(binding)
-                site, uses = Site(binding.place, binding.position), 1
+                site, uses = UseSite(binding.region, binding.position), 1
             for operand, lazy in _operands(e):
                 self._use(operand, site._replace(lazy=site.lazy or lazy), uses)
 
     # Where a value is bound
 
-    def _place(self, e: Expr, place: Place, sites: Sites) -> None:
-        """Bind ``e`` in ``place`` if that pays and costs nothing in vain, else further inside."""
+    def _place(self, e: Expr, region: Region, sites: UseSites) -> None:
+        """Bind ``e`` in ``region`` if that pays and costs nothing in vain, else further inside."""
         once = sum(sites.values())
-        if once < 2 and not any(in_loop(place, s) for s in sites):
+        if once < 2 and not any(in_loop(region, s) for s in sites):
             return
         if not _may_be_bound(e, self._costs):
             return
@@ -176,58 +176,58 @@ class _Sharing:
         if cost < (WORTH_A_NAME if once > 1 else WORTH_LEAVING_A_LOOP):
             return
         counted = cleared(sites) if cost <= CHEAP else sites
-        start = first_position(place, sites)
-        if not place.is_head and is_certain(place, counted, start):
-            self._bind(e, place, start, sites)
+        start = first_position(region, sites)
+        if not region.is_head and is_certain(region, counted, start):
+            self._bind(e, region, start, sites)
             return
-        for inner, some in within(place, sites)[1].items():
+        for inner, some in within(region, sites)[1].items():
             self._place(e, inner, some)
 
-    def _bind(self, e: Expr, place: Place, position: int, sites: Sites) -> None:
+    def _bind(self, e: Expr, region: Region, position: int, sites: UseSites) -> None:
         let = None
         for home, at in self._lets.get(e, ()):
-            if Site(home, at) in sites:
+            if UseSite(home, at) in sites:
                 named = home.body[at]
                 assert isinstance(named, Let)
                 let = named
                 self._moved.add((home, at))
-                self.left_a_loop |= home is not place
+                self.left_a_loop |= home is not region
                 break
-        binding = _Binding(e, place, position, let)
+        binding = _EarlyLet(e, region, position, let)
         for site in sites:
             self._replaced[e, site] = binding
-        self._before.setdefault((place, position), []).append(binding)
+        self._before.setdefault((region, position), []).append(binding)
 
     # The new body
 
-    def _name(self, place: Place, names: Names) -> None:
+    def _name(self, region: Region, names: FreshNames) -> None:
         """Name the bindings in the order they will stand in."""
-        for position in range(len(place.body)):
-            bindings = self._before.get((place, position), [])
+        for position in range(len(region.body)):
+            bindings = self._before.get((region, position), [])
             bindings.sort(key=lambda b: self._heights[b.value])
             for binding in bindings:
                 binding.name = binding.let.name if binding.let else names.numbered("shared")
-            for inner in place.inner.get(position, ()):
+            for inner in region.inner.get(position, ()):
                 for below in inner.inner[0] if inner.is_head else (inner,):
                     self._name(below, names)
 
-    def _block(self, place: Place) -> tuple[Stmt, ...]:
+    def _block(self, region: Region) -> tuple[Stmt, ...]:
         result: list[Stmt] = []
-        for position, stmt in enumerate(place.body):
-            site = Site(place, position)
-            for binding in self._before.get((place, position), ()):
+        for position, stmt in enumerate(region.body):
+            site = UseSite(region, position)
+            for binding in self._before.get((region, position), ()):
                 value = plain(self._rewritten(binding.value, site, is_bound_here=True))
                 span = binding.let.span if binding.let else stmt.span
                 result.append(Let(binding.name, value, span=span))
-            if (place, position) in self._moved:
+            if (region, position) in self._moved:
                 continue
-            inner = place.inner.get(position, ())
+            inner = region.inner.get(position, ())
             if inner and inner[0].is_head:
-                site, inner = Site(inner[0], 0), inner[0].inner[0]
+                site, inner = UseSite(inner[0], 0), inner[0].inner[0]
             result.append(self._statement(stmt, site, inner))
         return tuple(result)
 
-    def _statement(self, stmt: Stmt, site: Site, inner: tuple[Place, ...]) -> Stmt:
+    def _statement(self, stmt: Stmt, site: UseSite, inner: tuple[Region, ...]) -> Stmt:
         blocks = iter(inner)
 
         def expr(e: Expr) -> Expr:
@@ -237,7 +237,7 @@ class _Sharing:
             return Assign(map_indices(stmt.target, expr), expr(stmt.value), span=stmt.span)
         return map_statement(stmt, expr, lambda _: self._block(next(blocks)))
 
-    def _rewritten(self, root: Expr, site: Site, is_bound_here: bool = False) -> Expr:
+    def _rewritten(self, root: Expr, site: UseSite, is_bound_here: bool = False) -> Expr:
         """The expression with bound values read; without recursion, sums are deep."""
         done: dict[tuple[Expr, bool], Expr] = {}
         stack: list[tuple[Expr, bool]] = [(root, site.lazy)]

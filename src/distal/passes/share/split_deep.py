@@ -13,13 +13,13 @@ from distal.ir import build
 from distal.ir.nodes import Assign, Break, Expr, If, Let, Read, Stmt, While
 from distal.ir.types import is_static
 from distal.ir.walk import children, map_statement, nodes_in, rebuild
-from distal.passes.naming import Names
+from distal.passes.naming import FreshNames
 
 DEEPEST: Final = 50
 LONGEST: Final = 1000
 
 
-def split_deep(body: tuple[Stmt, ...], names: Names) -> tuple[Stmt, ...]:
+def split_deep(body: tuple[Stmt, ...], names: FreshNames) -> tuple[Stmt, ...]:
     """Cut every statement's expressions."""
     result: list[Stmt] = []
     for stmt in body:
@@ -39,7 +39,7 @@ def split_deep(body: tuple[Stmt, ...], names: Names) -> tuple[Stmt, ...]:
     return tuple(result)
 
 
-def split_expression(root: Expr, names: Names, before: list[Stmt], stmt: Stmt) -> Expr:
+def split_expression(root: Expr, names: FreshNames, before: list[Stmt], stmt: Stmt) -> Expr:
     """The expression over Lets that are added to ``before``."""
     done: dict[Expr, Expr] = {}
     # Depth and length of what stands for a node, its shared parts written out.

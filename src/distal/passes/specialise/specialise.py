@@ -40,8 +40,8 @@ from distal.ir.types import FunctionType, Type, is_static
 from distal.ir.walk import children, is_unchanging, map_statement, rebuild, statements_in
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
-from distal.passes.naming import Names, local_names
-from distal.passes.specialise.steering import Steering
+from distal.passes.naming import FreshNames, local_names
+from distal.passes.specialise.steering import SteeringParameters
 
 # A function inside itself this often through function values never ends in practice.
 _DEEPEST: Final = 64
@@ -51,14 +51,14 @@ _CHOSEN_HINT: Final = "call both functions and choose between their results"
 
 
 @dataclass(frozen=True)
-class _Shape:
+class _BoundShape:
     """What is bound, without the run-time values it captures: the key of a clone."""
 
     name: str
-    captures: tuple[_Shape | Type, ...]
+    captures: tuple[_BoundShape | Type, ...]
 
 
-_Binding: TypeAlias = _Shape | Const | None  # None: a run-time parameter
+_Bound: TypeAlias = _BoundShape | Const | None  # None: a run-time parameter
 
 
 def run(module: Module, context: Context) -> Module:
@@ -72,19 +72,19 @@ def run(module: Module, context: Context) -> Module:
                 entry.span,
                 "call it from an @image or another @func that binds it",
             )
-    clones = _Clones(module)
+    clones = _SpecialisedFunctions(module)
     clones.instance(module.entry, (None,) * len(entry.params), None)
     return replace(module, functions=in_call_order(clones.made.values(), module.entry))
 
 
-class _Clones:
+class _SpecialisedFunctions:
     """The specialised functions made so far."""
 
     def __init__(self, module: Module) -> None:
         self._functions = {f.name: f for f in module.functions}
-        self._names = Names(self._functions)
-        self.steering = Steering(self._functions)
-        self._by_key: dict[tuple[str, tuple[_Binding, ...]], str] = {}
+        self._names = FreshNames(self._functions)
+        self.steering = SteeringParameters(self._functions)
+        self._by_key: dict[tuple[str, tuple[_Bound, ...]], str] = {}
         self._open: list[str] = []  # the functions whose clones are being made
         self.made: dict[str, Function] = {}
 
@@ -92,7 +92,7 @@ class _Clones:
         """The parameters of a function as the author wrote it."""
         return self._functions[name].params
 
-    def instance(self, name: str, bindings: tuple[_Binding, ...], span: Span | None) -> str:
+    def instance(self, name: str, bindings: tuple[_Bound, ...], span: Span | None) -> str:
         """The name of the clone with these bindings, made now unless it is there."""
         key = (name, bindings)
         found = self._by_key.get(key)
@@ -121,28 +121,28 @@ class _Clones:
         )
 
 
-def _binding(arg: Expr, *, steers: bool) -> _Binding:
+def _binding(arg: Expr, *, steers: bool) -> _Bound:
     if is_static(arg.type):
         return _shape(arg)
     return arg if steers and isinstance(arg, Const) else None
 
 
-def _words(shape: _Shape | Const) -> Iterator[str]:
+def _words(shape: _BoundShape | Const) -> Iterator[str]:
     if isinstance(shape, Const):
         yield str(shape.value).lower().replace("-", "minus_")
         return
     yield shape.name
     for capture in shape.captures:
-        if isinstance(capture, _Shape):
+        if isinstance(capture, _BoundShape):
             yield from _words(capture)
 
 
-def _shape(bound: Expr) -> _Shape:
+def _shape(bound: Expr) -> _BoundShape:
     if isinstance(bound, Resource):
-        return _Shape(bound.name, ())
+        return _BoundShape(bound.name, ())
     assert isinstance(bound, FunctionRef)
     captures = (_shape(c) if is_static(c.type) else c.type for c in bound.captures)
-    return _Shape(bound.name, tuple(captures))
+    return _BoundShape(bound.name, tuple(captures))
 
 
 def _runtime_parts(bound: Expr) -> Iterator[Expr]:
@@ -158,10 +158,12 @@ def _runtime_parts(bound: Expr) -> Iterator[Expr]:
 class _Clone:
     """One function with its static parameters bound."""
 
-    def __init__(self, clones: _Clones, original: Function, bindings: tuple[_Binding, ...]) -> None:
+    def __init__(
+        self, clones: _SpecialisedFunctions, original: Function, bindings: tuple[_Bound, ...]
+    ) -> None:
         self._clones = clones
         self._original = original
-        self._names = Names(local_names(original))
+        self._names = FreshNames(local_names(original))
         self._bound: dict[str, Expr] = {}
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = original.span
@@ -177,7 +179,7 @@ class _Clone:
                 self._bound[param.name] = self._open_binding(param, binding, extra)
         self._params = (*params, *extra)
 
-    def _open_binding(self, param: Param, shape: _Shape, extra: list[Param]) -> Expr:
+    def _open_binding(self, param: Param, shape: _BoundShape, extra: list[Param]) -> Expr:
         """The bound value as an expression over the clone's further parameters."""
         if not isinstance(param.type, FunctionType):
             return Resource(shape.name, param.type)
@@ -185,7 +187,7 @@ class _Clone:
         captures: list[Expr] = []
         count = len(shape.captures)
         for captured, inner in zip(taken[len(taken) - count :], shape.captures, strict=True):
-            if isinstance(inner, _Shape):
+            if isinstance(inner, _BoundShape):
                 captures.append(self._open_binding(captured, inner, extra))
             else:
                 name = self._names.fresh(f"{param.name}_{captured.name}")
@@ -273,7 +275,7 @@ class _Clone:
     def _bound_call(self, name: str, args: Sequence[Expr], type: Type, span: Span | None) -> Expr:
         """A call of the clone for the static ones of these rewritten arguments."""
         steering = self._clones.steering.of(name)
-        bindings: tuple[_Binding, ...] = tuple(
+        bindings: tuple[_Bound, ...] = tuple(
             _binding(a, steers=i in steering) for i, a in enumerate(args)
         )
         new = self._clones.instance(name, bindings, self._span)

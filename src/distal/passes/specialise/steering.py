@@ -15,7 +15,7 @@ from distal.ir.types import BOOL, INT
 from distal.ir.walk import expressions_in, nodes_in, statements_in
 
 
-class Steering:
+class SteeringParameters:
     """The steering parameters of a module's functions, found when asked for."""
 
     def __init__(self, functions: Mapping[str, Function]) -> None:

@@ -42,7 +42,7 @@ from distal.ir.types import (
     component_count,
 )
 from distal.ir.walk import nodes_in
-from distal.passes.naming import Names
+from distal.passes.naming import FreshNames
 
 _LARGEST_FLOAT: Final = 3.4028234663852886e38
 _SORTS: Final[dict[Type, str]] = {
@@ -170,8 +170,8 @@ class Choice:
     """One of two places, chosen when the program runs."""
 
     condition: Expr
-    yes: Place
-    no: Place
+    yes: TablePlace
+    no: TablePlace
 
     @property
     def type(self) -> Type:
@@ -198,7 +198,7 @@ class Choice:
         return Choice(self.condition, self.yes.field(name), self.no.field(name))
 
 
-Place: TypeAlias = Location | Choice
+TablePlace: TypeAlias = Location | Choice
 
 
 def whole(table: Expr) -> Location:
@@ -210,7 +210,7 @@ def whole(table: Expr) -> Location:
 class Tables:
     """The buffers, as they grow by the tables that are read."""
 
-    names: Names
+    names: FreshNames
     _values: dict[Type, list[Any]] = field(default_factory=lambda: {sort: [] for sort in _SORTS})
     _starts: dict[Expr, tuple[int, ...]] = field(default_factory=dict)
     _spelled: dict[Type, str] = field(default_factory=dict)
@@ -222,7 +222,7 @@ class Tables:
                 name, type = self._name(sort), Buffer(sort)
                 yield ResourceDeclaration(name, type, None, "clamp", values=tuple(values))
 
-    def value(self, place: Place) -> Expr:
+    def value(self, place: TablePlace) -> Expr:
         """What stands at a place: reads of the buffers, or all of a table as it was written."""
         if isinstance(place, Choice):
             return select(place.condition, self.value(place.yes), self.value(place.no))

@@ -45,9 +45,16 @@ from distal.ir.walk import (
 )
 from distal.passes.context import Context
 from distal.passes.dead_code import remove_dead
-from distal.passes.naming import Names, local_names, module_names
+from distal.passes.naming import FreshNames, local_names, module_names
 from distal.passes.reachable import drop_unused
-from distal.passes.tables.layout import Choice, Place, Tables, holds_table, is_large_literal, whole
+from distal.passes.tables.layout import (
+    Choice,
+    TablePlace,
+    Tables,
+    holds_table,
+    is_large_literal,
+    whole,
+)
 
 _NONE: Final[dict[Type, Const]] = {INT: Const(0, INT), BOOL: Const(False, BOOL)}
 
@@ -57,9 +64,9 @@ def run(module: Module, context: Context) -> Module:
     largest = context.target.largest_table
     if largest is None or not _has_table(module, largest):
         return module
-    names = Names(module_names(module))
-    clones = _Clones(module, Tables(names), names, largest)
-    frame = _Body(clones).frame(module.frame)
+    names = FreshNames(module_names(module))
+    clones = _TableFunctions(module, Tables(names), names, largest)
+    frame = _TableRewriter(clones).frame(module.frame)
     for function in module.functions:
         clones.instance(function.name, (None,) * len(function.params))
     resources = (*module.resources, *clones.tables.declarations())
@@ -73,12 +80,12 @@ def _has_table(module: Module, largest: int) -> bool:
     return any(is_large_literal(e, largest) for e in found)
 
 
-def _shape(place: Place) -> Place:
+def _shape(place: TablePlace) -> TablePlace:
     """A place without what is computed when the program runs: part of the key of a clone."""
     return place.with_operands([_NONE[o.type] for o in place.operands])
 
 
-class _Clones:
+class _TableFunctions:
     """The rewritten functions made so far, callees first.
 
     Attributes:
@@ -88,23 +95,23 @@ class _Clones:
         per_frame: The tables, and parts of them, among the per-frame values.
     """
 
-    def __init__(self, module: Module, tables: Tables, names: Names, largest: int) -> None:
+    def __init__(self, module: Module, tables: Tables, names: FreshNames, largest: int) -> None:
         self.tables = tables
         self.made: dict[str, Function] = {}
-        self.per_frame: dict[str, Place] = {}
+        self.per_frame: dict[str, TablePlace] = {}
         self._functions = {f.name: f for f in module.functions}
         self.largest = largest
         self._names = names
-        self._by_key: dict[tuple[str, tuple[Place | None, ...]], str] = {}
+        self._by_key: dict[tuple[str, tuple[TablePlace | None, ...]], str] = {}
 
-    def instance(self, name: str, shapes: tuple[Place | None, ...]) -> str:
+    def instance(self, name: str, shapes: tuple[TablePlace | None, ...]) -> str:
         """The name of a function with tables bound to some parameters, made now if need be."""
         key = name, shapes
         if key not in self._by_key:
             bound = any(shape is not None for shape in shapes)
             new = self._names.fresh(f"{name}_of_table") if bound else name
             self._by_key[key] = new
-            self.made[new] = _Body(self, self._functions[name]).function(new, shapes)
+            self.made[new] = _TableRewriter(self, self._functions[name]).function(new, shapes)
         return self._by_key[key]
 
     def returned(self, name: str) -> Expr | None:
@@ -116,19 +123,19 @@ class _Clones:
                 return None
 
 
-class _Body:
+class _TableRewriter:
     """One function, or expressions outside all functions."""
 
-    def __init__(self, clones: _Clones, function: Function | None = None) -> None:
+    def __init__(self, clones: _TableFunctions, function: Function | None = None) -> None:
         self._clones = clones
         self._original = function
-        self._names = Names(local_names(function) if function is not None else ())
+        self._names = FreshNames(local_names(function) if function is not None else ())
         body = function.body if function is not None else ()
         self._variables = {s.name for s in statements_in(body) if isinstance(s, Var)}
-        self._places: dict[str, Place] = {}
+        self._places: dict[str, TablePlace] = {}
         self._memo: dict[Expr, Expr] = {}
 
-    def function(self, name: str, shapes: Sequence[Place | None]) -> Function:
+    def function(self, name: str, shapes: Sequence[TablePlace | None]) -> Function:
         """The function with reads of buffers, and tables bound to its parameters."""
         function = self._original
         assert function is not None
@@ -174,7 +181,7 @@ class _Body:
                     written.append(map_statement(stmt, self.expression, self._block))
         return tuple(written)
 
-    def _kept(self, place: Place, stmt: Let, written: list[Stmt]) -> Place:
+    def _kept(self, place: TablePlace, stmt: Let, written: list[Stmt]) -> TablePlace:
         """The place as it is when it gets its name: variables may change after that."""
         operands: list[Expr] = []
         for operand in place.operands:
@@ -211,7 +218,7 @@ class _Body:
     def _is_table(self, e: Expr) -> bool:
         return is_large_literal(e, self._clones.largest)
 
-    def _place(self, e: Expr) -> Place | None:
+    def _place(self, e: Expr) -> TablePlace | None:
         """The place of a table that an expression is; None for anything else."""
         match e:
             case Construct():

@@ -16,108 +16,110 @@ from distal.ir.walk import blocks
 
 
 @dataclass(eq=False, slots=True)
-class Place:
+class Region:
     """A block, or the head of a ``while``: what its condition and its body share.
 
     Attributes:
-        parent: The place around it, None for a function's body.
-        position: Where in the parent it stands.
+        parent: The region around it, None for a function's body.
+        position: Its statement's position in the parent.
         repeats: It runs once for each round of a loop.
         is_head: It is the head of a ``while``; nothing can be bound there.
         body: Its statements.
-        inner: The places of each statement that has blocks: both branches of an If, the body of
-            a For, the head of a While (whose one inner place is the body).
-        depth: How many places are around it.
+        inner: The regions of each statement that has blocks: both branches of an If, the body of
+            a For, the head of a While (whose one inner region is the body).
+        depth: How many regions are around it.
     """
 
-    parent: Place | None
+    parent: Region | None
     position: int
     repeats: bool = False
     is_head: bool = False
     body: tuple[Stmt, ...] = ()
-    inner: dict[int, tuple[Place, ...]] = field(default_factory=dict)
+    inner: dict[int, tuple[Region, ...]] = field(default_factory=dict)
     depth: int = 0
 
     def __post_init__(self) -> None:
         if self.parent is not None:
             self.depth = self.parent.depth + 1
 
-    def outwards(self) -> Iterator[Place]:
-        """This place and all around it."""
-        place: Place | None = self
-        while place is not None:
-            yield place
-            place = place.parent
+    def outwards(self) -> Iterator[Region]:
+        """This region and all around it."""
+        region: Region | None = self
+        while region is not None:
+            yield region
+            region = region.parent
 
 
-class Site(NamedTuple):
-    """One place of use: a statement, and whether the statement may skip the use."""
+class UseSite(NamedTuple):
+    """Where a value is used: a statement, and whether the statement may skip the use."""
 
-    place: Place
+    region: Region
     position: int
     lazy: bool = False
 
 
-Sites: TypeAlias = Mapping[Site, int]  # with how many uses there are at each
+UseSites: TypeAlias = Mapping[UseSite, int]  # with how many uses there are at each
 
 
-def within(place: Place, sites: Sites) -> tuple[dict[int, bool], dict[Place, dict[Site, int]]]:
-    """Split sites: positions used directly (true: certainly), and the sites of inner places."""
+def within(
+    region: Region, sites: UseSites
+) -> tuple[dict[int, bool], dict[Region, dict[UseSite, int]]]:
+    """Split sites: positions used directly (true: certainly), and the sites of inner regions."""
     direct: dict[int, bool] = {}
-    inner: dict[Place, dict[Site, int]] = {}
+    inner: dict[Region, dict[UseSite, int]] = {}
     for site, uses in sites.items():
-        if site.place is place:
+        if site.region is region:
             direct[site.position] = direct.get(site.position, False) or not site.lazy
             continue
-        child = site.place
-        while child.parent is not place:
-            assert child.parent is not None, "a site outside the place"
+        child = site.region
+        while child.parent is not region:
+            assert child.parent is not None, "a site outside the region"
             child = child.parent
         inner.setdefault(child, {})[site] = uses
     return direct, inner
 
 
-def cleared(sites: Sites) -> dict[Site, int]:
+def cleared(sites: UseSites) -> dict[UseSite, int]:
     """The sites as if no statement skipped any."""
-    found: dict[Site, int] = {}
+    found: dict[UseSite, int] = {}
     for site, uses in sites.items():
         certain = site._replace(lazy=False)
         found[certain] = found.get(certain, 0) + uses
     return found
 
 
-def first_position(place: Place, sites: Sites) -> int:
-    """The first statement of ``place`` that uses, itself or inside."""
-    direct, inner = within(place, sites)
+def first_position(region: Region, sites: UseSites) -> int:
+    """The first statement of ``region`` that uses, itself or inside."""
+    direct, inner = within(region, sites)
     return min([*direct, *(child.position for child in inner)])
 
 
-def in_loop(place: Place, site: Site) -> bool:
-    """True when a site runs again and again while ``place`` runs once."""
-    for around in site.place.outwards():
-        if around is place:
+def in_loop(region: Region, site: UseSite) -> bool:
+    """True when a site runs repeatedly while ``region`` runs once."""
+    for around in site.region.outwards():
+        if around is region:
             return False
         if around.repeats:
             return True
-    raise AssertionError("a site outside the place")
+    raise AssertionError("a site outside the region")
 
 
-def is_certain(place: Place, sites: Sites, start: int = 0) -> bool:
+def is_certain(region: Region, sites: UseSites, start: int = 0) -> bool:
     """True when from ``start`` on one of the sites is reached whatever happens."""
-    direct, inner = within(place, sites)
-    if place.is_head:
+    direct, inner = within(region, sites)
+    if region.is_head:
         # The condition is computed once at least; the body perhaps never.
-        (loop_body,) = place.inner[0]
-        head = place.parent.body[place.position] if place.parent else None
+        (loop_body,) = region.inner[0]
+        head = region.parent.body[region.position] if region.parent else None
         if direct.get(0):
             return True
         endless = isinstance(head, While) and _is_true(head)
         return endless and loop_body in inner and is_certain(loop_body, inner[loop_body])
-    for position in range(start, len(place.body)):
+    for position in range(start, len(region.body)):
         if direct.get(position):
             return True
-        stmt = place.body[position]
-        if _inner_certain(stmt, place.inner.get(position, ()), inner):
+        stmt = region.body[position]
+        if _inner_certain(stmt, region.inner.get(position, ()), inner):
             return True
         if leaves((stmt,)):
             return False
@@ -125,15 +127,15 @@ def is_certain(place: Place, sites: Sites, start: int = 0) -> bool:
 
 
 def _inner_certain(
-    stmt: Stmt, places: Collection[Place], inner: Mapping[Place, Mapping[Site, int]]
+    stmt: Stmt, regions: Collection[Region], inner: Mapping[Region, Mapping[UseSite, int]]
 ) -> bool:
-    if not places or not all(p in inner for p in places):
+    if not regions or not all(p in inner for p in regions):
         return False
     if isinstance(stmt, For) and not _runs_once(stmt):
         return False
-    if isinstance(stmt, If) and len(places) < 2:
+    if isinstance(stmt, If) and len(regions) < 2:
         return False
-    return all(is_certain(p, inner[p]) for p in places)
+    return all(is_certain(p, inner[p]) for p in regions)
 
 
 def _is_true(loop: While) -> bool:
