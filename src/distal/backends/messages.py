@@ -1,7 +1,7 @@
 """Messages of drivers and validators about emitted text, led back to the author's lines.
 
-In: an artifact and what a compiler said about its text. Out: the same message with each place in
-the text replaced by the author's file and line, where that is known. It knows how the compilers
+Input: an artifact and what a compiler said about its text. Output: the same message with each place
+in the text replaced by the author's file and line, where that is known. It knows how the compilers
 write a place, and nothing of what they say about it.
 """
 

@@ -1,8 +1,8 @@
 """Built-ins of plain values, computed without a device: ``SUN = normalize(vec3(1, 2, 3))``.
 
-Input: a row of the table and Python numbers or vectors. Output: the value in 64
-bits, by the same rules that fold constants in scene code; None where those leave it to a device.
-A scene's module may thus compute its constants where nothing but the standard library is.
+Input: an intrinsic and Python numbers or vectors. Output: the value in 64 bits, by the same rules
+that fold constants in scene code; None where those leave it to a device. A scene's module may thus
+compute its constants where nothing but the standard library is.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from distal.lang.values import VALUE_CLASSES, uint
 from distal.passes.fold.fold import fold_expression
 
 
-def compute(row: Intrinsic, args: Sequence[Any]) -> Any | None:
-    """``row(*args)``, or None where it is not known here."""
+def compute(intrinsic: Intrinsic, args: Sequence[Any]) -> Any | None:
+    """``intrinsic(*args)``, or None where it is not known here."""
     try:
-        call = call_with_constants(row, args)
+        call = call_with_constants(intrinsic, args)
     except RefusedError:  # NaN and the like
         return None
     return None if call is None else _python_value(fold_expression(call, 64))

@@ -1,7 +1,7 @@
 """The prelude as passes see it: lowered on demand, linked into a module under free names.
 
-Input: the name of a prelude function and argument types. Output: IR functions.
-This is where the passes' wish (``distal.ir.library.Library``) meets the front end.
+Input: the name of a prelude function and argument types. Output: IR functions. It implements
+``distal.ir.library.Library``, what passes require, with the front end.
 """
 
 from __future__ import annotations

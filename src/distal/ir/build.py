@@ -216,7 +216,7 @@ def cast(value: Expr, kind: Kind) -> Expr:
 
 
 def builtin(name: str, *args: Expr) -> Expr:
-    """A call of a row of the table; the arguments have exactly the types of one signature."""
+    """A call of an intrinsic; the arguments have exactly the types of one signature."""
     types = [a.type for a in args]
     for signature in INTRINSICS[name].signatures:
         result = signature.match(types)

@@ -1,12 +1,12 @@
 """Arithmetic on constants exactly as the targets do it.
 
-Input: Python numbers, the components of constants. Output: the result in the module's precision,
-or ``NotFoldableError`` where it would be a NaN, an infinity or a denormal (GPUs flush those): such
-an operation is left to the target.
+Input: Python numbers, the components of constants. Output: the result in the module's precision, or
+``NotFoldableError`` where it would be a NaN, an infinity or a denormal (GPUs flush those): such an
+operation is left to the target.
 
-The sum, difference, product, quotient and square root of two 32-bit floats, computed in 64 bits
-and rounded to 32, are correctly rounded (a 53-bit significand is more than twice 24 bits and two
-more), so nothing here needs an array library.
+The sum, difference, product, quotient and square root of two 32-bit floats, computed in 64 bits and
+rounded to 32, are correctly rounded (a 53-bit significand is more than twice 24 bits and two more),
+so nothing here needs an array library.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """One object for each distinct node or type, so that equality is identity.
 
-A plain frozen dataclass hashes its whole tree each time it is asked, which is exponential for an
-expression that shares its parts, and recursive. An interned node is looked up by the identities
-of its children, once, when it is made.
+A plain frozen dataclass hashes its whole tree each time its hash is needed, which is exponential
+for an expression that shares its parts, and recursive. An interned node is looked up by the
+identities of its children, once, when it is made.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Interned(type):
             _TABLE[key] = KeyedRef(found, _forget, key)
         return found
 
-    # A class whose first field is a plain number tells apart what a dictionary would mix up.
+    # A class whose first field is a plain number distinguishes what a dictionary would mix up.
     discriminate: Any = None
 
 

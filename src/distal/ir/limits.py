@@ -22,7 +22,7 @@ LARGEST_ANGLE: Final = 2.0**22
 LARGEST_ANGLE_64: Final = 2.0**51
 # Seconds from 0, twelve days: there floats of 32 bits are an eighth of a second apart.
 LARGEST_TIME: Final = 2.0**20
-# The tangent at a pole, at most: one over the smallest angle that is told from 0.
+# The tangent at a pole, at most: one over the smallest angle that is distinguished from 0.
 SMALLEST_COSINE: Final = 2.0**-30
 # Below it a divisor of a remainder counts as 0: the quotient of ordinary numbers is then finite.
 SMALLEST_DIVISOR: Final = 2.0**-60

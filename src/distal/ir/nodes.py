@@ -1,16 +1,16 @@
 """The nodes of the IR.
 
 An expression has a type, no effect and no order; it may be computed once, twice or never. A
-statement has an order and no value. Nodes never change: a pass returns new nodes. Expressions
-are interned (``distal.ir.interning``): equal expressions are the same object, and dictionaries
-keyed by them are cheap.
+statement has an order and no value. Nodes never change: a pass returns new nodes. Expressions are
+interned (``distal.ir.interning``): equal expressions are the same object, and dictionaries keyed by
+them are cheap.
 
 Every statement carries the span it came from. An expression's span is the first place an equal
 expression was seen, perhaps elsewhere; use it only to narrow the statement's span (``span_in``).
 
-Names of locals are unique within a function: a name is bound once, by a parameter, Let, Var or
-For. A read of a local is in the block of its binding or deeper. Whatever the author's language
-leaves implicit is explicit here (a float added to a vec3 is a Splat): backends never guess.
+Names of locals are unique within a function: a name is bound once, by a parameter, Let, Var or For.
+A read of a local is in the block of its binding or deeper. Whatever the author's language leaves
+implicit is explicit here (a float added to a vec3 is a Splat): backends never guess.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class CompareOp(Enum):
 
 
 class LogicalOp(Enum):
-    """Short-circuit, on scalars of bool; since nothing has an effect, only cost tells."""
+    """Short-circuit, on scalars of bool; since nothing has an effect, only cost differs."""
 
     __hash__ = object.__hash__
 
@@ -289,7 +289,7 @@ class Cast(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Builtin(metaclass=Interned):
-    """A call of a row of ``distal.ir.intrinsics``."""
+    """A call of an intrinsic of ``distal.ir.intrinsics``."""
 
     name: str
     args: tuple[Expr, ...]
@@ -498,7 +498,7 @@ class Function:
     """A function. Every path ends in Return (or in a ``while True`` that never ends).
 
     ``name`` is unique in the module; ``source_name`` is what the author called it. ``native`` is
-    the built-in that the function stands in for on a rough target, of the same arguments: a text
+    the built-in that the function replaces on a rough target, of the same arguments: a text
     may let its host choose the driver's own. ``apart`` is a piece of a longer function, which a
     backend must not put together again.
     """
@@ -568,7 +568,7 @@ class Module:
         functions: A callee stands before its callers; no recursion. Only what is reachable.
         entry: The name of the function that is run.
         kind: How it is run.
-        uniforms: The uniforms in a settled order: frame values first, then parameters by first use.
+        uniforms: The uniforms in a fixed order: frame values first, then parameters by first use.
         resources: Textures and buffers, by first use.
         frame: The per-frame part, in order: (name, value). A value reads uniforms and earlier
             PerFrame values, and may call functions. Empty before the frequency pass.

@@ -103,9 +103,9 @@ def print_expression(e: Expr) -> str:
 
 
 def _uniform_line(uniform: UniformDeclaration) -> str:
-    told = ", ".join(f"{key}={value!r}" for key, value in uniform.interface)
+    about = ", ".join(f"{key}={value!r}" for key, value in uniform.interface)
     text = f"uniform @{uniform.name}: {uniform.type} = {uniform.default!r} {uniform.origin.value}"
-    return f"{text} ({told})" if told else text
+    return f"{text} ({about})" if about else text
 
 
 def _structs(module: Module) -> Iterator[Struct]:

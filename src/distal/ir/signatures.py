@@ -35,7 +35,7 @@ from distal.ir.types import (
 
 
 class Follows(Enum):
-    """A type told by the signature's type variable T."""
+    """A type that follows from the signature's type variable T."""
 
     T = "T"
     AS_BOOL = "bool for each component of T"
@@ -59,7 +59,7 @@ MATRICES: Final[tuple[Type, ...]] = (MAT2, MAT3, MAT4)
 
 
 def resolve(pattern: Pattern, variable: Type) -> Type:
-    """The type a pattern stands for when T is ``variable``."""
+    """The type that a pattern means when T is ``variable``."""
     match pattern:
         case Follows.T:
             return variable
@@ -87,7 +87,7 @@ class Signature:
     over: tuple[Type, ...]
 
     def instances(self) -> Iterator[tuple[tuple[Type, ...], Type]]:
-        """Every (parameter types, result type) this signature stands for."""
+        """Every (parameter types, result type) this signature describes."""
         for variable in self.over:
             yield (
                 tuple(resolve(p, variable) for p in self.params),

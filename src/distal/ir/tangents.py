@@ -1,7 +1,7 @@
 """Arithmetic on tangents: how a value changes along one direction, kept as small as it is.
 
-What flows in and out: values (expressions) and tangents, expressions of the same type, or None for
-a tangent that is zero throughout. A tangent's int and bool parts are zero. Most tangents of a
+Input and output: values (expressions) and tangents, expressions of the same type, or None for a
+tangent that is zero throughout. A tangent's int and bool parts are zero. Most tangents of a
 distance field are sparse, such as (1, 0, 0) times something; their zeros are seen here, so that a
 derivative does not multiply by them. Whoever asks for a derivative takes 0 * x as 0, whatever x.
 """

@@ -16,7 +16,7 @@ class FramePlace(Enum):
     """Where a target computes the per-frame part."""
 
     HOST = "host"  # beside the pixel program: the CPU's scalar prelude, a GPU dispatch
-    VERTEX = "vertex"  # the vertex stage, handed on as at most 15 packed flat vec4
+    VERTEX = "vertex"  # the vertex stage, passed as at most 15 packed flat vec4
     PIXEL = "pixel"  # at the top of the pixel function: the target has a single stage
     NONE = "none"  # nothing is hoisted (the reference)
 
@@ -36,16 +36,16 @@ class Target:
         saturating_cast: Its float to int conversion saturates and gives 0 for NaN.
         texel_fetch: Reads single texels and sizes.
         samples: Filters textures itself (else the prelude's filter over single texels).
-        rough: Built-ins that its drivers may have off by what a picture shows; the table's
-            ``careful`` functions stand in, unless a host that has measured its driver trusts it.
-            Texts for people and their sites keep the short names.
+        rough: Built-ins whose errors in its drivers a picture may show; the table's ``careful``
+            functions replace them, unless a host that has measured its driver trusts it. Texts for
+            people and their sites keep the short names.
         inline: Wants small functions inlined.
         predicated: Wants loops without break, continue and return inside (see passes.predicate).
         outlined: Wants very long functions cut into pieces (see passes.outline).
         one_way: Wants no If of two ways of equal length (see passes.one_way).
-        largest_table: How many numbers an array of literals may have; larger ones stand in buffers,
-            whose values the interface tells (see passes.tables). None: any, for want of buffers
-            or because arrays are quick.
+        largest_table: How many numbers an array of literals may have; larger ones are kept in
+            buffers, whose values the interface holds (see passes.tables). None: any, because there
+            are no buffers or because arrays are quick.
     """
 
     name: str

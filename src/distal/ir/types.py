@@ -158,7 +158,7 @@ FRAME: Final = Struct(
 
 
 def tuple_type(items: tuple[Type, ...]) -> Struct:
-    """The struct that carries a returned tuple; its name tells its items' types."""
+    """The struct that carries a returned tuple; its name holds its items' types."""
     name = "Tuple_" + "_".join(_plain(t) for t in items)
     return Struct(name, tuple((f"item{i}", t) for i, t in enumerate(items)), True)
 

@@ -256,7 +256,7 @@ def _construction(parts: tuple[Expr, ...], type: Type) -> None:
 
 
 def _builtin(name: str, args: tuple[Expr, ...], type: Type) -> None:
-    assert name in INTRINSICS, f"no row {name}"
+    assert name in INTRINSICS, f"no intrinsic {name}"
     types = [a.type for a in args]
     found = [s.match(types) for s in INTRINSICS[name].signatures]
     assert type in found, f"{name} of {', '.join(map(str, types))}"

@@ -1,7 +1,7 @@
 """Going through expressions and statements without naming every node.
 
-``children`` and ``rebuild`` are the only places that know every node's operands; passes that
-treat most nodes alike stand on them.
+``children`` and ``rebuild`` are the only functions that know every node's operands; passes that
+treat most nodes alike use them.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ def _both_sides(e: Any) -> tuple[Expr, ...]:
     return (e.lhs, e.rhs)
 
 
-# A table, not a match: passes ask this of every node again and again, and trying one class after
-# the other took a third of their time.
+# A table, not a match: passes need this of every node many times, and trying one class after the
+# other took a third of their time.
 _OPERANDS: Final[dict[type, Callable[[Any], tuple[Expr, ...]]]] = {
     **dict.fromkeys((Const, Read, Uniform, PerFrame, Resource), _none),
     **dict.fromkeys((Binary, Compare, Logical, MatMul), _both_sides),
@@ -185,7 +185,7 @@ def nodes_in(*roots: Expr) -> Iterator[Expr]:
 
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
-    """The expressions that stand directly in a statement (an Assign's target included)."""
+    """The expressions directly in a statement (an Assign's target included)."""
     match stmt:
         case Let(_, value) | Var(_, value) | Return(value):
             return (value,)
@@ -289,7 +289,7 @@ def map_statement(
 
 
 def map_expressions(body: tuple[Stmt, ...], expr: Callable[[Expr], Expr]) -> tuple[Stmt, ...]:
-    """A block with every directly standing expression mapped, inner blocks included."""
+    """A block with the expressions of its statements mapped, inner blocks included."""
     return tuple(map_statement(s, expr, lambda inner: map_expressions(inner, expr)) for s in body)
 
 

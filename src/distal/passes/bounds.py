@@ -1,9 +1,8 @@
 """Make the clamping of indices explicit where an index is not provably in range.
 
-Input: a module whose every index is clamped in meaning. Output: the same, with
-``min(max(i, 0), n - 1)`` in place of ``i`` unless its interval lies within 0 .. n - 1. Memory
-safety of compiled code rests on this pass. Buffers, whose length is known when they are bound,
-stay with the backend.
+Input: a module whose every index is clamped in meaning. Output: the same, with ``min(max(i, 0), n -
+1)`` in place of ``i`` unless its interval lies within 0 .. n - 1. Memory safety of compiled code
+rests on this pass. Buffers, whose length is known when they are bound, stay with the backend.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from distal.ir.walk import expressions_in, map_statement, rewrite
 from distal.passes.context import Context
 from distal.passes.ranges import Ranges
 
-# Prelude functions that bound their result, as (name, argument types): the row or operator.
+# Prelude functions that bound their result, as (name, argument types): the intrinsic or operator.
 _BOUNDING: Final[dict[tuple[str, tuple[Type, ...]], str]] = {
     ("integers.floor_remainder", (INT, INT)): "%",
     ("integers.floor_remainder", (UINT, UINT)): "%",
@@ -48,7 +47,7 @@ def _bounding_functions(module: Module, context: Context) -> dict[str, str]:
         base = name.partition(".")[2]
         if not any(f.source_name.startswith(base) for f in module.functions):
             continue
-        # Linking what is there adds nothing and tells its name; what it adds is not called.
+        # Linking what is there adds nothing and returns its name; what it adds is not called.
         linked, function = context.library.link(module, name, args)
         if function in present and len(linked.functions) == len(module.functions):
             found[function] = meaning

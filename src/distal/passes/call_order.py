@@ -1,8 +1,8 @@
 """Callees before callers.
 
-Input: functions in any order, and the entry. Output: those that the entry
-reaches, each after everything it calls; otherwise in the order they are called, so that the same
-program always gives the same order.
+Input: functions in any order, and the entry. Output: those that the entry reaches, each after
+everything it calls; otherwise in the order they are called, so that the same program always gives
+the same order.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What computing a node costs, in scalar operations, roughly.
 
-Input: expressions and functions. Output: whole numbers that passes compare with
-each other; they only have to be right within a factor of two. Taking values apart and putting
-them together is free: it is no work on any target.
+Input: expressions and functions. Output: whole numbers that passes compare with each other; they
+only have to be right within a factor of two. Taking values apart and putting them together is free:
+it is no work on any target.
 """
 
 from __future__ import annotations

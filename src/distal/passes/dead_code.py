@@ -1,8 +1,8 @@
 """Removing locals that nothing reads.
 
-Input: the body of a function. Output: the same without Lets, Vars, assignments,
-branches and counted loops that no result depends on. A ``while`` stays: whether it ends is part
-of what the author wrote.
+Input: the body of a function. Output: the same without Lets, Vars, assignments, branches and
+counted loops that no result depends on. A ``while`` stays: whether it ends is part of what the
+author wrote.
 """
 
 from __future__ import annotations

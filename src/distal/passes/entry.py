@@ -1,14 +1,14 @@
 """Give the module a plain entry point: what the host provides becomes coord and uniforms.
 
-Input: a lowered module whose image function takes a ``Frame``. Output: a module
-without ``Frame``. A parameter of that type is now the vec2 ``coord``; every other part of it is a
-uniform of origin FRAME, declared only when it is read. An image is wrapped into
-``main(coord: vec2) -> vec4``. The time that expressions made in Python read is the frame's, also
-where no ``Frame`` is. The pass does not know how a target provides coord or uniforms.
+Input: a lowered module whose image function takes a ``Frame``. Output: a module without ``Frame``.
+A parameter of that type is now the vec2 ``coord``; every other part of it is a uniform of origin
+FRAME, declared only when it is read. An image is wrapped into ``main(coord: vec2) -> vec4``. The
+time that expressions made in Python read is the frame's, also where no ``Frame`` is. The pass does
+not know how a target provides coord or uniforms.
 
 A frame's values own their uniforms' names. A parameter uniform of the same name (a slider called
-"Time") gets ``_value`` appended, and its interface then ends in ``("parameter", "time")``, the
-name under which people set it.
+"Time") gets ``_value`` appended, and its interface then ends in ``("parameter", "time")``, the name
+under which people set it.
 """
 
 from __future__ import annotations
@@ -194,7 +194,7 @@ class _FrameReplacer:
         return _retyped(rebuild(e, operands))
 
     def _coord(self, frame: Expr) -> Expr:
-        """The coord that stands for a value of type Frame."""
+        """The coord that replaces a value of type Frame."""
         if isinstance(frame, Read) and frame.name in self._coords:
             return self._coords[frame.name]
         raise self._misuse(frame)

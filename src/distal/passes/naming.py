@@ -1,7 +1,7 @@
 """Names that are free.
 
-Input: the names already taken, and a wish. Output: the wish, or the wish with the
-first number that is free. Deterministic: the same wishes in the same order give the same names.
+Input: the names already taken, and a wanted name. Output: that name, or that name with the first
+number that is free. Deterministic: the same names in the same order give the same result.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ class FreshNames:
         self._taken = set(taken)
         self._next: dict[str, int] = {}
 
-    def fresh(self, wish: str) -> str:
-        """The wish if it is free, else ``wish_2``, ``wish_3`` ...; taken from now on."""
-        name = wish
+    def fresh(self, wanted: str) -> str:
+        """``wanted`` if it is free, else ``wanted_2``, ``wanted_3`` ...; taken from now on."""
+        name = wanted
         if name in self._taken:
-            count = self._next.get(wish, 2)
-            while f"{wish}_{count}" in self._taken:
+            count = self._next.get(wanted, 2)
+            while f"{wanted}_{count}" in self._taken:
                 count += 1
-            self._next[wish] = count + 1
-            name = f"{wish}_{count}"
+            self._next[wanted] = count + 1
+            name = f"{wanted}_{count}"
         self._taken.add(name)
         return name
 

@@ -1,8 +1,7 @@
 """The numbers of a scene's shapes as constants, for a text or a kernel that is final.
 
-Input: a lowered module. Output: the same without uniforms of origin NUMBER: each
-value stands where it was read, and the passes fold it. It costs a compilation for every change of
-a number.
+Input: a lowered module. Output: the same without uniforms of origin NUMBER: each value stands where
+it was read, and the passes fold it. It costs a compilation for every change of a number.
 """
 
 from __future__ import annotations

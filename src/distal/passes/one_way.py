@@ -1,10 +1,10 @@
 """Ifs of two ways as Ifs of one, for drivers whose time doubles with each.
 
-Input: functions as a text would show them. Output: the same meaning; where two ways
-of an If may be equally long, its condition is bound first, and each way has an If of its own. Two
-returns at the end of a function are such ways too. Knows nothing of drivers beyond this:
-SwiftShader walks a loop block by block to find its way back, and walks on twice from a block that
-two ways of one length lead to: 2 to the power of such Ifs, over a loop and all that it calls.
+Input: functions as a text would show them. Output: the same meaning; where two ways of an If may be
+equally long, its condition is bound first, and each way has an If of its own. Two returns at the
+end of a function are such ways too. Knows nothing of drivers beyond this: SwiftShader walks a loop
+block by block to find its way back, and walks on twice from a block that two ways of one length
+lead to: 2 to the power of such Ifs, over a loop and all that it calls.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Outline: a very long function is cut into functions of its own, where the target wants it.
 
-Input: predicated functions. Output: the same values; of a function that is larger
-than ``LARGE``, runs of statements are functions of about ``PIECE`` that stay apart. LLVM's
-instruction selection and register allocation take time that grows with the square of a block's
-length: 800 lines of one block took 10 s, in pieces they take a tenth.
+Input: predicated functions. Output: the same values; of a function that is larger than ``LARGE``,
+runs of statements are functions of about ``PIECE`` that stay apart. LLVM's instruction selection
+and register allocation take time that grows with the square of a block's length: 800 lines of one
+block took 10 s, in pieces they take a tenth.
 
 A run takes the locals that it reads and returns those that are read after it. Large arrays are not
 handed over: statements that touch one stay where they are, as do exits.

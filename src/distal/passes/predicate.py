@@ -1,11 +1,11 @@
 """Early exits turned into flags, for targets that run many pixels in step.
 
-Input: functions with return, break and continue anywhere. Output: functions with
-one Return, their last statement, and loops whose only Break is a last statement ``if flag: break``.
-A backend with lane masks then needs to know ifs and loops only. Knows nothing of masks.
+Input: functions with return, break and continue anywhere. Output: functions with one Return, their
+last statement, and loops whose only Break is a last statement ``if flag: break``. A backend with
+lane masks then needs to know ifs and loops only. Knows nothing of masks.
 
-An exit on one side of an If moves what follows into the other side, which costs nothing; a flag
-is made only where an exit hides deeper than that.
+An exit on one side of an If moves what follows into the other side, which costs nothing; a flag is
+made only where an exit hides deeper than that.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Which values an integer can take.
 
-Input: int and uint expressions and what is known of the locals they read. What flows out:
-for each a closed interval, the whole range of its type when nothing better is known. Arithmetic
-that could wrap gives the whole range. Var locals are not followed.
+Input: int and uint expressions and what is known of the locals they read. Output: for each a closed
+interval, the whole range of its type when nothing better is known. Arithmetic that could wrap gives
+the whole range. Var locals are not followed.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ _WHOLE: Final[dict[Type, Range]] = {INT: (-(2**31), 2**31 - 1), UINT: (0, 2**32 
 class Ranges:
     """Ranges of the locals of one function, entered in the order of its statements.
 
-    ``meanings`` tells which module functions stand for an operation: a name to "clamp" or "%".
-    ``uniforms`` tells what is known of uniforms: nothing, where memory safety rests on the answer.
+    ``meanings`` maps the names of module functions that do an operation to "clamp" or "%".
+    ``uniforms`` holds what is known of uniforms: nothing, where memory safety rests on the answer.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Ranges:
             return
         start, stop = self.of(stmt.start), self.of(stmt.stop)
         low, high = (start[0], stop[1] - 1) if stmt.step > 0 else (stop[0] + 1, start[1])
-        # An empty range means a body that never runs: any claim holds, but keep it an interval.
+        # An empty range means a body that never runs: any bound holds, but keep it an interval.
         self._locals[stmt.name] = (low, max(low, high))
 
     def of(self, e: Expr) -> Range:
@@ -152,8 +152,8 @@ def declared_ranges(uniforms: Iterable[UniformDeclaration]) -> dict[str, Range]:
     """What the author declared of whole-number parameters: a host keeps to it, or should."""
     found: dict[str, Range] = {}
     for uniform in uniforms:
-        told = dict(uniform.interface)
-        low, high, options = told.get("low"), told.get("high"), told.get("options")
+        about = dict(uniform.interface)
+        low, high, options = about.get("low"), about.get("high"), about.get("options")
         if uniform.type is INT and options:
             found[uniform.name] = (0, len(options) - 1)
         elif uniform.type is INT and low is not None and high is not None:

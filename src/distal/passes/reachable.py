@@ -1,7 +1,7 @@
 """Which functions and per-frame values a module's entry still needs.
 
-Input: a module. Output: the same without functions that nothing calls and without
-per-frame values that nothing reads.
+Input: a module. Output: the same without functions that nothing calls and without per-frame values
+that nothing reads.
 """
 
 from __future__ import annotations

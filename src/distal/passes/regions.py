@@ -1,8 +1,7 @@
 """Where in a function something is computed.
 
-Input: blocks and positions, as ``versions`` numbers a function. Output: answers
-to where a value that several statements use may be computed once, and whether it would have been
-computed anyway.
+Input: blocks and positions, as ``versions`` numbers a function. Output: answers to where a value
+that several statements use may be computed once, and whether it would have been computed anyway.
 """
 
 from __future__ import annotations

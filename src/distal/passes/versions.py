@@ -1,11 +1,11 @@
-"""One name for each value: reads of a changing local are told apart by what it holds.
+"""One name for each value: reads of a changing local are distinguished by what it holds.
 
-Input: a function's body. Output: its places, with every read of a Var renamed to
-``name#3``, a new number wherever the value may have changed, so that equal nodes have equal
-values wherever both are in scope (static single assignment, without the phis: after a branch and
-around a loop a Var simply has a new number). A Let whose value an earlier one in scope already
-has goes away, its reads become reads of the earlier. ``plain`` takes the numbers off again.
-``births`` tells in which place each local and each numbered value comes to be.
+Input: a function's body. Output: its places, with every read of a Var renamed to ``name#3``, a new
+number wherever the value may have changed, so that equal nodes have equal values wherever both are
+in scope (static single assignment, without the phis: after a branch and around a loop a Var simply
+has a new number). A Let whose value an earlier one in scope already has goes away, its reads become
+reads of the earlier. ``plain`` takes the numbers off again. ``births`` holds the region in which
+each local and each numbered value is made.
 """
 
 from __future__ import annotations

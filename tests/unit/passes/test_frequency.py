@@ -30,7 +30,7 @@ from distal.ir.nodes import (
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import BOOL, FLOAT, INT, VEC3, Struct, Type, component_count
 from distal.ir.verify import verify
-from distal.passes.per_frame.frequency import VERTEX_ROOM, run
+from distal.passes.per_frame.frequency import VERTEX_LIMIT, run
 from tests.unit.passes.random_modules import Generator, check, context, value
 
 HOST, VERTEX, PIXEL, NONE = (
@@ -280,7 +280,7 @@ def many(number: int) -> Function:
 def test_the_vertex_stage_has_room_for_so_much() -> None:
     module = hoisted(many(25), target=VERTEX)
     carried = [value.type for name, value in module.frame if name.startswith("part")]
-    assert sum(map(component_count, carried)) == VERTEX_ROOM
+    assert sum(map(component_count, carried)) == VERTEX_LIMIT
     # The cheapest five stay, under their own names.
     body = module.function("entry").body
     assert [s.name for s in body if isinstance(s, Let)] == [f"part{k}" for k in range(5)]
@@ -295,7 +295,7 @@ def test_what_does_not_travel_may_use_what_does() -> None:
             {"x": FLOAT},
             Return(build.multiply(x, build.builtin("sin", build.add(wave, build.number(k))))),
         )
-        for k in range(VERTEX_ROOM + 5)
+        for k in range(VERTEX_LIMIT + 5)
     ]
     total: Expr = build.multiply(x, wave)
     for f in functions:

@@ -1,6 +1,6 @@
 """Pieces of C-like text that know how tightly they bind, and are joined with few brackets.
 
-In: texts of operands. Out: texts of operations. GLSL and WGSL disagree on where brackets are
+Input: texts of operands. Output: texts of operations. GLSL and WGSL disagree on where brackets are
 needed; these suit both. It knows nothing of the IR.
 """
 

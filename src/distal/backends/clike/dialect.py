@@ -1,4 +1,4 @@
-"""What a C-like language writes in its own way: the methods that GLSL and WGSL fill in."""
+"""What a C-like language writes in its own way: methods that GLSL and WGSL define."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What expressions cost to run, so that a language knows whether it may compute both of a choice.
 
-In: a module's functions. Out: numbers of operations. Knows no language and no driver.
+Input: a module's functions. Output: numbers of operations. Knows no language and no driver.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Expressions as GLSL and WGSL both write them: infix operators, dotted lanes, calls.
 
-In: IR expressions. Out: text with as few brackets as both grammars take. Where a language cannot
-say something inside an expression, it stands in a local of its own before the statement: the
-writer appends those lines to ``lines`` itself. What differs between the languages is left to the
-methods of ``distal.backends.clike.dialect``.
+Input: IR expressions. Output: text with as few brackets as both grammars take. Where a language
+cannot say something inside an expression, it is put into a local of its own before the statement:
+the writer appends those lines to ``lines`` itself. What differs between the languages is left to
+the methods of ``distal.backends.clike.dialect``.
 """
 
 from __future__ import annotations
@@ -221,8 +221,8 @@ class ExpressionWriter(Dialect):
         return self.expression(operand)
 
     def _builtin(self, e: Builtin) -> Code:
-        row = INTRINSICS[e.name]
-        spelling = row.spelling(self.family)
+        intrinsic = INTRINSICS[e.name]
+        spelling = intrinsic.spelling(self.family)
         may_be_scalar = self.scalar_arguments(e.name)
         splats = [i for i in may_be_scalar if isinstance(e.args[i], Splat)]
         args = []

@@ -1,6 +1,6 @@
 """Functions and statements as GLSL and WGSL both write them: braces, ``for``, ``return``.
 
-In: IR functions. Out: lines of text, each with the author's place. Expressions come from
+Input: IR functions. Output: lines of text, each with the author's place. Expressions come from
 ``distal.backends.clike.expressions``; a language fills in ``Dialect`` and the few methods here.
 """
 
@@ -253,7 +253,7 @@ class FunctionWriter(ExpressionWriter):
             test = self.expression(following.condition)
             self.depth -= 1
             if len(self.lines) > mark:
-                # The condition has lines of its own: it needs a block to stand in.
+                # The condition has lines of its own: it needs a block.
                 needed = self.lines[mark:]
                 del self.lines[mark:]
                 self.line("} else {")

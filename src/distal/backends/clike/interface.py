@@ -1,8 +1,8 @@
 """What a host must provide to run a text, as a dictionary that JSON can carry.
 
-In: the module and the names of its things in the text. Out: uniforms, textures and buffers with
-everything a host or a person's control panel asks of them. Each backend adds its own ``stages``
-and ``frame``.
+Input: the module and the names of its things in the text. Output: uniforms, textures and buffers
+with everything a host or a person's control panel asks of them. Each backend adds its own
+``stages`` and ``frame``.
 """
 
 from __future__ import annotations

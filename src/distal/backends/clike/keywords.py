@@ -1,14 +1,14 @@
 """Words that a target keeps for itself.
 
-A name of the author's that is one of them is written otherwise
-(``distal.backends.clike.names``). The GLSL lists are the union over all versions that we write,
-so that a function has the same name in each of them.
+A name of the author's that is one of them is written otherwise (``distal.backends.clike.names``).
+The GLSL lists are the union over all versions that we write, so that a function has the same name
+in each of them.
 
-Sources: The OpenGL ES Shading Language 3.00.6, sections 3.8 (keywords) and 8 (functions);
-1.00.17, sections 3.6 and 8; The OpenGL Shading Language 3.30.6, sections 3.6 and 8; and the words
-that 4.60 section 3.6 added, because drivers for newer versions warn of them. WebGPU Shading
-Language, sections "Keyword Summary", "Reserved Words", "Predeclared Types", "Enumeration Types" and
-"Built-in Functions" (https://www.w3.org/TR/WGSL/).
+Sources: The OpenGL ES Shading Language 3.00.6, sections 3.8 (keywords) and 8 (functions); 1.00.17,
+sections 3.6 and 8; The OpenGL Shading Language 3.30.6, sections 3.6 and 8; and the words that 4.60
+section 3.6 added, because drivers for newer versions warn of them. WebGPU Shading Language,
+sections "Keyword Summary", "Reserved Words", "Predeclared Types", "Enumeration Types" and "Built-in
+Functions" (https://www.w3.org/TR/WGSL/).
 """
 
 from __future__ import annotations

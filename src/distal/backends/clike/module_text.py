@@ -34,7 +34,7 @@ def comment_text(text: str) -> str:
 
 
 def uniform_comment(uniform: UniformDeclaration) -> str:
-    """What a person is told of a parameter: its label and range."""
+    """What a comment says of a parameter: its label and range."""
     about = dict(uniform.interface)
     label = comment_text(str(about.get("label") or ""))
     if not label:

@@ -1,7 +1,7 @@
 """Names in emitted text: the author's own where the target allows, made safe and unique.
 
-In: names of the IR. Out: identifiers that GLSL and WGSL both take as identifiers: ASCII, no double
-underscore, of bounded length, none that the target reserves. Equal input gives equal names.
+Input: names of the IR. Output: identifiers that GLSL and WGSL both take as identifiers: ASCII, no
+double underscore, of bounded length, none that the target reserves. Equal input gives equal names.
 """
 
 from __future__ import annotations

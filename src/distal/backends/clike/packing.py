@@ -1,10 +1,10 @@
 """Per-frame values as few flat four-component vectors, from the vertex to the fragment stage.
 
-In: names and types of values. Out: for each component, its vector and lane; and, as GLSL, what
-each vector is made of and how each value is taken out again. WebGL 2 promises 15 vectors between
-the stages. Floats travel as floats; ints, uints and bools as ints, because an int's bits sent as
-a float may be a denormal or a NaN and arrive changed. When vectors run short, floats fill the
-spare lanes of int vectors by their bits, which is safe in that direction.
+Input: names and types of values. Output: for each component, its vector and lane; and, as GLSL,
+what each vector is made of and how each value is taken out again. WebGL 2 guarantees 15 vectors
+between the stages. Floats travel as floats; ints, uints and bools as ints, because an int's bits
+sent as a float may be a denormal or a NaN and arrive changed. When vectors run short, floats fill
+the spare lanes of int vectors by their bits, which is safe in that direction.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def pack(values: tuple[tuple[str, Type], ...]) -> Packing:
 
 
 def _whole(values: list[tuple[str, Type]]) -> tuple[dict[str, list[tuple[int, int]]], int]:
-    """Vectors and columns kept in one vector each: largest first, into the first that has room."""
+    """Vectors and columns kept in one vector each: largest first, into the first that fits."""
     pieces = [
         (_column_size(t), order, n, column)
         for order, (n, t) in enumerate(values)

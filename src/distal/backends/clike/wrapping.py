@@ -1,7 +1,7 @@
 """Long lines of C-like text, broken where a person would break them.
 
-In: one line. Out: the same text on as many lines as it takes, broken after a comma or before an
-operator, outside as many brackets as possible. No token changes.
+Input: one line. Output: the same text on as many lines as it takes, broken after a comma or before
+an operator, outside as many brackets as possible. No token changes.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """GLSL: WebGL 2 (ES 3.00), desktop 3.30, WebGL 1 (ES 1.00), glslCanvas, ISF and Shadertoy.
 
-In: a module that has been through the passes. Out: its fragment text, the vertex text where there
-is one, and the interface. The text of functions and of programs is written by
+Input: a module that has been through the passes. Output: its fragment text, the vertex text where
+there is one, and the interface. The text of functions and of programs is written by
 ``distal.backends.glsl.writer`` and ``distal.backends.glsl.stages``.
 """
 
@@ -34,7 +34,7 @@ from distal.ir.target import FramePlace, Target
 from distal.ir.types import Type
 from distal.ir.walk import expressions_in, per_frame_reads_in
 
-_TRUST: Final = {row.name: trust_macro(row.name) for row in INTRINSICS.values() if row.careful}
+_TRUST: Final = {i.name: trust_macro(i.name) for i in INTRINSICS.values() if i.careful}
 
 
 def emit(module: Module, target: Target) -> Artifact:

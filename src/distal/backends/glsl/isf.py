@@ -1,10 +1,10 @@
 """ISF, the Interactive Shader Format of video tools: a shader under a comment that describes it.
 
-Input: a module shaped for the target. Output: the comment's JSON with an input for
-each parameter, what stands for these in the text, and the functions that read imported pictures.
-The host declares everything that the JSON names (https://docs.isf.video, "ISF JSON Reference" and
-"Automatically Generated Variables"). It has no input of three coordinates and none without a range:
-such a point becomes three numbers, and gets a range around its default.
+Input: a module shaped for the target. Output: the comment's JSON with an input for each parameter,
+what these are in the text, and the functions that read imported pictures. The host declares
+everything that the JSON names (https://docs.isf.video, "ISF JSON Reference" and "Automatically
+Generated Variables"). It has no input of three coordinates and none without a range: such a point
+becomes three numbers, and gets a range around its default.
 """
 
 # ruff: noqa: D102  (documented where they are declared)
@@ -33,7 +33,7 @@ _AXES: Final = "xyz"
 
 @dataclass(frozen=True, slots=True)
 class IsfHeader:
-    """What stands before the shader.
+    """The comment before the shader.
 
     Attributes:
         lines: The comment with the JSON.
@@ -98,7 +98,7 @@ def _comment(described: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _names(uniform: UniformDeclaration) -> tuple[str, ...]:
-    """The wished names of a parameter's inputs: only a point of three has more than one."""
+    """The wanted names of a parameter's inputs: only a point of three has more than one."""
     is_place = dict(uniform.interface)["kind"] == "point" and len(uniform.default) == 3
     return tuple(f"{uniform.name}_{axis}" for axis in _AXES) if is_place else (uniform.name,)
 
@@ -133,7 +133,7 @@ def _inputs(names: tuple[str, ...], uniform: UniformDeclaration) -> Iterable[dic
             listed = {"VALUES": list(range(len(options))), "LABELS": options}
             yield named | {"TYPE": "long", "DEFAULT": default} | listed
         case "color":
-            # The host hands its picker's numbers on as they are; the scene reads linear light.
+            # The host passes its picker's numbers unchanged; the scene reads linear light.
             labelled = {"NAME": name, "LABEL": f"{label} (linear)"}
             yield labelled | {"TYPE": "color", "DEFAULT": [*default, 1.0]}
         case "point" if len(default) == 2:

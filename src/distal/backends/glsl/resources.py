@@ -1,7 +1,8 @@
-"""How textures and buffers stand in GLSL: samplers, and the functions that read single elements.
+"""Textures and buffers in GLSL: samplers, and the functions that read single elements.
 
-In: a resource's declaration. Out: lines of GLSL. A buffer is a texture of one texel an element,
-row by row, in a width of the host's choice, and a uniform with the count: WebGL 2 has no other.
+Input: a resource's declaration. Output: lines of GLSL. A buffer is a texture of one texel an
+element, row by row, in a width of the host's choice, and a uniform with the count: WebGL 2 has no
+other.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Complete GLSL programs: what stands around the functions in each place a text is used.
+"""Complete GLSL programs: what surrounds the functions in each place a text is used.
 
-In: a module shaped for a GLSL target. Out: the fragment text and, for WebGL 2 and desktop GL, the
-vertex text that computes the per-frame part. How a function looks is said in
+Input: a module shaped for a GLSL target. Output: the fragment text and, for WebGL 2 and desktop GL,
+the vertex text that computes the per-frame part. How a function looks is said in
 ``distal.backends.glsl.writer``.
 """
 
@@ -48,7 +48,7 @@ class GlslProgram:
     names: ModuleNames
     target: GlslTarget
     fixed: dict[str, str]  # uniforms that the place provides
-    constants: frozenset[str]  # numbers that there is no room for among the uniforms
+    constants: frozenset[str]  # numbers that do not fit among the uniforms
     packing: Packing | None
     vectors: list[str]  # the names of the packed vectors
     header: tuple[str, ...] = ()  # comments that the place reads

@@ -84,7 +84,7 @@ class GlslTarget(TextTarget):
 
     @property
     def written_names(self) -> frozenset[str]:
-        """The names that stand in its texts: no name of the author's is one of them."""
+        """The names that its texts contain: no name of the author's is one of them."""
         texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
         return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
 

@@ -1,8 +1,8 @@
-"""Uniforms as GLSL declares them, and how many of a scene's numbers it has room for.
+"""Uniforms as GLSL declares them, and how many of a scene's numbers fit.
 
-Input: the uniforms of a module. Output: their lines. WebGL 2 promises 224 vectors
-to a fragment stage and packs smaller values into them (GLSL ES 3.00, appendix A.7). A scene may
-have thousands of numbers: those beyond are constants, under the same names.
+Input: the uniforms of a module. Output: their lines. WebGL 2 guarantees 224 vectors to a fragment
+stage and packs smaller values into them (GLSL ES 3.00, appendix A.7). A scene may have thousands of
+numbers: those beyond are constants, under the same names.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def constant_line(uniform: UniformDeclaration, spelled: str) -> str:
 
 
 def constant_lines(uniforms: Iterable[tuple[UniformDeclaration, str]]) -> list[str]:
-    """The numbers beyond the room, under a line that says why."""
+    """The numbers beyond the limit, under a line that says why."""
     lines = [constant_line(uniform, spelled) for uniform, spelled in uniforms]
     return ["", BEYOND_ROOM_COMMENT, *lines] if lines else []
 

@@ -1,7 +1,7 @@
 """Functions in GLSL: the versions ES 3.00 and 3.30, and what ES 1.00 says otherwise.
 
-In: IR functions shaped for a GLSL target. Out: their text. It does not know about stages, inputs
-and outputs (``distal.backends.glsl.stages``).
+Input: IR functions shaped for a GLSL target. Output: their text. It does not know about stages,
+inputs and outputs (``distal.backends.glsl.stages``).
 """
 
 # ruff: noqa: D102  (documented where they are declared)
@@ -76,7 +76,7 @@ class GlslWriter(FunctionWriter):
     def __init__(
         self, names: ModuleNames, expense: Expense, uniform_texts: Mapping[str, str]
     ) -> None:
-        """Args: the module's names and costs; what stands for uniforms not declared by name."""
+        """Args: the module's names and costs; texts of uniforms not declared by name."""
         super().__init__(names)
         self.expense = expense
         self.uniform_texts = uniform_texts

@@ -1,8 +1,8 @@
 """Vector code for the CPU, as LLVM text: one lane per pixel.
 
-Input: a module after the passes and the shape of the machine's vectors. What flows out:
-LLVM text with the kernels of ``distal.backends.llvm.kernels``. Needs no LLVM: turning the text into
-machine code is a device's business.
+Input: a module after the passes and the shape of the machine's vectors. Output: LLVM text with the
+kernels of ``distal.backends.llvm.kernels``. Needs no LLVM: turning the text into machine code is a
+device's business.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Operations on leaves: once when every operand is uniform, else once for each chunk.
 
-Input: leaves. Output: instructions in a ``LlvmWriter``, and leaves that name their
-results. A uniform operand is broadcast as late as possible, and once for each stretch of code that
-is certain to run together. Knows nothing of IR nodes, variables or control flow.
+Input: leaves. Output: instructions in a ``LlvmWriter``, and leaves that name their results. A
+uniform operand is broadcast as late as possible, and once for each stretch of code that is certain
+to run together. Knows nothing of IR nodes, variables or control flow.
 """
 
 from __future__ import annotations
@@ -304,7 +304,7 @@ class LaneArithmetic:
         """The type in which a leaf goes round a loop.
 
         Processors without mask registers keep truth values as whole lanes, which LLVM does only
-        when told: as vectors of i1 they would be packed and unpacked in each round.
+        on request: as vectors of i1 they would be packed and unpacked in each round.
         """
         packed = kind is Kind.BOOL and not uniform and self.lanes.level != "avx512"
         return self.lanes.type(Kind.INT if packed else kind, uniform=uniform)

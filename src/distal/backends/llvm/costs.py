@@ -1,6 +1,6 @@
 """How much work an expression or a block is, roughly in vector instructions.
 
-Decides whether code under a condition is worth a branch around it.
+Input: expressions and blocks. Output: numbers that decide whether a branch around code pays.
 """
 
 from __future__ import annotations

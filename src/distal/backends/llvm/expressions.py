@@ -1,8 +1,8 @@
 """Expressions to leaves.
 
-Input: IR expressions after the passes, and what the locals hold. What flows out:
-instructions and leaves. An expression is computed once in a statement, since nodes are interned;
-what several statements share the share pass has bound to a local. Knows no statement.
+Input: IR expressions after the passes, and what the locals hold. Output: instructions and leaves.
+An expression is computed once in a statement, since nodes are interned; what several statements
+share the share pass has bound to a local. Knows no statement.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ from distal.ir.types import (
 if TYPE_CHECKING:
     from distal.backends.llvm.program import LaneProgram
 
-# A branch around one side of a conditional expression is worth about this much work.
+# A branch around one side of a conditional expression pays from about this much work on.
 BRANCH_COST = 40
 
 _Value = Leaves | Stored

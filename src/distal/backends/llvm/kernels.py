@@ -1,8 +1,8 @@
 """The loops around a scene: tiles of a picture, the per-frame part, batches of points.
 
-Input: a ``LaneProgram``. Output: exported LLVM functions that take a job (see
-``layout``). Every thread calls the same kernel once; it takes one tile after the other from a
-shared counter until none is left or the stop flag is up.
+Input: a ``LaneProgram``. Output: exported LLVM functions that take a job (see ``layout``). Every
+thread calls the same kernel once; it takes one tile after the other from a shared counter until
+none is left or the stop flag is up.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """What a value is while it is computed: leaves, each the same in all lanes or one per lane.
 
-Input: IR types and the shape of the machine. Output: the flat list of scalars a
-type consists of, and how LLVM writes their types. Knows no instruction.
+Input: IR types and the shape of the machine. Output: the flat list of scalars a type consists of,
+and how LLVM writes their types. Knows no instruction.
 
-A kernel works on ``count`` pixels at a time, one per lane, held in ``chunks`` vectors of
-``width``: several chains of work in flight hide the latency of each.
+A kernel works on ``count`` pixels at a time, one per lane, held in ``chunks`` vectors of ``width``:
+several chains of work in flight hide the latency of each.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Where a kernel finds uniforms, per-frame values and resources, and its arguments and results.
 
-Input: a module after the passes. Output: slot numbers, JSON-able, so that a stored
-kernel can be called without compiling its module again. A slot holds one scalar: a float of the
-precision, or an int in its low four bytes (bools are 0 or 1).
+Input: a module after the passes. Output: slot numbers, JSON-able, so that a stored kernel can be
+called without compiling its module again. A slot holds one scalar: a float of the precision, or an
+int in its low four bytes (bools are 0 or 1).
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Loops under lane masks.
 
-Input: predicated loops, whose one way out besides their end is a last ``if flag: break``.
-Output: instructions. A loop goes round while a lane is left; its Vars keep their value in
-lanes that have left, unless nobody reads them afterwards. A count that is the same in all lanes is
-a scalar, even where lanes leave one by one. Loops that may go on for long ask whether to stop.
+Input: predicated loops, whose one way out besides their end is a last ``if flag: break``. Output:
+instructions. A loop goes round while a lane is left; its Vars keep their value in lanes that have
+left, unless nobody reads them afterwards. A count that is the same in all lanes is a scalar, even
+where lanes leave one by one. Loops that may go on for long ask whether to stop.
 """
 
 from __future__ import annotations
@@ -308,7 +308,7 @@ class Loops:
         return self.arithmetic.spread(self.arithmetic.both(live, self.arithmetic.invert(leave)))
 
     def _polled(self) -> str:
-        """A test, in loops that may be long, that nobody asked to stop."""
+        """A test, in loops that may be long, that nobody cancelled the run."""
         self.expressions.program.polls = True
         flag = self.writer.value("load volatile i32, ptr %stop")
         return self.writer.value(f"icmp eq i32 {flag}, 0")

@@ -1,7 +1,7 @@
 """Pixels of four floats between memory and the lanes of vectors.
 
-Input: addresses, or the channels of a block. Output: channels, or vectors of whole
-pixels in the order in which a picture holds them. Knows nothing of the loops around.
+Input: addresses, or the channels of a block. Output: channels, or vectors of whole pixels in the
+order in which a picture holds them. Knows nothing of the loops around.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """One module to LLVM text.
 
-Input: a module after the passes and the shape of the machine. Output: the text of
-an LLVM module with three kernels, as far as they are wanted: pixels of a picture, the per-frame
-part, a batch of points. A function that was not inlined becomes an LLVM function, once for each
-choice of arguments that vary.
+Input: a module after the passes and the shape of the machine. Output: the text of an LLVM module
+with three kernels, as far as they are wanted: pixels of a picture, the per-frame part, a batch of
+points. A function that was not inlined becomes an LLVM function, once for each choice of arguments
+that vary.
 """
 
 from __future__ import annotations

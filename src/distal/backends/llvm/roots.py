@@ -1,10 +1,10 @@
 """Square roots and divisions, by estimates where the processor has good ones.
 
-What flows in and out: leaves. AVX-512 estimates 1/sqrt(x) to 14 bits in a third of the time that
-the vector divider takes for a root; one step of Newton's method makes 27 of them, an error of at
-most one unit in the last place (a root of a number below the normal ones keeps the estimate's 14
-bits), and whole results stay whole. The divider was the narrowest place
-of the first example: 64 lanes took 7.7 ms a picture with it and 5.9 ms without.
+Input and output: leaves. AVX-512 estimates 1/sqrt(x) to 14 bits in a third of the time that the
+vector divider takes for a root; one step of Newton's method makes 27 of them, an error of at most
+one unit in the last place (a root of a number below the normal ones keeps the estimate's 14 bits),
+and whole results stay whole. The divider was the narrowest place of the first example: 64 lanes
+took 7.7 ms a picture with it and 5.9 ms without.
 """
 
 from __future__ import annotations

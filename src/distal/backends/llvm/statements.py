@@ -1,8 +1,8 @@
 """Statements under lane masks.
 
-Input: predicated blocks. Output: instructions that leave each local's value in the
-environment. Locals are SSA values: after a condition that varies, a Var is picked from both sides
-lane by lane, so nothing inside a side needs a mask but memory, calls and tests for active lanes.
+Input: predicated blocks. Output: instructions that leave each local's value in the environment.
+Locals are SSA values: after a condition that varies, a Var is picked from both sides lane by lane,
+so nothing inside a side needs a mask but memory, calls and tests for active lanes.
 """
 
 from __future__ import annotations

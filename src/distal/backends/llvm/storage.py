@@ -1,8 +1,8 @@
 """Values in memory: indexed arrays, constant tables, buffers and textures.
 
-Input: places (a pointer, leaves, an index that may differ from lane to lane). What flows
-out: loads, gathers, masked stores and scatters. Every index that reaches memory was clamped by the
-bounds pass, buffers' and texels' are clamped here, and lanes that are not active touch nothing.
+Input: places (a pointer, leaves, an index that may differ from lane to lane). Output: loads,
+gathers, masked stores and scatters. Every index that reaches memory was clamped by the bounds pass,
+buffers' and texels' are clamped here, and lanes that are not active touch nothing.
 """
 
 from __future__ import annotations

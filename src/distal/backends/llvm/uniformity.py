@@ -1,7 +1,7 @@
 """Which locals of a function are the same in every lane.
 
-Input: a predicated function and which parameters vary. Output: the names of the
-locals that may differ between lanes; everything else is computed once, in scalar registers.
+Input: a predicated function and which parameters vary. Output: the names of the locals that may
+differ between lanes; everything else is computed once, in scalar registers.
 
 A value varies when an operand does. A Var varies also when it is assigned where lanes may have
 parted since it was bound: under a condition that varies, or in a loop that they leave one by one.

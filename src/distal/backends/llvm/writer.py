@@ -1,10 +1,10 @@
 """The text of one LLVM function, line by line.
 
-Input: instructions as text. Output: a function body. Gives fresh names, knows the
-block being written, and leaves room for phis whose operands come later. Knows nothing of lanes.
+Input: instructions as text. Output: a function body. Gives fresh names, knows the block being
+written, and leaves a line for phis whose operands come later. Knows nothing of lanes.
 
-Text rather than a library's objects: it is written and parsed in a few milliseconds, and printed
-by ``distal compile --target llvm`` without LLVM being installed.
+Text rather than a library's objects: it is written and parsed in a few milliseconds, and printed by
+``distal compile --target llvm`` without LLVM being installed.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class LlvmWriter:
     def begin(self, label: str) -> None:
         """Begin a block; the one before must have ended in a branch."""
         self.lines.append(f"{label}:")
-        self.lines.append("")  # room for phis
+        self.lines.append("")  # filled with phis
         self._head = len(self.lines) - 1
         self.block = label
 

@@ -1,7 +1,7 @@
 """The reference's expressions: what each node gives, in all lanes of a scope at once.
 
-Input: an expression and the scope of the lanes that want it. Output: its value, in
-the layouts of ``numpy_operations``. How a called function runs is told by the heir.
+Input: an expression and the scope of the lanes that want it. Output: its value, in the layouts of
+``operations``. How a called function runs is defined by the subclass.
 """
 
 from __future__ import annotations
@@ -186,13 +186,13 @@ class ReferenceExpressions:
 
     def _logical(self, op: LogicalOp, lhs: Expr, rhs: Expr, scope: Scope, memo: Memo) -> Value:
         first = self._leaf(lhs, scope, memo)
-        settled = first if op is LogicalOp.OR else ~first
-        if settled.all():
+        decided = first if op is LogicalOp.OR else ~first
+        if decided.all():
             return first
         if not self._has_call(rhs):
             second = self._leaf(rhs, scope, memo)
             return first | second if op is LogicalOp.OR else first & second
-        return self._select(settled, lhs, rhs, scope, memo)
+        return self._select(decided, lhs, rhs, scope, memo)
 
     def _select(self, condition: Leaf, yes: Expr, no: Expr, scope: Scope, memo: Memo) -> Value:
         if condition.ndim == 1:

@@ -1,10 +1,10 @@
 """The reference: walks the IR on NumPy arrays. Slow, and right by definition.
 
-Input: a module that passes have brought down to what runs (no function values, gradients
-or filtered textures), arguments and uniforms. Output: the entry function's value in every
-lane (point or pixel). Lanes that take another way than others are told apart by running each way
-on the lanes that take it, so the meaning of every statement is visible in one place. Layouts are
-told in ``numpy_operations``. It knows neither files nor devices.
+Input: a module that passes have brought down to what runs (no function values, gradients or
+filtered textures), arguments and uniforms. Output: the entry function's value in every lane (point
+or pixel). Lanes that take another way than others are handled by running each way on the lanes that
+take it, so the meaning of every statement is visible in one place. Layouts are described in
+``operations``. It knows neither files nor devices.
 """
 
 from __future__ import annotations
@@ -164,7 +164,7 @@ class Interpreter(ReferenceExpressions):
         memo: Memo = {}
         start = self._leaf(loop.start, scope, memo).astype(np.int64)
         stop = self._leaf(loop.stop, scope, memo).astype(np.int64)
-        # The same number of rounds in every lane: no lane is told apart.
+        # The same number of rounds in every lane: lanes need no mask.
         count = np.maximum(-((start - stop) // loop.step), 0)
 
         def rounds(lanes: NDArray[np.intp], inside: Scope, number: int) -> tuple[Leaf, Leaf]:

@@ -1,9 +1,9 @@
 """What operators, conversions and indexing mean, on NumPy arrays.
 
-What flows in and out: values. A scalar is an array (n,), a vector (size, n), a matrix (columns,
-rows, n), where the last axis counts lanes (points or pixels) and has length 1 for what is the same
-in all of them; a struct or array is a tuple of values. Nothing here knows of nodes other than
-operators, of control flow or of names.
+Input and output: values. A scalar is an array (n,), a vector (size, n), a matrix (columns, rows,
+n), where the last axis counts lanes (points or pixels) and has length 1 for what is the same in all
+of them; a struct or array is a tuple of values. Nothing here knows of nodes other than operators,
+of control flow or of names.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def each_leaf(change: Callable[..., Leaf], *values: Value) -> Value:
 
 
 def width(value: Value) -> int:
-    """The number of lanes a value tells apart: 1 or the lanes of the run."""
+    """The number of lanes of a value: 1 or the lanes of the run."""
     if isinstance(value, tuple):
         return max(width(part) for part in value)
     return int(value.shape[-1])

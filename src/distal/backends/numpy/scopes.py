@@ -1,7 +1,7 @@
 """Lanes on their several ways: a call's frame, and the locals of a part of its lanes.
 
-Input: values bound and assigned by the reference's walk. Output: the same values
-as some lanes see them. It knows nothing of nodes.
+Input: values bound and assigned by the reference's walk. Output: the same values as some lanes see
+them. It knows nothing of nodes.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """WGSL for WebGPU: as a vertex and a fragment stage, or as a compute program.
 
-In: a module that has been through the passes. Out: one text with all entry points, and the
+Input: a module that has been through the passes. Output: one text with all entry points, and the
 interface with offsets and bindings. The text of functions and of programs is written by
 ``distal.backends.wgsl.writer`` and ``distal.backends.wgsl.stages``.
 """

@@ -1,7 +1,7 @@
 """A function as a compute program of WGSL: called once for each pixel of a picture, or each point.
 
-In: the entry function of a module. Out: its bindings, its entry point, and what a host must know.
-A function from vec4 to vec4 maps a picture: ``source`` to ``pixels``. Any other is called for
+Input: the entry function of a module. Output: its bindings, its entry point, and what a host must
+know. A function from vec4 to vec4 maps a picture: ``source`` to ``pixels``. Any other is called for
 points: ``arguments`` holds a run of words for each leaf of the arguments, one word for each point;
 ``results`` the same for the result. How many points there are follows from the buffer's size.
 """

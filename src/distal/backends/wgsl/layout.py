@@ -1,7 +1,8 @@
 """Where the members of a WGSL struct lie in a uniform buffer.
 
-In: names and value types. Out: byte offsets, as the host must write them (WebGPU Shading Language,
-"Alignment and Size"). A bool travels as a u32, 0 or 1: bools are not shared with the host.
+Input: names and value types. Output: byte offsets, as the host must write them (WebGPU Shading
+Language, "Alignment and Size"). A bool travels as a u32, 0 or 1: bools are not shared with the
+host.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ def lay_out(members: tuple[tuple[str, Type], ...]) -> StructLayout:
 
 
 def shared_type(type: Type) -> Type:
-    """The type that stands for ``type`` in a buffer."""
+    """The type that represents ``type`` in a buffer."""
     if kind_of(type) is not Kind.BOOL:
         return type
     return Vector(Kind.UINT, type.size) if isinstance(type, Vector) else Scalar(Kind.UINT)

@@ -1,7 +1,8 @@
 """What WGSL texts reserve, and the names that they declare themselves.
 
-Every name that a text declares at module scope stands here once: the writers read it from ``OWN``,
-and no name of the author's is one of them. Uniforms and per-frame values are members of structs.
+Every name that a text declares at module scope is listed here once: the writers read it from
+``OWN``, and no name of the author's is one of them. Uniforms and per-frame values are members of
+structs.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""How textures and buffers stand in WGSL: bindings, and functions that read single elements.
+"""Textures and buffers in WGSL: bindings, and functions that read single elements.
 
-In: a resource's declaration and its number. Out: lines of WGSL.
+Input: a resource's declaration and its number. Output: lines of WGSL.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Complete WGSL programs: bindings and entry points around the functions.
 
-In: a module shaped for WGSL. Out: the text. Group 0 holds the uniforms (binding 0) and the
+Input: a module shaped for WGSL. Output: the text. Group 0 holds the uniforms (binding 0) and the
 per-frame values: written by one invocation of ``frame_main`` (binding 2), read by all pixels as a
 uniform (binding 1). It also holds what a compute program writes (binding 3), and of a function what
 it is called with (binding 4). Group 1 holds textures with their samplers, and buffers.

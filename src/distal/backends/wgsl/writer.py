@@ -1,6 +1,6 @@
 """Functions in WGSL.
 
-In: IR functions shaped for WGSL. Out: their text. It does not know about entry points and
+Input: IR functions shaped for WGSL. Output: their text. It does not know about entry points and
 bindings (``distal.backends.wgsl.stages``). Three things have no counterpart in GLSL: parameters and
 ``let`` values cannot be indexed by a run-time value everywhere (they become ``var``); choosing
 evaluates both sides (what is expensive becomes ``if``); and what is constant is evaluated by the
@@ -90,7 +90,7 @@ class WgslWriter(FunctionWriter):
         Args:
             names: The module's names.
             expense: What functions cost.
-            frame: Per-frame value -> what stands for a read of it.
+            frame: Per-frame value -> the text of a read of it.
             functions: Functions that are called by another name than the module's.
         """
         super().__init__(names)

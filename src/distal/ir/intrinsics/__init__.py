@@ -7,17 +7,17 @@ passes, backends, the generated stub, the parity tests and the reference page re
 built-in, add a declaration to the module of its theme.
 
 The definition is either ``meaning`` (NumPy, taking the array module as its first argument) or
-``scene``: the name of a function in ``distal.lang.prelude``, scene code, which then is the
-meaning on every target. Spellings for a target family:
+``scene``: the name of a function in ``distal.lang.prelude``, scene code, which then is the meaning
+on every target. Spellings for a target family:
 
 - ``None``: the target has it under the same name, meaning the same;
 - a template: ``{0}`` is the first argument; arguments arrive bracketed where needed;
 - ``SCENE``: the target calls the ``scene`` function;
 - ``"@name"``: the target calls that other prelude function (the CPU's elementary functions).
 
-The target families are glsl (ES 3.00, 3.30, Shadertoy), glsl100 (ES 1.00; ``None`` there means
-"as glsl"), wgsl and llvm (``None`` there: the LLVM backend makes it itself). The NumPy reference
-runs ``meaning``, or the scene function.
+The target families are glsl (ES 3.00, 3.30, Shadertoy), glsl100 (ES 1.00; ``None`` there means "as
+glsl"), wgsl and llvm (``None`` there: the LLVM backend makes it itself). The NumPy reference runs
+``meaning``, or the scene function.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What the declaration of a built-in function holds.
 
-Input: one ``Intrinsic(...)`` for each built-in, in the modules beside this one. Output: the
-columns that type checks, passes, backends, generated files and tests read. A declaration without
-its cost, folding, derivative or Python names is a type error.
+Input: one ``Intrinsic(...)`` for each built-in, in the modules beside this one. Output: the columns
+that type checks, passes, backends, generated files and tests read. A declaration without its cost,
+folding, derivative or Python names is a type error.
 """
 
 from __future__ import annotations

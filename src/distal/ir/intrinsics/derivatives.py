@@ -1,10 +1,10 @@
-"""The derivative rules of the table's rows.
+"""The derivative rules of the intrinsics.
 
-Input: a ``Builtin`` and, for one direction, the tangent of each argument (None where an
-argument does not change). Output: the tangent of the result, an expression over the same
-arguments. The builtin itself is its value, for rules that need it.
+Input: a ``Builtin`` and, for one direction, the tangent of each argument (None where an argument
+does not change). Output: the tangent of the result, an expression over the same arguments. The
+builtin itself is its value, for rules that need it.
 
-Where a function has no derivative one is settled: 0 for length, abs and sqrt at 0 and wherever the
+Where a function has no derivative, one is chosen: 0 for length, abs and sqrt at 0 and wherever the
 true slope is infinite; a tie of min or max follows the first argument. At ordinary numbers no rule
 gives NaN or an infinity (``distal.ir.limits``).
 """

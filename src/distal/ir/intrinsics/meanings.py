@@ -1,7 +1,7 @@
 """The NumPy meaning of built-ins that is longer than one expression.
 
-Each takes the array module first, so that this file needs no NumPy. Arrays have one lane axis,
-the last: scalars (n,), vectors (size, n), matrices (columns, rows, n), n may be 1.
+Each takes the array module first, so that this file needs no NumPy. Arrays have one lane axis, the
+last: scalars (n,), vectors (size, n), matrices (columns, rows, n), n may be 1.
 """
 
 from __future__ import annotations

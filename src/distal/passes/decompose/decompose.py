@@ -1,9 +1,9 @@
 """Say with what a target has what it has not.
 
-Input: a module without function values and gradients. Output: one that says
-everything in operations the target has (``distal.ir.target``), mostly by calls of the prelude,
-whose functions are linked in and treated likewise until nothing is left to do. What cannot be said
-on the target is a CompileError at the author's line (``decompose_limits``).
+Input: a module without function values and gradients. Output: one that says everything in
+operations the target has (``distal.ir.target``), mostly by calls of the prelude, whose functions
+are linked in and treated likewise until nothing is left to do. What cannot be said on the target is
+a CompileError at the author's line (``decompose_limits``).
 
 Nothing is moved: a replacement stands where the operation stood, so that what is computed only
 sometimes still is. Where the prelude has a function of scalars only, a function of its own applies
@@ -89,7 +89,7 @@ class _Linker:
 
     Attributes:
         module: As it is so far.
-        natives: Functions that stand in for what rough drivers have themselves: its name.
+        natives: Functions that replace what rough drivers have themselves: its name.
     """
 
     def __init__(self, module: Module, context: Context) -> None:
@@ -239,22 +239,22 @@ class _Decomposer:
         return self._linker.call(name, args, e.type, self._blamed(e, what))
 
     def _builtin(self, e: Builtin) -> Expr:
-        row = INTRINSICS[e.name]
+        intrinsic = INTRINSICS[e.name]
         family = self._target.family
-        e = held(e, row, self._target, self._context.precision)
-        if e.name in self._target.rough and row.careful is not None:
-            careful = self._scene(e, row.careful, e.args, e.name)
+        e = held(e, intrinsic, self._target, self._context.precision)
+        if e.name in self._target.rough and intrinsic.careful is not None:
+            careful = self._scene(e, intrinsic.careful, e.args, e.name)
             self._linker.natives[careful.function] = e.name
             return careful
-        spelling = row.spelling(family)
+        spelling = intrinsic.spelling(family)
         # GLSL ES 1.00 has the functions of numbers for floats only.
-        if family == "glsl100" and row.scene and kind_of(e.args[0].type) in _WHOLE:
-            spelling = f"@{row.scene}"
+        if family == "glsl100" and intrinsic.scene and kind_of(e.args[0].type) in _WHOLE:
+            spelling = f"@{intrinsic.scene}"
         if e.name == "mod" and divides(e.args[1], self._known):
             return remainder(*e.args)
-        if row.guarded and not target_serves(e, self._known):
-            assert row.scene is not None, row
-            return self._scene(e, row.scene, e.args, e.name)
+        if intrinsic.guarded and not target_serves(e, self._known):
+            assert intrinsic.scene is not None, intrinsic
+            return self._scene(e, intrinsic.scene, e.args, e.name)
         if spelling is None or not spelling.startswith("@"):
             return never_crossed(e) if e.name == "clamp" else e
         # The elementary polynomials hold in 32 bits; in 64 the backend has the functions itself.

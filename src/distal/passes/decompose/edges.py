@@ -1,10 +1,10 @@
 """Built-ins at their edges: arguments held, and where a target's own function serves.
 
-Input: a call of a row of the table and what is known of immutable locals. What flows out:
-the call with its argument between the row's limits (``ir.limits``; the fold pass takes away what
-is not needed), and whether the target's own function means what the table says for such arguments.
-GLSL leaves a smoothstep of equal edges, a clamp of crossed ones and the direction of nothing
-undefined, WGSL refuses some of them; most calls are seen to be none of these.
+Input: a call of an intrinsic and what is known of immutable locals. Output: the call with its
+argument between the intrinsic's limits (``ir.limits``; the fold pass takes away what is not
+needed), and whether the target's own function means what the table says for such arguments. GLSL
+leaves a smoothstep of equal edges, a clamp of crossed ones and the direction of nothing undefined,
+WGSL refuses some of them; most calls are seen to be none of these.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ _OURS: Final = ("numpy", "llvm")
 Known = Mapping[Expr, Expr]
 
 
-def held(e: Builtin, row: Intrinsic, target: Target, precision: int) -> Builtin:
-    """The call with its argument between the row's limits."""
-    if row.held is None or not (row.held.by_targets or target.family in _OURS):
+def held(e: Builtin, intrinsic: Intrinsic, target: Target, precision: int) -> Builtin:
+    """The call with its argument between the intrinsic's limits."""
+    if intrinsic.held is None or not (intrinsic.held.by_targets or target.family in _OURS):
         return e
     (x,) = e.args
-    low, high = row.held.limits(precision)
+    low, high = intrinsic.held.limits(precision)
     bottom, top = number(low, x.type), number(high, x.type)
     if math.isinf(low):
         argument = builtin("min", x, top)

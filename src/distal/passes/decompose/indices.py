@@ -1,7 +1,7 @@
 """Indices for targets that only take numbers between brackets (arrays are structs there).
 
-Input: an ``Index`` with any index, as a value or in an Assign's target. Output: a
-chain of choices among the elements, clamped at both ends as every index is in meaning.
+Input: an ``Index`` with any index, as a value or in an Assign's target. Output: a chain of choices
+among the elements, clamped at both ends as every index is in meaning.
 """
 
 from __future__ import annotations

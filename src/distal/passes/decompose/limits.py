@@ -1,8 +1,8 @@
 """What a target cannot say at all, and loops brought into the form it can.
 
-Input: a node or statement, the target, and what to blame. Output: nothing, or a
-CompileError that names the target and the mend. Inside a prelude function the blame is the
-author's operation that brought it in.
+Input: a node or statement, the target, and what to blame. Output: nothing, or a CompileError that
+names the target and the fix. Inside a prelude function the blame is the author's operation that
+brought it in.
 """
 
 from __future__ import annotations

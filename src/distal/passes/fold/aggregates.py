@@ -1,7 +1,7 @@
 """Simplifying vectors, matrices, arrays and structs put together and taken apart again.
 
-Input: an expression whose operands are simple already. Output: an equal one, the
-same when no rule applies. All of these rules are exact.
+Input: an expression whose operands are simple already. Output: an equal one, the same when no rule
+applies. All of these rules are exact.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Aggregates(Constants):
         return e
 
     def _look_through(self, base: Read, lanes: str) -> Expr:
-        """The value of a local when the lanes asked for are there for nothing."""
+        """The value of a local when its lanes cost nothing."""
         value = self._known.get(base)
         if isinstance(value, Splat) and self.is_trivial(value.value):
             return value

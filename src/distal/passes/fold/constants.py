@@ -1,7 +1,7 @@
 """What is constant, and what an operation on constants gives.
 
-Input: expressions, and what is known of immutable locals. Output: components of
-constants, rounded to the module's precision, and expressions made of such components.
+Input: expressions, and what is known of immutable locals. Output: components of constants, rounded
+to the module's precision, and expressions made of such components.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Fold: constants computed, trivial locals forwarded, dead and unreachable code dropped.
 
-Input: any module after specialise. Output: the same functions, simpler. A name of
-the author's stays, unless its local is only another name for something as short (a constant, a
-parameter, a uniform, components of one), or nothing reads it.
+Input: any module after specialise. Output: the same functions, simpler. A name of the author's
+stays, unless its local is only another name for something as short (a constant, a parameter, a
+uniform, components of one), or nothing reads it.
 """
 
 from __future__ import annotations

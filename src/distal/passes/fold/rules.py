@@ -1,7 +1,7 @@
 """Simplifying one expression whose operands are simple already.
 
-Input: an expression. Output: an equal one, the same when no rule applies. Every
-rule is exact bit for bit, but for the sign of a zero in ``x + 0.0`` (it may be ignored).
+Input: an expression. Output: an equal one, the same when no rule applies. Every rule is exact bit
+for bit, but for the sign of a zero in ``x + 0.0`` (it may be ignored).
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _INVERSE: Final = {
 
 
 class Rules(Aggregates):
-    """The rules for one function (see ``Constants`` for what it is told)."""
+    """The rules for one function (see ``Constants`` for its arguments)."""
 
     def simplify(self, e: Expr) -> Expr:
         """Apply the rules at the top of ``e``."""
@@ -171,7 +171,7 @@ class Rules(Aggregates):
         return self.simplify(Unary(UnaryOp.NEGATE, e, e.type))
 
     def _integer(self, e: Binary, kind: Kind | None) -> Expr:
-        """Ints wrap, so that every law of arithmetic modulo 2 ** 32 holds."""
+        """Ints wrap, so that every rule of arithmetic modulo 2 ** 32 holds."""
         op, lhs, rhs = e.op, e.lhs, e.rhs
         left, right = self.same(lhs), self.same(rhs)
         if kind is Kind.BOOL:
@@ -207,7 +207,7 @@ class Rules(Aggregates):
                 return e
 
     def _logical(self, e: Logical) -> Expr:
-        short = e.op is LogicalOp.OR  # the value that settles it
+        short = e.op is LogicalOp.OR  # the value that decides it
         left, right = self.same(e.lhs), self.same(e.rhs)
         if left is not None:
             return Const(short, BOOL) if left == short else e.rhs
@@ -279,17 +279,17 @@ def _negated(e: Expr) -> Expr | None:
 def _truth(e: Binary, left: Number | None, right: Number | None) -> Expr:
     match e.op:
         case BinaryOp.AND:
-            settles = False
+            decides = False
         case BinaryOp.OR:
-            settles = True
+            decides = True
         case _:
             if left is False:
                 return e.rhs
             return e.lhs if right is False else e
     if left is not None:
-        return e.lhs if left is settles else e.rhs
+        return e.lhs if left is decides else e.rhs
     if right is not None:
-        return e.rhs if right is settles else e.lhs
+        return e.rhs if right is decides else e.lhs
     return e.lhs if e.lhs is e.rhs else e
 
 

@@ -1,9 +1,9 @@
 """Which values change when a function's arguments do.
 
-Input: functions, callees known by name, and for each parameter of one of them the set of
-directions along which it changes. Output: the same for every local and for the result. A
-set of directions is an int with one bit for each. Values that are not floats never change, nor
-does a texture's texel; the flow of control is taken as it is.
+Input: functions, callees known by name, and for each parameter of one of them the set of directions
+along which it changes. Output: the same for every local and for the result. A set of directions is
+an int with one bit for each. Values that are not floats never change, nor does a texture's texel;
+the flow of control is taken as it is.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """A function's statements with the tangents of its values beside them.
 
-Input: the body of a function, the tangents of its parameters along each direction, and
-which of its locals change. Output: a body that computes the same values and, beside each
-that changes, its tangents: ``q`` has ``q_dx``, ``q_dy``, ``q_dz``. A call becomes a call of the
-callee's derivative function, which gives value and tangents at once. Conditions, indices and loop
-bounds stay as they are. How derivative functions are found and named is not known here.
+Input: the body of a function, the tangents of its parameters along each direction, and which of its
+locals change. Output: a body that computes the same values and, beside each that changes, its
+tangents: ``q`` has ``q_dx``, ``q_dy``, ``q_dz``. A call becomes a call of the callee's derivative
+function, which gives value and tangents at once. Conditions, indices and loop bounds stay as they
+are. How derivative functions are found and named is not known here.
 """
 
 from __future__ import annotations
@@ -183,9 +183,9 @@ class DualBody:
         memo: dict[Expr, Expr] = {}
         bound: list[Tangent] = []
         for k, tangent in enumerate(pair.tangents):
-            wish = tangent_name(name, k, self._count)
+            wanted = tangent_name(name, k, self._count)
             if tangent is not None:
-                tangent = self._named(substitute(tangent, dict(known), memo), 0, wish, out)
+                tangent = self._named(substitute(tangent, dict(known), memo), 0, wanted, out)
             bound.append(tangent)
         self._tangents[name] = tuple(bound)
 

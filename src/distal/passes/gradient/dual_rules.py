@@ -1,8 +1,8 @@
 """The tangent of one node from the tangents of its operands.
 
-Input: an expression, its operands already rewritten, and along one direction the tangent
-of each operand (``children`` order). Output: its own tangent along that direction. Rules
-of built-ins stand in their rows.
+Input: an expression, its operands already rewritten, and along one direction the tangent of each
+operand (``children`` order). Output: its own tangent along that direction. Rules of built-ins are
+in their declarations.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Replace each ``Gradient`` by a call of a derivative function made from the function's own code.
 
-Input: a module whose functions are all bound. Output: one without Gradient. The
-derivative is exact (forward mode): beside each value that depends on the point, the derivative
-function computes how it changes along each of the point's axes, all in one evaluation
-(``dual``). Functions are treated callees first, so that the gradient of a function that itself
-takes a gradient is the gradient of what this pass made of it.
+Input: a module whose functions are all bound. Output: one without Gradient. The derivative is exact
+(forward mode): beside each value that depends on the point, the derivative function computes how it
+changes along each of the point's axes, all in one evaluation (``dual``). Functions are treated
+callees first, so that the gradient of a function that itself takes a gradient is the gradient of
+what this pass made of it.
 
 A derivative function is made once for each way its arguments change: a parameter is still, changes
 by a constant (the seeds: most primitives are called with the point shifted), or by anything.
@@ -193,12 +193,12 @@ def _parameter_tangents(
     """A parameter's tangents; those that are passed become parameters in ``extra``."""
     found: list[Tangent] = []
     for k, change in enumerate(along):
-        wish = tangent_name(param.name, k, len(along))
+        wanted = tangent_name(param.name, k, len(along))
         if isinstance(change, _Anything):
-            found.append(_parameter(wish, param.type, names, extra))
+            found.append(_parameter(wanted, param.type, names, extra))
         elif isinstance(change, tuple):
             lanes = (
-                None if lane is None else _parameter(f"{wish}_{letter}", FLOAT, names, extra)
+                None if lane is None else _parameter(f"{wanted}_{letter}", FLOAT, names, extra)
                 for lane, letter in zip(change, LETTERS, strict=False)
             )
             found.append(from_lanes(tuple(lanes), param.type))
@@ -207,8 +207,8 @@ def _parameter_tangents(
     return tuple(found)
 
 
-def _parameter(wish: str, type: Type, names: FreshNames, extra: list[Param]) -> Expr:
-    name = names.fresh(wish)
+def _parameter(wanted: str, type: Type, names: FreshNames, extra: list[Param]) -> Expr:
+    name = names.fresh(wanted)
     extra.append(Param(name, type))
     return Read(name, type)
 

@@ -1,14 +1,14 @@
 """Inline: calls replaced by the callee's statements, where the target wants it.
 
-Input: a module. Output: a module with fewer and longer functions; functions that
-nothing calls any more are dropped, on every target.
+Input: a module. Output: a module with fewer and longer functions; functions that nothing calls any
+more are dropped, on every target.
 
-A call in a loop is worth most: what does not change from round to round moves out of it, and a
-field is called from a few loops only. Elsewhere a big callee stays a function, so that code grows
-with the number of loops and not with the number of call sites (a field of N shapes, called from
-six places, would be compiled six times). Nothing that may be skipped is moved before the
-statement it stands in: in a branch of a Select, right of ``and`` and in a ``while``'s condition a
-cheap callee becomes an expression, and any other stays a call.
+A call in a loop gains most: what does not change from round to round moves out of it, and a field
+is called from a few loops only. Elsewhere a big callee stays a function, so that code grows with
+the number of loops and not with the number of call sites (a field of N shapes, called from six
+places, would be compiled six times). Nothing that may be skipped is moved before the statement it
+stands in: in a branch of a Select, right of ``and`` and in a ``while``'s condition a cheap callee
+becomes an expression, and any other stays a call.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Bodies that can stand in the place of a call.
+"""Bodies that can replace a call.
 
-Input: a function's body. Output: statements that compute the result, and the
-result as an expression over their locals, without a Return; or None where that would need flags
-(a return out of a loop, or one that only some ways through a branch reach).
+Input: a function's body. Output: statements that compute the result, and the result as an
+expression over their locals, without a Return; or None where that would need flags (a return out of
+a loop, or one that only some ways through a branch reach).
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def _always_returns(body: tuple[Stmt, ...]) -> bool:
 def _pick(
     condition: Expr, yes: list[Stmt], no: list[Stmt], result: Read, costs: Costs
 ) -> Assign | None:
-    """A Select, where both ways do nothing but settle the result, and cheaply."""
+    """A Select, where both ways do nothing but compute the result, and cheaply."""
     match yes, no:
         case [Assign(_, a)], [Assign(_, b)] if costs.of(a) + costs.of(b) <= PICK_COST:
             return Assign(result, Select(condition, a, b, result.type))

@@ -1,8 +1,8 @@
-"""Which expressions of a function are worth computing once a frame.
+"""Which expressions of a function should be computed once a frame.
 
-Input: a function, costs, and the forms of expressions where they stand. What flows out:
-yes or no for each, and the calls that are left to pixels. Asked twice, once to learn what calls
-hand on and once to rewrite, it answers the same.
+Input: a function, costs, and the forms of expressions where they stand. Output: yes or no for each,
+and the calls that are left to pixels. Asked twice, once to learn what calls hand on and once to
+rewrite, it answers the same.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Picking:
         """True when the expression as a whole shall be computed once a frame.
 
         A local that is read in several places counts nothing here: it is computed once a frame
-        by itself, and a sum of it is not worth another value.
+        by itself, and a sum of it does not pay for another value.
         """
         if isinstance(e, Splat | Construct) or not (is_carried(e.type) or is_exploded(e.type)):
             return False

@@ -1,8 +1,8 @@
 """The module put together after its per-frame work was taken out of the pixel code.
 
-Input: the module before, its rewritten pixel functions and the per-frame values they
-read. Output: the module after, simplified: parameters that nothing reads any more are
-gone, values have their names, and what does not travel is computed where it is read.
+Input: the module before, its rewritten pixel functions and the per-frame values they read. Output:
+the module after, simplified: parameters that nothing reads any more are gone, values have their
+names, and what does not travel is computed where it is read.
 """
 
 from __future__ import annotations

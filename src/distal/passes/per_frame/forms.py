@@ -1,9 +1,9 @@
 """What a function's values are made of, where they are the same in every pixel of a frame.
 
-Input: a function, and what is known of its parameters. Output: for each
-expression its *form*: the same value written over constants, uniforms and the parameters that are
-per frame at every call; or None for what differs from pixel to pixel. Locals are followed through
-straight code and branches; what a loop changes has no form.
+Input: a function, and what is known of its parameters. Output: for each expression its *form*: the
+same value written over constants, uniforms and the parameters that are per frame at every call; or
+None for what differs from pixel to pixel. Locals are followed through straight code and branches;
+what a loop changes has no form.
 """
 
 from __future__ import annotations

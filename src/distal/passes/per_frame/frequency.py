@@ -1,7 +1,7 @@
 """Frequency: what is the same in every pixel is computed once a frame.
 
-Input: a module without function values. Output: the same functions, reading
-values of ``Module.frame`` where they computed something that only uniforms and constants decide.
+Input: a module without function values. Output: the same functions, reading values of
+``Module.frame`` where they computed something that only uniforms and constants decide.
 
 It works across functions, and keeps them:
 
@@ -14,9 +14,9 @@ It works across functions, and keeps them:
 
 Work is taken out of branches too: once a frame it costs next to nothing, and nothing traps.
 
-The vertex stage can hand on 15 vectors of four. Where that is not room enough, the values that
-save most for each component travel, and the others are computed at the top of each function that
-reads them. Nothing is dropped without a word: ``Module.frame`` says what travels.
+The vertex stage can pass 15 vectors of four. Where that is not enough, the values that save most
+for each component travel, and the others are computed at the top of each function that reads them.
+Nothing is dropped without a word: ``Module.frame`` says what travels.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from distal.passes.per_frame.values import (
     suggestion,
 )
 
-VERTEX_ROOM: Final = 60  # components: WebGL 2 promises 15 vectors between the stages
+VERTEX_LIMIT: Final = 60  # components: WebGL 2 guarantees 15 vectors between the stages
 
 
 def run(module: Module, context: Context) -> Module:
@@ -53,7 +53,7 @@ def run(module: Module, context: Context) -> Module:
         return module
     hoisting = _Hoisting(module, context)
     functions = hoisting.functions()
-    limit = VERTEX_ROOM if place is FramePlace.VERTEX else None
+    limit = VERTEX_LIMIT if place is FramePlace.VERTEX else None
     return finished(module, functions, hoisting.frame_values, limit, context.precision)
 
 
@@ -186,7 +186,7 @@ class _Rewriting:
         if form is None or form is e or not is_carried(e.type):
             return e
         if self._hoisting.keeps_constants and not _leaves(form, Uniform):
-            # A number an author hands on reads better as an argument.
+            # A number that an author passes reads better as an argument.
             return e
         # Never a call: what it calls may stand after this function.
         return self._carried(form, NameHint(e.name, 1), self._calls.rate)

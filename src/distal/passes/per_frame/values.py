@@ -1,7 +1,7 @@
 """The per-frame part while it is gathered: its values, and which of them the target can carry.
 
-Input: forms (see ``per_frame_forms``) that the pixel code wants computed once a frame.
-Output: the ordered list of the module's per-frame values, each written over earlier ones.
+Input: forms (see ``per_frame_forms``) that the pixel code wants computed once a frame. Output: the
+ordered list of the module's per-frame values, each written over earlier ones.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
 """Share: what is computed more than once is computed once, into a Let.
 
-Input: any module after inline. Output: the same values with common
-subexpressions bound, what does not change in a loop bound before it, and no expression deeper
-than a shader compiler takes.
+Input: any module after inline. Output: the same values with common subexpressions bound, what does
+not change in a loop bound before it, and no expression deeper than a shader compiler takes.
 
 A value is bound in the outermost block where it exists and where it would have been computed
-anyway: nothing moves out of a branch, out of a loop that may have no round, or before an exit
-that may skip it. What a Select or ``and`` may skip is bound only when it is cheap. Names of the
-author stay: a shared value that the author named keeps that name, others are called ``shared_0``,
+anyway: nothing moves out of a branch, out of a loop that may have no round, or before an exit that
+may skip it. What a Select or ``and`` may skip is bound only when it is cheap. Names of the author
+stay: a shared value that the author named keeps that name, others are called ``shared_0``,
 ``shared_1`` ...
 """
 
@@ -201,7 +200,7 @@ class _Sharing:
     # The new body
 
     def _name(self, region: Region, names: FreshNames) -> None:
-        """Name the bindings in the order they will stand in."""
+        """Name the bindings in the order of their positions."""
         for position in range(len(region.body)):
             bindings = self._before.get((region, position), [])
             bindings.sort(key=lambda b: self._heights[b.value])

@@ -1,8 +1,8 @@
 """Expressions cut into Lets before they are too deep or too long for a shader compiler.
 
-Input: the body of a function. Output: the same with no expression nested deeper
-than about ``DEEPEST``, and none whose text would be longer than about ``LONGEST`` nodes when its
-shared parts are written out. (naga's recursive parser dies on thousands of nested parentheses.)
+Input: the body of a function. Output: the same with no expression nested deeper than about
+``DEEPEST``, and none whose text would be longer than about ``LONGEST`` nodes when its shared parts
+are written out. (naga's recursive parser dies on thousands of nested parentheses.)
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def split_deep(body: tuple[Stmt, ...], names: FreshNames) -> tuple[Stmt, ...]:
 def split_expression(root: Expr, names: FreshNames, before: list[Stmt], stmt: Stmt) -> Expr:
     """The expression over Lets that are added to ``before``."""
     done: dict[Expr, Expr] = {}
-    # Depth and length of what stands for a node, its shared parts written out.
+    # Depth and length of what replaces a node, its shared parts written out.
     depths: dict[Expr, int] = {}
     lengths: dict[Expr, int] = {}
     for e in nodes_in(root):

@@ -1,14 +1,14 @@
 """Bind every function, texture and buffer that is passed to a function.
 
-Input: functions with parameters of static types, ``Apply`` of function values. What flows
-out: functions of plain values only. Each function with static parameters is cloned once for each
-combination of what is bound to them; the captures of a bound function become further parameters
-of the clone; ``Apply`` becomes ``Call``. A constant that steers a function (``steering``) is bound
-too. Functions that nothing reaches are dropped. The function
-of a ``Gradient`` stays a FunctionRef to a specialised function, for the gradient pass.
+Input: functions with parameters of static types, ``Apply`` of function values. Output: functions of
+plain values only. Each function with static parameters is cloned once for each combination of what
+is bound to them; the captures of a bound function become further parameters of the clone; ``Apply``
+becomes ``Call``. A constant that steers a function (``steering``) is bound too. Functions that
+nothing reaches are dropped. The function of a ``Gradient`` stays a FunctionRef to a specialised
+function, for the gradient pass.
 
-What is bound is itself an expression: a FunctionRef whose captures are reads of the clone's
-further parameters, or again bound values; or a Resource.
+What is bound is itself an expression: a FunctionRef whose captures are reads of the clone's further
+parameters, or again bound values; or a Resource.
 """
 
 from __future__ import annotations
@@ -105,8 +105,8 @@ class _SpecialisedFunctions:
         bound = [b for b in bindings if b is not None]
         new = name
         if bound:
-            wish = "_".join([name, *(word for b in bound for word in _words(b))])
-            new = self._names.fresh(wish[:_LONGEST_NAME].rstrip("_"))
+            wanted = "_".join([name, *(word for b in bound for word in _words(b))])
+            new = self._names.fresh(wanted[:_LONGEST_NAME].rstrip("_"))
         self._by_key[key] = new
         self._open.append(name)
         self.made[new] = _Clone(self, self._functions[name], bindings).function(new)

@@ -1,9 +1,9 @@
 """Which parameters of a function steer it: how often a loop runs, which branch is taken.
 
-Input: functions. Output: the positions of int and bool parameters that a loop's
-bounds or a condition depend on, directly or through what the function calls. Such a parameter is
-worth a version of the function for each constant it is called with: loops then have constant
-bounds (GLSL ES 1.00 knows no others) and branches that are never taken disappear.
+Input: functions. Output: the positions of int and bool parameters that a loop's bounds or a
+condition depend on, directly or through what the function calls. Such a parameter gets a version of
+the function for each constant it is called with: loops then have constant bounds (GLSL ES 1.00
+knows no others) and branches that are never taken disappear.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from distal.ir.walk import expressions_in, nodes_in, statements_in
 
 
 class SteeringParameters:
-    """The steering parameters of a module's functions, found when asked for."""
+    """The steering parameters of a module's functions, found on demand."""
 
     def __init__(self, functions: Mapping[str, Function]) -> None:
         self._functions = functions

@@ -1,9 +1,9 @@
 """Tables of literals laid out in buffers, and places in them.
 
-Input: tables, as trees of literals; indices and fields that pick a part. What flows out:
-reads of buffers, and the buffers' declarations with their values. A table takes slots of three
-sorts: floats, vec4 (float vectors, and the columns of matrices), ints (ints, uints, bools). Knows
-no functions and no statements.
+Input: tables, as trees of literals; indices and fields that pick a part. Output: reads of buffers,
+and the buffers' declarations with their values. A table takes slots of three sorts: floats, vec4
+(float vectors, and the columns of matrices), ints (ints, uints, bools). Knows no functions and no
+statements.
 """
 
 from __future__ import annotations
@@ -223,7 +223,7 @@ class Tables:
                 yield ResourceDeclaration(name, type, None, "clamp", values=tuple(values))
 
     def value(self, place: TablePlace) -> Expr:
-        """What stands at a place: reads of the buffers, or all of a table as it was written."""
+        """The value at a place: reads of the buffers, or all of a table as it was written."""
         if isinstance(place, Choice):
             return select(place.condition, self.value(place.yes), self.value(place.no))
         if place.type is place.table.type and not place.indices:
