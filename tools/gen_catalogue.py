@@ -29,7 +29,7 @@ from tests.fields.drawing import default_sample, random_sample  # noqa: E402
 from tests.fields.library import docstring, operators, primitives  # noqa: E402
 from tests.fields.rows import Slot, default_of, dimension_of, slots_of  # noqa: E402
 from tests.fields.subject import subject_of  # noqa: E402
-from tests.fields.trees import accepted_tree, operator_functions, operator_slots  # noqa: E402
+from tests.fields.trees import accepted_tree, operator_slots  # noqa: E402
 
 PAGE: Final = ROOT / "docs/reference/catalogue.md"
 SAMPLES: Final = 2  # sets of random numbers for a shape, besides its defaults; trees of an operator
@@ -119,7 +119,7 @@ def _module(row: Primitive) -> str:
 
 
 def _operator_module(row: Operator) -> str:
-    return operator_functions(row)[0].__module__
+    return row.number_functions[0].__module__
 
 
 # Shapes

@@ -12,16 +12,14 @@ from distal.fields.combine.joins import displaced
 from distal.fields.deform import solid as deform
 from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.fields.place import solid as place
-from distal.fields.repeat.along import along_line, along_line_value, around_ring
+from distal.fields.repeat.along import along_line, along_line_value, around_ring, ring
 from distal.fields.repeat.cells import (
-    limited,
-    limited_around,
-    limited_value,
-    repeated,
-    repeated_around,
-    repeated_around_slope,
-    repeated_slope,
-    repeated_value,
+    counted,
+    endless,
+    nearest_copy_distance,
+    site_in,
+    slope_in,
+    value_in,
 )
 from distal.fields.repeat.polar import (
     repeated_polar,
@@ -160,29 +158,29 @@ BLOCK = np.array([(x, 0, z) for x in (-0.5, 0.5) for z in (-1, 0, 1)]) * SPACING
 
 @func
 def in_cells(p: vec3) -> float:
-    spacing, box = vec3(1.0, 1.25, 0.75), ball_box(0.0)
-    return repeated_value(ball(repeated(p, spacing, box).p), p, spacing, box)
+    copies, box = endless(vec3(1.0, 1.25, 0.75)), ball_box(0.0)
+    return value_in(ball(site_in(p, copies, box).p), p, copies, box, False)
 
 
 @func
 def in_neighbours(p: vec3) -> float:
-    return repeated_around(ball, p, vec3(1.0, 1.25, 0.75), ball_box(0.0), 1)
+    return nearest_copy_distance(ball, p, endless(SPACING), ball_box(0.0), 1, False)
 
 
 @func
 def in_more_neighbours(p: vec3) -> float:
-    return repeated_around(ball, p, vec3(1.0, 1.25, 0.75), ball_box(0.0), 2)
+    return nearest_copy_distance(ball, p, endless(SPACING), ball_box(0.0), 2, False)
 
 
 @func
 def in_block(p: vec3) -> float:
-    spacing, box = vec3(1.0, 1.25, 0.75), ball_box(0.0)
-    return limited_value(ball(limited(p, spacing, box, 2, 1, 3).p), p, spacing, box, 2, 1, 3)
+    copies, box = counted(vec3(1.0, 1.25, 0.75), 2, 1, 3), ball_box(0.0)
+    return value_in(ball(site_in(p, copies, box).p), p, copies, box, True)
 
 
 @func
 def in_block_neighbours(p: vec3) -> float:
-    return limited_around(ball, p, vec3(1.0, 1.25, 0.75), ball_box(0.0), 1, 2, 1, 3)
+    return nearest_copy_distance(ball, p, counted(SPACING, 2, 1, 3), ball_box(0.0), 1, True)
 
 
 @func
@@ -197,7 +195,7 @@ LINE = np.array([(-1.0, 0.0, 0.0), (0.0, 0.5, 0.0), (1.0, 1.0, 0.0)])
 
 @func
 def on_ring(p: vec3) -> float:
-    return around_ring(ball, p, vec2(1.0, 0.75), ball_box(0.0), 4, 3)
+    return around_ring(ball, p, ring(vec2(1.0, 0.75), 4, 3), ball_box(0.0))
 
 
 RING = np.array(
@@ -262,21 +260,21 @@ def test_a_march_arrives_in_few_steps(field, offsets):
 def test_the_index_of_the_cell():
     spacing = (1.0, 0.0, 2.0)
     box = Bounds((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
-    site = repeated((2.9, 7.0, -3.25), spacing, box)
+    site = site_in((2.9, 7.0, -3.25), endless(spacing), box)
     assert tuple(site.cell) == (3.0, 0.0, -2.0)
     assert tuple(site.p) == pytest.approx((-0.1, 7.0, 0.75), abs=1e-6)
-    last = limited((9.0, 0.0, -9.0), spacing, box, 4, 1, 3)
+    last = site_in((9.0, 0.0, -9.0), counted(spacing, 4, 1, 3), box)
     assert tuple(last.cell) == (3.0, 0.0, 0.0)
     assert tuple(last.p) == pytest.approx((7.5, 0.0, -7.0))
 
 
 def test_what_does_not_fit_its_cell_has_no_slope():
     box = Bounds((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
-    assert repeated_slope(1.0, box, (1.0, 2.0, 2.0)) >= UNBOUNDED / 1000.0
-    assert repeated_slope(1.0, box, (1.1, 0.0, 2.0)) == 1.0
-    assert repeated_around_slope(1.0, box, (1.0, 2.0, 2.0), 1) == 1.0
-    assert repeated_around_slope(1.0, box, (0.5, 2.0, 2.0), 1) >= UNBOUNDED / 1000.0
-    assert repeated_around_slope(1.0, box, (0.5, 2.0, 2.0), 2) == 1.0
+    assert slope_in(1.0, box, endless((1.0, 2.0, 2.0)), 0) >= UNBOUNDED / 1000.0
+    assert slope_in(1.0, box, endless((1.1, 0.0, 2.0)), 0) == 1.0
+    assert slope_in(1.0, box, endless((1.0, 2.0, 2.0)), 1) == 1.0
+    assert slope_in(1.0, box, endless((0.5, 2.0, 2.0)), 1) >= UNBOUNDED / 1000.0
+    assert slope_in(1.0, box, endless((0.5, 2.0, 2.0)), 2) == 1.0
     assert repeated_polar_slope(1.0, box, 3) >= UNBOUNDED / 1000.0
 
 

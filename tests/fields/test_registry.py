@@ -13,7 +13,7 @@ from distal.lang import Func
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES
 from tests.fields.library import MODULES, docstring, measured, operators, primitives
 from tests.fields.rows import PLACE, default_of, header_of, slots_of
-from tests.fields.trees import operator_functions, operator_slots
+from tests.fields.trees import operator_slots
 
 SHAPES: Final = [pytest.param(row, id=name) for name, row in primitives().items()]
 OPERATORS: Final = [pytest.param(row, id=name) for name, row in operators().items()]
@@ -121,11 +121,11 @@ def test_a_shape_is_declared_soundly(row: Primitive):
 
 @pytest.mark.parametrize("row", OPERATORS)
 def test_an_operator_is_declared_soundly(row: Operator):
-    functions = operator_functions(row)
+    functions = row.number_functions
     assert functions, "does nothing"
     assert (row.combine is None) or (row.around is None)
     names = {s.name for s in operator_slots(row)}
-    given = names | RESERVED
+    given = names | RESERVED | {*row.fixed}
     for func in (*functions, row.mix, row.site, row.bounds, row.slope):
         if isinstance(func, Func):
             unknown = {s.name for s in header_of(func).slots} - given

@@ -156,25 +156,20 @@ def random_node(
     return None
 
 
-def operator_functions(operator: Operator) -> tuple[Func, ...]:
-    """The functions that tell an operator's numbers."""
-    made = (operator.point, operator.combine, operator.around, operator.finish)
-    return tuple(func for func in made if func is not None)
-
-
 def operator_slots(operator: Operator) -> tuple[Slot, ...]:
     """An operator's numbers and choices."""
     found: dict[str, Slot] = {}
-    for func in operator_functions(operator):
+    reserved = RESERVED | {*operator.fixed}
+    for func in operator.number_functions:
         for slot in scene_slots_of(func):
-            if slot.name not in RESERVED and slot.type is not None:
+            if slot.name not in reserved and slot.type is not None:
                 found.setdefault(slot.name, Slot(slot.name, slot.type, slot.default))
     return tuple(found.values())
 
 
 def flatness(operator: Operator, rng: np.random.Generator) -> tuple[bool, bool]:
     """Whether the operator's shape is flat, and whether its children are."""
-    own = _flat_by(operator_functions(operator), "p")
+    own = _flat_by(operator.number_functions, "p")
     below = own
     if operator.point is not None:
         result = str(operator.point.python_function.__annotations__["return"])

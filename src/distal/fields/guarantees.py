@@ -28,7 +28,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Final, TypeAlias, TypeVar
+from functools import cache
+from typing import Any, Final, TypeAlias, TypeVar, get_args, get_type_hints
 
 from distal.lang import func, struct, vec2, vec3
 from distal.lang.functions import Func
@@ -38,7 +39,7 @@ from distal.lang.functions import Func
 UNBOUNDED: Final = 1e18
 ENDLESS: Final = UNBOUNDED / 1000.0
 
-# What an operator's functions may ask of its one child, or of its two children.
+# What an operator's functions may take of its one child, or of its two children.
 PROMISED: Final = frozenset(
     f"{promise}{of}"
     for promise in ("slope", "bounds", "growth", "side_growth")
@@ -167,6 +168,11 @@ class Primitive:
     estimate: bool = False
     tier: int = 1
 
+    @property
+    def flat(self) -> bool:
+        """Whether it lies in the plane."""
+        return signature_types(self.distance)["p"] is vec2
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operator:
@@ -187,6 +193,9 @@ class Operator:
 
     Attributes:
         name: What messages call it: "twist".
+        copies: ``(*numbers) -> struct``: a value of the numbers alone, which the other functions
+            take by the name ``copies``: which copies a repetition has.
+        fixed: Values of parameters of the other functions that are no numbers of the operator.
         keeps: The claims that survive when all children have them. The others are lost (a slope of
             at most 1 makes a lower bound anyway, whoever claims it).
         keeps_exact: The claims that hold, besides those, when all children are exact inside and
@@ -204,12 +213,14 @@ class Operator:
     """
 
     name: str
+    copies: Func | None = None
     point: Func | None = None
     finish: Func | None = None
     combine: Func | None = None
     mix: Func | None = None
     around: Func | None = None
     site: Func | None = None
+    fixed: Mapping[str, int | bool] = field(default_factory=dict)
     keeps: frozenset[Claim] = NOTHING
     slope: Rule | None = None
     bounds: Func | None = None
@@ -219,32 +230,48 @@ class Operator:
     keeps_exact: frozenset[Claim] = NOTHING
     needs: str | None = None
 
+    @property
+    def number_functions(self) -> tuple[Func, ...]:
+        """The functions whose parameters are the operator's numbers."""
+        found = (self.copies, self.point, self.combine, self.around, self.finish)
+        return tuple(function for function in found if function is not None)
+
+    @property
+    def point_functions(self) -> tuple[Func, ...]:
+        """The functions that are called for each point."""
+        found = (self.point, self.finish, self.combine, self.mix, self.around, self.site)
+        return tuple(function for function in found if function is not None)
+
     def lies_flat(self, child: bool) -> bool:
         """Whether the result lies in the plane: where the operator's own point does.
 
         Args:
-            child: Whether what it works on does, which tells where no point is asked for.
+            child: Whether what it works on does, which decides where no function takes a point.
         """
-        for asked in (self.point, self.around, self.finish, self.combine):
-            annotation = asked and asked.python_function.__annotations__.get("p")
-            if annotation is not None:
-                return str(annotation) == "vec2"
+        for function in (self.point, self.around, self.finish, self.combine):
+            if function is not None and "p" in signature_types(function):
+                return bool(signature_types(function)["p"] is vec2)
         return child
 
     @property
     def repeats(self) -> bool:
-        """Whether what it works on is told its cell."""
-        places = [f.python_function for f in (self.point, self.site) if f is not None]
-        return any(str(f.__annotations__["return"]) in ("Site", "Site2") for f in places)
+        """Whether what it works on is given its cell."""
+        places = (function for function in (self.point, self.site) if function is not None)
+        return any(signature_types(place)["return"] in (Site, Site2) for place in places)
 
     def takes_flat(self, lies: bool) -> bool:
         """Whether it works on flat shapes, where its result lies in the plane or not."""
         if self.around is not None:
-            field = str(self.around.python_function.__annotations__["field"])
-            return field == "Field2" or "[vec2]" in field
+            return bool(get_args(signature_types(self.around)["field"])[0] == [vec2])
         if self.point is not None:
-            return str(self.point.python_function.__annotations__["return"]) in ("vec2", "Site2")
+            return signature_types(self.point)["return"] in (vec2, Site2)
         return lies
+
+
+@cache
+def signature_types(function: Func) -> Mapping[str, Any]:
+    """The types in a library function's signature, by parameter; that of its result: "return"."""
+    return get_type_hints(function.python_function)
 
 
 PRIMITIVES: Final[dict[str, Primitive]] = {}

@@ -1,7 +1,7 @@
-"""A solid again and again along a line, around a rectangle, and at given places.
+"""Repetition of a solid along a line, on the sides of a rectangle, and at given positions.
 
-Input: a point, how the copies stand, the child's box. Output: the distance to the
-nearest copy, safe by the rule of ``repeat`` for those that are not asked, and its place.
+Input: a point, the arrangement of the copies, the child's box. Output: the distance to the nearest
+copy, bounded as in ``cells`` for the copies that are not evaluated, and its place.
 """
 
 from __future__ import annotations
@@ -149,18 +149,14 @@ def on_side(
 
 @func
 def nearest_on_ring(
-    field: Callable[[vec3], float],
-    p: vec3,
-    spacing: vec2,
-    bounds: Bounds,
-    count_x: int,
-    count_z: int,
+    field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds
 ) -> Nearest:
     """The nearer of two: on the side across x and on the side across z that the point is at."""
-    copies = ring(spacing, count_x, count_z)
     away = p - middle_of(bounds)
     steps = vec3(
-        (away.x - copies.origin.x) / spacing.x, 0.0, (away.z - copies.origin.z) / spacing.y
+        (away.x - copies.origin.x) / copies.spacing.x,
+        0.0,
+        (away.z - copies.origin.z) / copies.spacing.z,
     )
     index = clamp(round(steps), copies.first, copies.last)
     end_x = copies.last.x if away.x > 0.0 else 0.0
@@ -178,43 +174,17 @@ def nearest_on_ring(
 
 
 @func
-def around_ring(
-    field: Callable[[vec3], float],
-    p: vec3,
-    spacing: vec2,
-    bounds: Bounds,
-    count_x: int,
-    count_z: int,
-) -> float:
-    """Copies on the border of a block of ``count_x`` by ``count_z``."""
-    return nearest_on_ring(field, p, spacing, bounds, count_x, count_z).distance
+def around_ring(field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds) -> float:
+    """Copies on the border of a block."""
+    return nearest_on_ring(field, p, copies, bounds).distance
 
 
 @func
 def around_ring_site(
-    field: Callable[[vec3], float],
-    p: vec3,
-    spacing: vec2,
-    bounds: Bounds,
-    count_x: int,
-    count_z: int,
+    field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds
 ) -> Site:
     """The place in the nearest copy; its index is that in the block."""
-    return nearest_on_ring(field, p, spacing, bounds, count_x, count_z).site
-
-
-@func
-def around_ring_slope(
-    slope: float, bounds: Bounds, spacing: vec2, count_x: int, count_z: int
-) -> float:
-    """The child's, where it fits in its cell."""
-    return slope_in(slope, bounds, ring(spacing, count_x, count_z), 0)
-
-
-@func
-def around_ring_bounds(bounds: Bounds, spacing: vec2, count_x: int, count_z: int) -> Bounds:
-    """The box around the block."""
-    return bounds_in(bounds, ring(spacing, count_x, count_z))
+    return nearest_on_ring(field, p, copies, bounds).site
 
 
 # At given places
@@ -282,11 +252,13 @@ REPEAT_LINE = operator(
 )
 REPEAT_RING = operator(
     "repeat ring",
+    copies=ring,
     around=around_ring,
     site=around_ring_site,
+    fixed={"neighbours": 0},
     keeps=LOWER_BOUND,
-    slope=around_ring_slope,
-    bounds=around_ring_bounds,
+    slope=slope_in,
+    bounds=bounds_in,
     limits={"spacing": Limit.POSITIVE},
     requires=ring_requirement,
     needs="a shape whose box is smaller than the spacing, with a little room",

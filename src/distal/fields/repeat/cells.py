@@ -1,19 +1,21 @@
-"""A solid again and again on a grid: infinite, limited, in an interval, in half of space, mirrored.
+"""Repetition of a shape on a grid, for any set of copies.
 
-Input: a point, the spacing (0 along an axis: not repeated there), the child's box. What
-flows out: the point in a copy's own space, the cell's index, and a value that is safe to march.
+Input: a point, the copies (spacing, origin, first and last index), the child's box. Output: the
+point in a copy's own space, the cell's index, and a value that is safe to march. Every kind of
+repetition (infinite, limited, interval, half, ring) is one function from its numbers to ``Copies``.
 
-The rule that keeps a repetition safe. The point is asked in one cell only (``neighbours=0``) or in
-a few. Plain modulo jumps at a cell's border wherever the child is not symmetric, and its value says
-nothing of the copy next door: a step may pass through it. So the box of each copy stands in for the
-copies that are not asked: the value is never more than the distance to the nearest of their boxes,
-and a copy that is asked never answers less than the distance to its own box. Where the set of asked
-copies changes, the box that leaves is as far away as the box that enters, so both sides give that
-distance: the result has no jump, whatever the child. Its slope is the child's, or 1 (of the boxes).
+How a repetition stays safe: the child is evaluated in one cell (``neighbours=0``) or in a few.
+Plain modulo is discontinuous at a cell's border unless the child is symmetric, and its value does
+not bound the distance to the next copy: a step may pass through that copy. So the box of each copy
+replaces the copies that are not evaluated: the value never exceeds the distance to the nearest of
+their boxes, and an evaluated copy never gives less than the distance to its own box. Where the set
+of evaluated copies changes, the box that leaves the set is as far away as the box that enters, so
+both sides give that distance: the result is continuous for every child. Its slope is the child's,
+or 1 (of the boxes).
 
-The boxes must leave room, or their faces would look like surfaces: a child that does not fit has
-no slope (``UNBOUNDED``) and is refused. Cells lie around the middle of the child's box, so it may
-stand anywhere. A child that is symmetric in its cell needs none of this: ``repeat mirrored``.
+The boxes must leave a gap, or their faces would look like surfaces: a child that does not fit has
+no slope (``UNBOUNDED``) and is refused. Cells are centred on the child's box, wherever that lies. A
+child that is symmetric in its cell needs none of this: ``repeat mirrored``.
 
 Source: the cells, and the need to ask neighbours: Inigo Quilez, "Domain repetition"
 (https://iquilezles.org/articles/sdfrepetition/); names of the kinds: hg_sdf
@@ -81,10 +83,31 @@ def endless(spacing: vec3) -> Copies:
 
 
 @func
-def counted(spacing: vec3, count_x: int, count_y: int, count_z: int) -> Copies:
+def counted(spacing: vec3, count_x: int = 1, count_y: int = 1, count_z: int = 1) -> Copies:
     """A block of copies around the origin; indices start at 0."""
     last = vec3(float(count_x), float(count_y), float(count_z)) - 1.0
     return Copies(spacing, -0.5 * last * spacing, vec3(0.0), last)
+
+
+@func
+def interval(
+    spacing: vec3,
+    first_x: int = 0,
+    first_y: int = 0,
+    first_z: int = 0,
+    last_x: int = 0,
+    last_y: int = 0,
+    last_z: int = 0,
+) -> Copies:
+    """Copies from one index to another, both included; copy 0 is the child itself."""
+    first = vec3(float(first_x), float(first_y), float(first_z))
+    return Copies(spacing, vec3(0.0), first, vec3(float(last_x), float(last_y), float(last_z)))
+
+
+@func
+def onward(spacing: vec3) -> Copies:
+    """Copies from index 0 on, without end."""
+    return Copies(spacing, vec3(0.0), vec3(0.0), vec3(UNBOUNDED) * repeated_axes(spacing))
 
 
 @func
@@ -256,142 +279,27 @@ def nearest_copy(
     return Nearest(min(nearest, distance), site)
 
 
-# Infinite
-
-
 @func
-def repeated(p: vec3, spacing: vec3, bounds: Bounds) -> Site:
-    """The place in the nearest cell."""
-    return site_in(p, endless(spacing), bounds)
-
-
-@func
-def repeated_value(d: float, p: vec3, spacing: vec3, bounds: Bounds) -> float:
-    """The value, safe for the other cells."""
-    return value_in(d, p, endless(spacing), bounds, False)
-
-
-@func
-def repeated_slope(slope: float, bounds: Bounds, spacing: vec3) -> float:
-    """The child's, where it fits in its cell."""
-    return slope_in(slope, bounds, endless(spacing), 0)
-
-
-@func
-def repeated_bounds(bounds: Bounds, spacing: vec3) -> Bounds:
-    """Without end along the repeated axes."""
-    return bounds_in(bounds, endless(spacing))
-
-
-@func
-def repeated_around(
-    field: Callable[[vec3], float], p: vec3, spacing: vec3, bounds: Bounds, neighbours: int
-) -> float:
-    """The nearest of the copies around the point."""
-    return nearest_copy(field, p, endless(spacing), bounds, neighbours, False).distance
-
-
-@func
-def repeated_site(
-    field: Callable[[vec3], float], p: vec3, spacing: vec3, bounds: Bounds, neighbours: int
-) -> Site:
-    """The place in the cell of the nearest copy."""
-    return nearest_copy(field, p, endless(spacing), bounds, neighbours, False).site
-
-
-@func
-def repeated_around_slope(slope: float, bounds: Bounds, spacing: vec3, neighbours: int) -> float:
-    """The child's, where the asked copies are nearer than the others."""
-    return slope_in(slope, bounds, endless(spacing), neighbours)
-
-
-# Limited by a count
-
-
-@func
-def limited(
-    p: vec3, spacing: vec3, bounds: Bounds, count_x: int = 1, count_y: int = 1, count_z: int = 1
-) -> Site:
-    """The place in the nearest cell of a block."""
-    return site_in(p, counted(spacing, count_x, count_y, count_z), bounds)
-
-
-@func
-def limited_value(
-    d: float,
-    p: vec3,
-    spacing: vec3,
-    bounds: Bounds,
-    count_x: int = 1,
-    count_y: int = 1,
-    count_z: int = 1,
-) -> float:
-    """The value, safe for the other cells."""
-    return value_in(d, p, counted(spacing, count_x, count_y, count_z), bounds, True)
-
-
-@func
-def limited_slope(
-    slope: float,
-    bounds: Bounds,
-    spacing: vec3,
-    count_x: int = 1,
-    count_y: int = 1,
-    count_z: int = 1,
-) -> float:
-    """The child's, where it fits in its cell."""
-    return slope_in(slope, bounds, counted(spacing, count_x, count_y, count_z), 0)
-
-
-@func
-def limited_bounds(
-    bounds: Bounds, spacing: vec3, count_x: int = 1, count_y: int = 1, count_z: int = 1
-) -> Bounds:
-    """The box around the block."""
-    return bounds_in(bounds, counted(spacing, count_x, count_y, count_z))
-
-
-@func
-def limited_around(
+def nearest_copy_distance(
     field: Callable[[vec3], float],
     p: vec3,
-    spacing: vec3,
+    copies: Copies,
     bounds: Bounds,
     neighbours: int,
-    count_x: int = 1,
-    count_y: int = 1,
-    count_z: int = 1,
+    limited: bool,
 ) -> float:
-    """The nearest of the copies around the point."""
-    copies = counted(spacing, count_x, count_y, count_z)
-    return nearest_copy(field, p, copies, bounds, neighbours, True).distance
+    """The distance to the nearest of the copies around the point."""
+    return nearest_copy(field, p, copies, bounds, neighbours, limited).distance
 
 
 @func
-def limited_site(
+def nearest_copy_site(
     field: Callable[[vec3], float],
     p: vec3,
-    spacing: vec3,
+    copies: Copies,
     bounds: Bounds,
     neighbours: int,
-    count_x: int = 1,
-    count_y: int = 1,
-    count_z: int = 1,
+    limited: bool,
 ) -> Site:
     """The place in the cell of the nearest copy."""
-    copies = counted(spacing, count_x, count_y, count_z)
-    return nearest_copy(field, p, copies, bounds, neighbours, True).site
-
-
-@func
-def limited_around_slope(
-    slope: float,
-    bounds: Bounds,
-    spacing: vec3,
-    neighbours: int,
-    count_x: int = 1,
-    count_y: int = 1,
-    count_z: int = 1,
-) -> float:
-    """The child's, where the asked copies are nearer than the others."""
-    return slope_in(slope, bounds, counted(spacing, count_x, count_y, count_z), neighbours)
+    return nearest_copy(field, p, copies, bounds, neighbours, limited).site

@@ -1,12 +1,13 @@
-"""A flat shape again and again: on a grid, mirrored, around the origin, at given places.
+"""Repetition of a flat shape: on a grid, mirrored, around the origin, at given places.
 
-Input: a point of the plane. Output: as ``repeat`` and ``repeat_polar`` give for
-solids, which these call: the plane is a slice of space, without repetition across it.
+Input: a point of the plane. Output: what ``cells`` and ``polar`` give for solids; the functions
+here call those, with the plane as a slice of space that is not repeated across it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 from distal.fields.combine.joins import INSIDE_AND_BOUND
 from distal.fields.guarantees import (
@@ -22,6 +23,8 @@ from distal.fields.guarantees import (
 )
 from distal.fields.place.flat import kaleidoscope_flat_bounds
 from distal.fields.repeat.cells import (
+    Copies,
+    Nearest,
     bounds_in,
     counted,
     endless,
@@ -31,11 +34,13 @@ from distal.fields.repeat.cells import (
     value_in,
 )
 from distal.fields.repeat.grid import (
-    FITTING,
-    SMALLER,
     SPACING,
-    neighbours_requirement,
+    CellFunctions,
+    block_requirement,
+    count_requirement,
+    one_cell,
     repeated_mirrored,
+    several_cells,
 )
 from distal.fields.repeat.polar import (
     POLAR_FITTING,
@@ -79,145 +84,92 @@ def flat_bounds(bounds: Bounds) -> Bounds2:
 
 
 @func
-def repeated_flat(p: vec2, spacing: vec2, bounds: Bounds2) -> Site2:
-    """The place in the nearest cell."""
-    return flat_site(site_in(in_space(p), endless(in_space(spacing)), slab(bounds)))
+def endless_flat(spacing: vec2) -> Copies:
+    """Copies without end on all sides."""
+    return endless(in_space(spacing))
 
 
 @func
-def repeated_flat_value(d: float, p: vec2, spacing: vec2, bounds: Bounds2) -> float:
-    """The value, safe for the other cells."""
-    return value_in(d, in_space(p), endless(in_space(spacing)), slab(bounds), False)
+def counted_flat(spacing: vec2, count_x: int = 1, count_y: int = 1) -> Copies:
+    """A block of copies around the origin; indices start at 0."""
+    return counted(in_space(spacing), count_x, count_y, 1)
 
 
 @func
-def repeated_flat_slope(slope: float, bounds: Bounds2, spacing: vec2) -> float:
-    """The child's, where it fits in its cell."""
-    return slope_in(slope, slab(bounds), endless(in_space(spacing)), 0)
-
-
-@func
-def repeated_flat_bounds(bounds: Bounds2, spacing: vec2) -> Bounds2:
-    """Without end along the repeated axes."""
-    return flat_bounds(bounds_in(slab(bounds), endless(in_space(spacing))))
-
-
-@func
-def repeated_flat_around(
-    field: Callable[[vec2], float], p: vec2, spacing: vec2, bounds: Bounds2, neighbours: int
-) -> float:
-    """The nearest of the copies around the point."""
-    copies = endless(in_space(spacing))
-    found = nearest_copy(
-        lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, False
-    )
-    return found.distance
-
-
-@func
-def repeated_flat_site(
-    field: Callable[[vec2], float], p: vec2, spacing: vec2, bounds: Bounds2, neighbours: int
-) -> Site2:
-    """The place in the cell of the nearest copy."""
-    copies = endless(in_space(spacing))
-    found = nearest_copy(
-        lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, False
-    )
-    return flat_site(found.site)
-
-
-@func
-def repeated_flat_around_slope(
-    slope: float, bounds: Bounds2, spacing: vec2, neighbours: int
-) -> float:
-    """The child's, where the asked copies are nearer than the others."""
-    return slope_in(slope, slab(bounds), endless(in_space(spacing)), neighbours)
-
-
-@func
-def limited_flat(
-    p: vec2, spacing: vec2, bounds: Bounds2, count_x: int = 1, count_y: int = 1
-) -> Site2:
-    """The place in the nearest cell of a block."""
-    copies = counted(in_space(spacing), count_x, count_y, 1)
+def site_in_flat(p: vec2, copies: Copies, bounds: Bounds2) -> Site2:
+    """The point in the nearest copy's plane, and that copy's index."""
     return flat_site(site_in(in_space(p), copies, slab(bounds)))
 
 
 @func
-def limited_flat_value(
-    d: float, p: vec2, spacing: vec2, bounds: Bounds2, count_x: int = 1, count_y: int = 1
-) -> float:
-    """The value, safe for the other cells."""
-    copies = counted(in_space(spacing), count_x, count_y, 1)
-    return value_in(d, in_space(p), copies, slab(bounds), True)
+def value_in_flat(d: float, p: vec2, copies: Copies, bounds: Bounds2, limited: bool) -> float:
+    """The value of the nearest copy, made safe for the others."""
+    return value_in(d, in_space(p), copies, slab(bounds), limited)
 
 
 @func
-def limited_flat_slope(
-    slope: float, bounds: Bounds2, spacing: vec2, count_x: int = 1, count_y: int = 1
-) -> float:
-    """The child's, where it fits in its cell."""
-    return slope_in(slope, slab(bounds), counted(in_space(spacing), count_x, count_y, 1), 0)
+def slope_in_flat(slope: float, bounds: Bounds2, copies: Copies, neighbours: int) -> float:
+    """The child's slope, or 1; none where the rectangles leave no gap."""
+    return slope_in(slope, slab(bounds), copies, neighbours)
 
 
 @func
-def limited_flat_bounds(
-    bounds: Bounds2, spacing: vec2, count_x: int = 1, count_y: int = 1
-) -> Bounds2:
-    """The rectangle around the block."""
-    return flat_bounds(bounds_in(slab(bounds), counted(in_space(spacing), count_x, count_y, 1)))
+def bounds_in_flat(bounds: Bounds2, copies: Copies) -> Bounds2:
+    """The rectangle around all copies."""
+    return flat_bounds(bounds_in(slab(bounds), copies))
 
 
 @func
-def limited_flat_around(
+def nearest_copy_flat(
     field: Callable[[vec2], float],
     p: vec2,
-    spacing: vec2,
+    copies: Copies,
     bounds: Bounds2,
     neighbours: int,
-    count_x: int = 1,
-    count_y: int = 1,
-) -> float:
-    """The nearest of the copies around the point."""
-    copies = counted(in_space(spacing), count_x, count_y, 1)
-    found = nearest_copy(lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, True)
-    return found.distance
+    limited: bool,
+) -> Nearest:
+    """The nearest of the copies around the point; safe for those that are not evaluated."""
+    return nearest_copy(
+        lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, limited
+    )
 
 
 @func
-def limited_flat_site(
+def nearest_copy_distance_flat(
     field: Callable[[vec2], float],
     p: vec2,
-    spacing: vec2,
+    copies: Copies,
     bounds: Bounds2,
     neighbours: int,
-    count_x: int = 1,
-    count_y: int = 1,
+    limited: bool,
+) -> float:
+    """The distance to the nearest of the copies around the point."""
+    return nearest_copy_flat(field, p, copies, bounds, neighbours, limited).distance
+
+
+@func
+def nearest_copy_site_flat(
+    field: Callable[[vec2], float],
+    p: vec2,
+    copies: Copies,
+    bounds: Bounds2,
+    neighbours: int,
+    limited: bool,
 ) -> Site2:
     """The place in the cell of the nearest copy."""
-    copies = counted(in_space(spacing), count_x, count_y, 1)
-    found = nearest_copy(lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, True)
-    return flat_site(found.site)
-
-
-@func
-def limited_flat_around_slope(
-    slope: float,
-    bounds: Bounds2,
-    spacing: vec2,
-    neighbours: int,
-    count_x: int = 1,
-    count_y: int = 1,
-) -> float:
-    """The child's, where the asked copies are nearer than the others."""
-    copies = counted(in_space(spacing), count_x, count_y, 1)
-    return slope_in(slope, slab(bounds), copies, neighbours)
+    return flat_site(nearest_copy_flat(field, p, copies, bounds, neighbours, limited).site)
 
 
 @func
 def mirrored_cells(p: vec2, spacing: vec2) -> Site2:
     """The place in its cell, every other one mirrored."""
     return flat_site(repeated_mirrored(in_space(p), in_space(spacing)))
+
+
+@func
+def mirrored_cells_bounds(bounds: Bounds2, spacing: vec2) -> Bounds2:
+    """Without end along the repeated axes."""
+    return flat_bounds(bounds_in(slab(bounds), endless(in_space(spacing))))
 
 
 # Around the origin: the plane stands for the ground, where y points away from z
@@ -330,68 +282,37 @@ def at_positions_flat_bounds(bounds: Bounds2, positions: Buffer[vec2]) -> Bounds
     return Bounds2(bounds.low + low, bounds.high + high)
 
 
-def count_requirement(count_x: int = 1, count_y: int = 1) -> str | None:
+def count_requirement_flat(count_x: int = 1, count_y: int = 1) -> str | None:
     """Why there would be no copies, or None."""
-    return None if count_x >= 1 and count_y >= 1 else "each count must be 1 or more"
+    return count_requirement(count_x, count_y)
 
 
-def limited_requirement(neighbours: int, count_x: int = 1, count_y: int = 1) -> str | None:
+def block_requirement_flat(neighbours: int, count_x: int = 1, count_y: int = 1) -> str | None:
     """Why a block with neighbours cannot be, or None."""
-    return neighbours_requirement(neighbours) or count_requirement(count_x, count_y)
+    return block_requirement(neighbours, count_x, count_y)
 
 
-REPEAT_FLAT = operator(
-    "flat repeat",
-    point=repeated_flat,
-    finish=repeated_flat_value,
-    keeps=INSIDE_AND_BOUND,
-    slope=repeated_flat_slope,
-    bounds=repeated_flat_bounds,
-    limits=SPACING,
-    needs=FITTING,
-    growth=Growth.HELD,
+FLAT: Final = CellFunctions(
+    site_in_flat,
+    value_in_flat,
+    slope_in_flat,
+    bounds_in_flat,
+    nearest_copy_distance_flat,
+    nearest_copy_site_flat,
 )
-REPEAT_NEIGHBOURS_FLAT = operator(
-    "flat repeat neighbours",
-    around=repeated_flat_around,
-    site=repeated_flat_site,
-    keeps=LOWER_BOUND,
-    slope=repeated_flat_around_slope,
-    bounds=repeated_flat_bounds,
-    limits=SPACING,
-    requires=neighbours_requirement,
-    needs=SMALLER,
-    growth=Growth.HELD,
+REPEAT_FLAT = one_cell("flat repeat", FLAT, endless_flat, limited=False)
+REPEAT_NEIGHBOURS_FLAT = several_cells("flat repeat neighbours", FLAT, endless_flat, limited=False)
+REPEAT_LIMITED_FLAT = one_cell(
+    "flat repeat limited", FLAT, counted_flat, requires=count_requirement_flat
 )
-REPEAT_LIMITED_FLAT = operator(
-    "flat repeat limited",
-    point=limited_flat,
-    finish=limited_flat_value,
-    keeps=INSIDE_AND_BOUND,
-    slope=limited_flat_slope,
-    bounds=limited_flat_bounds,
-    limits=SPACING,
-    requires=count_requirement,
-    needs=FITTING,
-    growth=Growth.HELD,
-)
-REPEAT_LIMITED_NEIGHBOURS_FLAT = operator(
-    "flat repeat limited neighbours",
-    around=limited_flat_around,
-    site=limited_flat_site,
-    keeps=LOWER_BOUND,
-    slope=limited_flat_around_slope,
-    bounds=limited_flat_bounds,
-    limits=SPACING,
-    requires=limited_requirement,
-    needs=SMALLER,
-    growth=Growth.HELD,
+REPEAT_LIMITED_NEIGHBOURS_FLAT = several_cells(
+    "flat repeat limited neighbours", FLAT, counted_flat, requires=block_requirement_flat
 )
 REPEAT_MIRRORED_FLAT = operator(
     "flat repeat mirrored",
     point=mirrored_cells,
     keeps=LOWER_BOUND,
-    bounds=repeated_flat_bounds,
+    bounds=mirrored_cells_bounds,
     limits=SPACING,
     growth=Growth.KEPT,
 )

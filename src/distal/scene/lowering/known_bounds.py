@@ -7,7 +7,7 @@ operators of its kind share: making a shape composes and compiles nothing of wha
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 from weakref import WeakKeyDictionary
@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 from distal.fields.guarantees import Bounds, Bounds2, Primitive
 from distal.frontend import Assembly
 from distal.ir.build import field as field_of
-from distal.ir.nodes import Construct, Expr, Param, Read, Return
+from distal.ir.nodes import Construct, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
@@ -125,8 +125,8 @@ class _Step(Composed):
         """The function in a program."""
         values = Values(assembly)
         body = Body(taken={name for name, _ in self.signature})
-        own: Mapping[str, Expr] = {name: Read(name, type) for name, type in self._own.items()}
-        own = {**own, **values.of_constants(self._constants, self.name)}
+        numbers = {name: Read(name, type) for name, type in self._own.items()}
+        own = values.complete(self._rule, numbers, self._constants, self.name)
         inner = [_read(assembly, f"_{i}", flat) for i, flat in enumerate(self._flat_inner)]
         promises = Promises(values)
         if isinstance(self._rule, Primitive):

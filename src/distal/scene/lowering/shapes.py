@@ -177,8 +177,7 @@ def rule_functions(node: Node) -> tuple[Func, ...]:
     rule = node.rule
     if isinstance(rule, Primitive):
         return (rule.distance,)
-    made = (rule.point, rule.finish, rule.combine, rule.mix, rule.around, rule.site)
-    return tuple(func for func in made if func is not None)
+    return rule.point_functions
 
 
 def _identity(value: Any) -> Any:

@@ -28,25 +28,18 @@ def bound(
 ) -> tuple[dict[str, Number], dict[str, Any]]:
     """A rule's numbers and constants from what the author gave."""
     given = arguments(
-        _functions(rule),
+        rule.distance if isinstance(rule, Primitive) else rule.number_functions,
         args,
         kwargs,
         what=rule.name,
         limits=rule.limits,
         requires=rule.requires,
         place=place,
-        reserved=RESERVED_OF_SHAPES if isinstance(rule, Primitive) else RESERVED,
+        reserved=RESERVED_OF_SHAPES if isinstance(rule, Primitive) else RESERVED | {*rule.fixed},
     )
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
     constants = {name: value for name, value in given.items() if name not in numbers}
     return numbers, constants
-
-
-def _functions(rule: Rule) -> tuple[Func, ...]:
-    if isinstance(rule, Primitive):
-        return (rule.distance,)
-    made = (rule.point, rule.combine, rule.around, rule.finish)
-    return tuple(func for func in made if func is not None)
 
 
 def own_node(

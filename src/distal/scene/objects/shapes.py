@@ -18,20 +18,14 @@ from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
 
 
-def _is_flat(row: Primitive) -> bool:
-    annotations = row.distance.python_function.__annotations__
-    return str(annotations["p"]) == "vec2"
-
-
 def _make(row: Primitive) -> type[Field]:
     """The class of one row."""
-    flat = _is_flat(row)
-    base: type[Field] = Shape2D if flat else Shape
+    base: type[Field] = Shape2D if row.flat else Shape
 
     def initialise(self: Field, *args: Any, **kwargs: Any) -> None:
         place = author_place()
         numbers, constants = bound(row, args, kwargs, place)
-        Field.__init__(self, Node(row, flat, (), numbers, constants, place))
+        Field.__init__(self, Node(row, row.flat, (), numbers, constants, place))
 
     python = inspect.signature(row.distance.python_function)
     own = [p for name, p in python.parameters.items() if name not in ("p", "cell")]

@@ -42,9 +42,9 @@ Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
 Accept: TypeAlias = Callable[[Any, Asked], Any]
 
 # The names of ``fields.claims`` that are no numbers of a shape.
-RESERVED: Final = PROMISED | {"p", "d", "a", "b", "field", "cell"}
+RESERVED: Final = PROMISED | {"p", "d", "a", "b", "field", "cell", "copies"}
 # Those that a shape of its own keeps from its numbers: it has no distances to join.
-RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d"}
+RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d", "copies"}
 # One number stands for all components of these.
 _SPLATTED: Final = frozenset(
     ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")

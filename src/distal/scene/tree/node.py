@@ -98,5 +98,4 @@ class Node:
             if isinstance(rule, Primitive):
                 yield rule.distance
             else:
-                made = (rule.point, rule.finish, rule.combine, rule.mix, rule.around, rule.site)
-                yield from (func for func in made if func is not None)
+                yield from rule.point_functions

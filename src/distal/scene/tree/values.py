@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from distal.fields.guarantees import Operator
 from distal.frontend import Assembly
 from distal.ir.nodes import Expr, Let, Read, Stmt
 from distal.ir.types import BOOL, INT
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.tree.calls import expression_of
-from distal.scene.tree.node import Node
+from distal.scene.tree.node import Node, Rule
 
 
 @dataclass(slots=True)
@@ -79,14 +80,27 @@ class Values:
             count = len(self.all(child))
             shares.append(values[at : at + count])
             at += count
-        own.update(self.constants(node))
-        return own, shares
+        return self.complete(node.rule, own, node.constants, node.name), shares
 
-    def constants(self, node: Node) -> dict[str, Expr]:
-        """A node's choices, textures and buffers as expressions."""
-        return self.of_constants(node.constants, node.name)
+    def complete(
+        self, rule: Rule, own: Mapping[str, Expr], constants: Mapping[str, Any], stem: str
+    ) -> dict[str, Expr]:
+        """All that a rule's functions take of its own: numbers, constants, what follows from them.
 
-    def of_constants(self, constants: Mapping[str, Any], stem: str) -> dict[str, Expr]:
+        Args:
+            rule: The primitive or operator.
+            own: Its numbers, by name.
+            constants: Its choices, textures and buffers, by name.
+            stem: The start of the names that resources get.
+        """
+        given = {**own, **self._constants(constants, stem)}
+        if isinstance(rule, Operator):
+            given |= self._constants(rule.fixed, stem)
+            if rule.copies is not None:
+                given["copies"] = self.assembly.call(rule.copies, given)
+        return given
+
+    def _constants(self, constants: Mapping[str, Any], stem: str) -> dict[str, Expr]:
         """Choices, textures and buffers as expressions; resources are named after ``stem``."""
         made: dict[str, Expr] = {}
         for name, value in constants.items():
