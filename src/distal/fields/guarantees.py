@@ -90,6 +90,16 @@ class Limit(Enum):
     ANY = "finite"
 
 
+# What numbers of a shape must be whose names have one meaning in the whole library.
+USUAL_LIMITS: Final[Mapping[str, Limit]] = {
+    **dict.fromkeys(("radius", "radii", "size", "width", "height", "thickness"), Limit.POSITIVE),
+    **dict.fromkeys(("cell_size", "apothem", "major", "minor", "pitch", "angle"), Limit.POSITIVE),
+    **dict.fromkeys(("rounding", "chamfer"), Limit.NOT_NEGATIVE),
+    "jitter": Limit.FRACTION,
+    "normal": Limit.UNIT,
+}
+
+
 class Claim(Enum):
     """What a field may promise besides a bound on its slope.
 
@@ -104,6 +114,8 @@ class Claim(Enum):
 
 EXACT: Final = frozenset(Claim)  # all three
 EXACT_OUTSIDE: Final = frozenset({Claim.EXACT_OUTSIDE, Claim.LOWER_BOUND})
+# What the largest of several plane distances keeps: a convex shape's inside is exact.
+INSIDE_AND_BOUND: Final = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
 LOWER_BOUND: Final = frozenset({Claim.LOWER_BOUND})
 NOTHING: Final[frozenset[Claim]] = frozenset()  # the slope's bound alone
 
@@ -299,7 +311,10 @@ def primitive(
     estimate: bool = False,
     tier: int = 1,
 ) -> Callable[[F], F]:
-    """Declare the ``@func`` below as a shape of the library; see ``Primitive``."""
+    """Declare the ``@func`` below as a shape of the library; see ``Primitive``.
+
+    ``limits`` names only what differs from ``USUAL_LIMITS``.
+    """
 
     def declare(distance: F) -> F:
         assert name not in PRIMITIVES, f"two shapes are called {name}"
@@ -311,7 +326,7 @@ def primitive(
             bounds,
             growth,
             side_growth,
-            dict(limits or {}),
+            _limits(distance, limits or {}),
             requires,
             signed,
             estimate,
@@ -320,6 +335,12 @@ def primitive(
         return distance
 
     return declare
+
+
+def _limits(distance: Func, given: Mapping[str, Limit]) -> dict[str, Limit]:
+    code = distance.python_function.__code__
+    usual = {n: USUAL_LIMITS[n] for n in code.co_varnames[: code.co_argcount] if n in USUAL_LIMITS}
+    return {name: limit for name, limit in {**usual, **given}.items() if limit is not Limit.ANY}
 
 
 def operator(name: str, **declared: Any) -> Operator:

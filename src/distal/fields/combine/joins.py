@@ -7,11 +7,16 @@ slope, its box and its material. Knows no names of blends (``edges`` makes those
 from __future__ import annotations
 
 from distal.fields.extents import Boxes, moved_out, overlap
-from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, UNBOUNDED, Claim, Growth, Limit, operator
+from distal.fields.guarantees import (
+    EXACT,
+    EXACT_OUTSIDE,
+    INSIDE_AND_BOUND,
+    UNBOUNDED,
+    Growth,
+    Limit,
+    operator,
+)
 from distal.lang import abs, clamp, func, max, min, mix, select
-
-INSIDE_AND_BOUND = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
-
 
 # Materials of combinations
 

@@ -7,9 +7,16 @@ times the largest stretch of the map, and a folded shape answers at least the di
 
 from __future__ import annotations
 
-from distal.fields.combine.joins import INSIDE_AND_BOUND
 from distal.fields.extents import ENDLESS, box_distance, reach
-from distal.fields.guarantees import UNBOUNDED, Bounds, Growth, Limit, Site, operator
+from distal.fields.guarantees import (
+    INSIDE_AND_BOUND,
+    UNBOUNDED,
+    Bounds,
+    Growth,
+    Limit,
+    Site,
+    operator,
+)
 from distal.fields.noise.space import GRADIENT_SLOPE, gradient_noise
 from distal.fields.repeat.cells import ROOM
 from distal.lang import (

@@ -50,7 +50,7 @@ def _arms_fit(span: float, thickness: float) -> str | None:
     return "thickness may be at most span" if thickness > span else None
 
 
-@primitive("HalfPlane", EXACT, limits={"normal": Limit.UNIT})
+@primitive("HalfPlane", EXACT)
 @func
 def half_plane(p: vec2, normal: vec2 = UP, offset: float = 0.0) -> float:
     """All that lies behind a straight line.
@@ -76,7 +76,7 @@ def rectangle_bounds(size: vec2) -> Bounds2:
     return centred_bounds(0.5 * size)
 
 
-@primitive("Rectangle", EXACT, bounds=rectangle_bounds, limits={"size": Limit.POSITIVE})
+@primitive("Rectangle", EXACT, bounds=rectangle_bounds)
 @func
 def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
     """Rectangle with sides along the axes.
@@ -101,7 +101,7 @@ def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
     "RoundedRectangle",
     EXACT,
     bounds=rectangle_bounds,
-    limits={"size": Limit.POSITIVE, "radii": Limit.NOT_NEGATIVE},
+    limits={"radii": Limit.NOT_NEGATIVE},
     requires=_corners_fit,
 )
 @func
@@ -128,13 +128,7 @@ def rounded_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, radii: vec4 = EQUAL_RAD
     return inside_both(q.x, q.y) - radius
 
 
-@primitive(
-    "ChamferedRectangle",
-    EXACT,
-    bounds=rectangle_bounds,
-    limits={"size": Limit.POSITIVE, "chamfer": Limit.NOT_NEGATIVE},
-    requires=_chamfer_fits,
-)
+@primitive("ChamferedRectangle", EXACT, bounds=rectangle_bounds, requires=_chamfer_fits)
 @func
 def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2) -> float:
     """Rectangle whose corners are cut off at 45 degrees.
@@ -169,13 +163,7 @@ def oriented_rectangle_bounds(start: vec2, end: vec2, thickness: float) -> Bound
     return Bounds2(min(start, end) - reach, max(start, end) + reach)
 
 
-@primitive(
-    "OrientedRectangle",
-    EXACT,
-    bounds=oriented_rectangle_bounds,
-    limits={"thickness": Limit.POSITIVE},
-    requires=_ends_differ,
-)
+@primitive("OrientedRectangle", EXACT, bounds=oriented_rectangle_bounds, requires=_ends_differ)
 @func
 def oriented_rectangle(
     p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, thickness: float = 0.25
@@ -210,13 +198,7 @@ def cross_bounds(span: float) -> Bounds2:
     return centred_bounds(vec2(0.5 * span))
 
 
-@primitive(
-    "Cross",
-    EXACT,
-    bounds=cross_bounds,
-    limits={"span": Limit.POSITIVE, "thickness": Limit.POSITIVE},
-    requires=_arms_fit,
-)
+@primitive("Cross", EXACT, bounds=cross_bounds, limits={"span": Limit.POSITIVE}, requires=_arms_fit)
 @func
 def cross_shape(p: vec2, span: float = 1.0, thickness: float = 0.3) -> float:
     """Two equal bars across each other.
@@ -248,12 +230,7 @@ def tunnel_bounds(width: float, height: float) -> Bounds2:
     return Bounds2(vec2(-0.5 * width, -height), vec2(0.5 * width, 0.5 * width))
 
 
-@primitive(
-    "Tunnel",
-    EXACT,
-    bounds=tunnel_bounds,
-    limits={"width": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
-)
+@primitive("Tunnel", EXACT, bounds=tunnel_bounds, limits={"height": Limit.NOT_NEGATIVE})
 @func
 def tunnel(p: vec2, width: float = 1.0, height: float = 0.5) -> float:
     """Half a disc on top of two walls; the disc's centre is the origin.

@@ -76,12 +76,7 @@ def parabola_segment_bounds(width: float, height: float) -> Bounds2:
     return Bounds2(vec2(-0.5 * width, 0.0), vec2(0.5 * width, height))
 
 
-@primitive(
-    "ParabolaSegment",
-    EXACT,
-    bounds=parabola_segment_bounds,
-    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
-)
+@primitive("ParabolaSegment", EXACT, bounds=parabola_segment_bounds)
 @func
 def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     """What a parabola cuts off above the x axis.
@@ -111,7 +106,7 @@ def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     return select(inside, -d, d)
 
 
-@primitive("QuadraticCircle", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("QuadraticCircle", EXACT, bounds=disc_bounds)
 @func
 def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
     """Nearly a circle, of four parabolas: each joins two axes and leaves them at right angles.
@@ -148,7 +143,7 @@ def _points_stay(radius: float, depth: float) -> str | None:
     "BlobbyCross",
     EXACT,
     bounds=disc_bounds,
-    limits={"radius": Limit.POSITIVE, "depth": Limit.POSITIVE},
+    limits={"depth": Limit.POSITIVE},
     requires=_points_stay,
 )
 @func
@@ -199,7 +194,7 @@ def ellipse_start(scaled: vec2, gap: float) -> float:
     return BELOW_BOTH * min(flat, steep)
 
 
-@primitive("Ellipse", EXACT, bounds=ellipse_bounds, limits={"radii": Limit.POSITIVE})
+@primitive("Ellipse", EXACT, bounds=ellipse_bounds)
 @func
 def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
     """Ellipse with its axes along x and y.
@@ -238,7 +233,7 @@ def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
     return select(dot(unit, unit) < 1.0, -d, d)
 
 
-@primitive("Hyperbola", EXACT, limits={"radius": Limit.POSITIVE, "steepness": Limit.POSITIVE})
+@primitive("Hyperbola", EXACT, limits={"steepness": Limit.POSITIVE})
 @func
 def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
     """All that lies beyond the two branches of a hyperbola, to the left and to the right.

@@ -67,13 +67,7 @@ def lens_bounds(width: float, height: float) -> Bounds2:
     return centred_bounds(0.5 * vec2(width, height))
 
 
-@primitive(
-    "Vesica",
-    EXACT,
-    bounds=lens_bounds,
-    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
-    requires=_is_upright,
-)
+@primitive("Vesica", EXACT, bounds=lens_bounds, requires=_is_upright)
 @func
 def vesica(p: vec2, width: float = 0.6, height: float = 1.0) -> float:
     """What two equal discs have in common: a lens with its tips on the y axis.
@@ -111,13 +105,7 @@ def oriented_vesica_bounds(start: vec2, end: vec2, width: float) -> Bounds2:
     )
 
 
-@primitive(
-    "OrientedVesica",
-    EXACT,
-    bounds=oriented_vesica_bounds,
-    limits={"width": Limit.POSITIVE},
-    requires=_lens_is_long,
-)
+@primitive("OrientedVesica", EXACT, bounds=oriented_vesica_bounds, requires=_lens_is_long)
 @func
 def oriented_vesica(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, width: float = 0.5) -> float:
     """A lens between two points.
@@ -156,7 +144,7 @@ def moon_bounds(radius: float, cut_radius: float, offset: float) -> Bounds2:
     "Moon",
     EXACT,
     bounds=moon_bounds,
-    limits={"radius": Limit.POSITIVE, "cut_radius": Limit.POSITIVE, "offset": Limit.POSITIVE},
+    limits={"cut_radius": Limit.POSITIVE, "offset": Limit.POSITIVE},
     requires=_circles_cross,
 )
 @func
@@ -190,13 +178,7 @@ def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 
     return select(on_circle, past_circle, select(on_cut, past_cut, elsewhere))
 
 
-@primitive(
-    "CircleCross",
-    EXACT,
-    bounds=lens_bounds,
-    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
-    requires=_is_flat,
-)
+@primitive("CircleCross", EXACT, bounds=lens_bounds, requires=_is_flat)
 @func
 def circle_cross(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     """A star of four points with sides of circles, hollow between the points.
@@ -229,7 +211,7 @@ def heart_bounds(height: float) -> Bounds2:
     return centred_bounds(height * vec2(HEART_REACH / HEART_HEIGHT, 0.5))
 
 
-@primitive("Heart", EXACT, bounds=heart_bounds, limits={"height": Limit.POSITIVE})
+@primitive("Heart", EXACT, bounds=heart_bounds)
 @func
 def heart(p: vec2, height: float = 1.0) -> float:
     """A square on its corner with half a disc on each upper side.
@@ -267,7 +249,7 @@ def uneven_capsule_bounds(bottom: float, top: float, height: float) -> Bounds2:
     "UnevenCapsule",
     EXACT,
     bounds=uneven_capsule_bounds,
-    limits={"bottom": Limit.POSITIVE, "top": Limit.NOT_NEGATIVE, "height": Limit.POSITIVE},
+    limits={"bottom": Limit.POSITIVE, "top": Limit.NOT_NEGATIVE},
     requires=_sides_touch_both,
 )
 @func
@@ -321,12 +303,7 @@ def egg_bounds(bottom: float, top: float, height: float, bulge: float) -> Bounds
     "Egg",
     EXACT,
     bounds=egg_bounds,
-    limits={
-        "bottom": Limit.POSITIVE,
-        "top": Limit.POSITIVE,
-        "height": Limit.POSITIVE,
-        "bulge": Limit.FRACTION,
-    },
+    limits={"bottom": Limit.POSITIVE, "top": Limit.POSITIVE, "bulge": Limit.FRACTION},
     requires=_egg_is_convex,
 )
 @func
@@ -372,7 +349,7 @@ def rounded_x_bounds(span: float, thickness: float) -> Bounds2:
     "RoundedX",
     EXACT,
     bounds=rounded_x_bounds,
-    limits={"span": Limit.POSITIVE, "thickness": Limit.POSITIVE},
+    limits={"span": Limit.POSITIVE},
     requires=_bars_are_thin,
 )
 @func

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 from distal.fields.flats.edges import LEFT, RIGHT, TINY, from_segment, nearer
-from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, Limit, primitive
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, primitive
 from distal.lang import Buffer, abs, clamp, dot, func, length, max, min, select, size, vec2
 
 LOWER_LEFT: Final = vec2(-0.5, -0.3)
@@ -36,7 +36,7 @@ def segment_bounds(start: vec2, end: vec2, radius: float) -> Bounds2:
     return Bounds2(min(start, end) - radius, max(start, end) + radius)
 
 
-@primitive("Segment", EXACT, bounds=segment_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Segment", EXACT, bounds=segment_bounds)
 @func
 def segment(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, radius: float = 0.05) -> float:
     """A straight line with round ends.
@@ -108,12 +108,7 @@ def quadratic_bezier_bounds(start: vec2, control: vec2, end: vec2, radius: float
     return Bounds2(min(start, end, turn) - radius, max(start, end, turn) + radius)
 
 
-@primitive(
-    "QuadraticBezier",
-    EXACT_OUTSIDE,
-    bounds=quadratic_bezier_bounds,
-    limits={"radius": Limit.POSITIVE},
-)
+@primitive("QuadraticBezier", EXACT_OUTSIDE, bounds=quadratic_bezier_bounds)
 @func
 def quadratic_bezier(
     p: vec2,
@@ -166,9 +161,7 @@ def cubic_bezier_bounds(
     return Bounds2(low, high)
 
 
-@primitive(
-    "CubicBezier", EXACT_OUTSIDE, bounds=cubic_bezier_bounds, limits={"radius": Limit.POSITIVE}
-)
+@primitive("CubicBezier", EXACT_OUTSIDE, bounds=cubic_bezier_bounds)
 @func
 def cubic_bezier(
     p: vec2,
@@ -246,7 +239,7 @@ def spline_bounds(points: Buffer[vec2], radius: float, closed: bool) -> Bounds2:
     return Bounds2(low - radius, high + radius)
 
 
-@primitive("SplinePath", EXACT_OUTSIDE, bounds=spline_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("SplinePath", EXACT_OUTSIDE, bounds=spline_bounds)
 @func
 def spline_path(p: vec2, points: Buffer[vec2], radius: float = 0.05, closed: bool = False) -> float:
     """A smooth line through points, made of two parabolas between each two.

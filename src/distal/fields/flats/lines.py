@@ -59,13 +59,7 @@ def circle_wave_bounds(radius: float, angle: float, thickness: float) -> Bounds2
     return Bounds2(vec2(-UNBOUNDED, -high), vec2(UNBOUNDED, high))
 
 
-@primitive(
-    "CircleWave",
-    EXACT_OUTSIDE,
-    bounds=circle_wave_bounds,
-    limits={"radius": Limit.POSITIVE, "angle": Limit.POSITIVE, "thickness": Limit.POSITIVE},
-    requires=_arcs_are_apart,
-)
+@primitive("CircleWave", EXACT_OUTSIDE, bounds=circle_wave_bounds, requires=_arcs_are_apart)
 @func
 def circle_wave(
     p: vec2, radius: float = 0.25, angle: float = 1.8, thickness: float = 0.05
@@ -102,12 +96,7 @@ def cool_s_bounds(height: float, thickness: float) -> Bounds2:
     return centred_bounds(0.5 * vec2(height * COOL_S_STEP, height) + 0.5 * thickness)
 
 
-@primitive(
-    "CoolS",
-    EXACT_OUTSIDE,
-    bounds=cool_s_bounds,
-    limits={"height": Limit.POSITIVE, "thickness": Limit.POSITIVE},
-)
+@primitive("CoolS", EXACT_OUTSIDE, bounds=cool_s_bounds)
 @func
 def cool_s(p: vec2, height: float = 1.0, thickness: float = 0.03) -> float:
     """The S of 14 straight lines.
@@ -182,7 +171,7 @@ def from_spiral(p: vec2, turns: int, radius_at: Callable[[float], vec2]) -> vec2
     "ArchimedeanSpiral",
     EXACT_OUTSIDE,
     bounds=spiral_bounds,
-    limits={"inner": Limit.NOT_NEGATIVE, "outer": Limit.POSITIVE, "radius": Limit.POSITIVE},
+    limits={"inner": Limit.NOT_NEGATIVE, "outer": Limit.POSITIVE},
     requires=_turns_once,
 )
 @func
@@ -218,7 +207,7 @@ def archimedean_spiral(
     "LogarithmicSpiral",
     EXACT_OUTSIDE,
     bounds=spiral_bounds,
-    limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE, "radius": Limit.POSITIVE},
+    limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE},
     requires=_turns_once,
 )
 @func

@@ -6,7 +6,7 @@ Input: a point, and points in a buffer. Output: the distance, negative inside.
 from __future__ import annotations
 
 from distal.fields.flats.edges import from_segment, nearer, points_bounds, turned_from
-from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, Limit, primitive
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, primitive
 from distal.lang import Buffer, func, length, select, size, vec2
 
 
@@ -58,7 +58,7 @@ def polygon(p: vec2, points: Buffer[vec2]) -> float:
     return from_polygon(p, points)
 
 
-@primitive("RoundedPolygon", EXACT_OUTSIDE, bounds=points_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("RoundedPolygon", EXACT_OUTSIDE, bounds=points_bounds)
 @func
 def rounded_polygon(p: vec2, points: Buffer[vec2], radius: float = 0.1) -> float:
     """A polygon grown by a radius, so that its outer corners are round.
@@ -78,7 +78,7 @@ def rounded_polygon(p: vec2, points: Buffer[vec2], radius: float = 0.1) -> float
     return from_polygon(p, points) - radius
 
 
-@primitive("Polyline", EXACT_OUTSIDE, bounds=points_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Polyline", EXACT_OUTSIDE, bounds=points_bounds)
 @func
 def polyline(p: vec2, points: Buffer[vec2], radius: float = 0.05, closed: bool = False) -> float:
     """A line through points, as wide as a disc drawn along it.

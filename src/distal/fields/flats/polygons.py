@@ -70,7 +70,7 @@ def triangle_bounds(size: float) -> Bounds2:
     return Bounds2(vec2(-0.5 * size, -size / (2.0 * ROOT_3)), vec2(0.5 * size, size / ROOT_3))
 
 
-@primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds, limits={"size": Limit.POSITIVE})
+@primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds)
 @func
 def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
     """Triangle with equal sides, a corner up, its middle at the origin.
@@ -96,12 +96,7 @@ def isosceles_triangle_bounds(width: float, height: float) -> Bounds2:
     return trapezoid_bounds(width, 0.0, height)
 
 
-@primitive(
-    "IsoscelesTriangle",
-    EXACT,
-    bounds=isosceles_triangle_bounds,
-    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
-)
+@primitive("IsoscelesTriangle", EXACT, bounds=isosceles_triangle_bounds)
 @func
 def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> float:
     """Triangle with its tip up, halfway up at y = 0.
@@ -163,7 +158,7 @@ def triangle2(
     return select(inside > 0.0, -d, d)
 
 
-@primitive("Pentagon", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Pentagon", EXACT, bounds=disc_bounds)
 @func
 def pentagon(p: vec2, radius: float = 0.5) -> float:
     """Regular polygon with five corners, one of them up.
@@ -183,7 +178,7 @@ def pentagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 5.0)
 
 
-@primitive("Hexagon", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Hexagon", EXACT, bounds=disc_bounds)
 @func
 def hexagon(p: vec2, radius: float = 0.5) -> float:
     """Regular polygon with six corners, one of them up.
@@ -203,7 +198,7 @@ def hexagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 6.0)
 
 
-@primitive("Octagon", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Octagon", EXACT, bounds=disc_bounds)
 @func
 def octagon(p: vec2, radius: float = 0.5) -> float:
     """Regular polygon with eight corners, one of them up.
@@ -223,13 +218,7 @@ def octagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 8.0)
 
 
-@primitive(
-    "RegularPolygon",
-    EXACT,
-    bounds=disc_bounds,
-    limits={"radius": Limit.POSITIVE},
-    requires=_three_corners,
-)
+@primitive("RegularPolygon", EXACT, bounds=disc_bounds, requires=_three_corners)
 @func
 def regular_polygon(p: vec2, radius: float = 0.5, count: int = 7) -> float:
     """Polygon with equal sides and angles, a corner up.
@@ -258,7 +247,7 @@ def past_point_of_star(q: vec2, radius: float, inner: float, angle: float) -> fl
     return select(turned_from(notch - point, q - point) < 0.0, -d, d)
 
 
-@primitive("Hexagram", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Hexagram", EXACT, bounds=disc_bounds)
 @func
 def hexagram(p: vec2, radius: float = 0.5) -> float:
     """Star of two triangles, six points, one of them up.
@@ -278,7 +267,7 @@ def hexagram(p: vec2, radius: float = 0.5) -> float:
     return past_point_of_star(q, radius, radius / ROOT_3, PI / 6.0)
 
 
-@primitive("Pentagram", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Pentagram", EXACT, bounds=disc_bounds)
 @func
 def pentagram(p: vec2, radius: float = 0.5) -> float:
     """Star drawn by the diagonals of a pentagon, five points, one of them up.
@@ -299,11 +288,7 @@ def pentagram(p: vec2, radius: float = 0.5) -> float:
 
 
 @primitive(
-    "RegularStar",
-    EXACT,
-    bounds=disc_bounds,
-    limits={"radius": Limit.POSITIVE, "inner": Limit.POSITIVE},
-    requires=_is_a_star,
+    "RegularStar", EXACT, bounds=disc_bounds, limits={"inner": Limit.POSITIVE}, requires=_is_a_star
 )
 @func
 def regular_star(p: vec2, radius: float = 0.5, inner: float = 0.25, count: int = 7) -> float:

@@ -81,7 +81,7 @@ def gear_bounds(radius: float, count: int) -> Bounds2:
     "GearProfile",
     EXACT,
     bounds=gear_bounds,
-    limits={"radius": Limit.POSITIVE, "pressure_angle": Limit.POSITIVE},
+    limits={"pressure_angle": Limit.POSITIVE},
     requires=_teeth_are_whole,
 )
 @func
@@ -227,14 +227,7 @@ def interpolated(image: Texture2D, place: vec2) -> float:
     return mix(low, high, share.y)
 
 
-@primitive(
-    "ImageField",
-    NOTHING,
-    slope=IMAGE_SLOPE,
-    bounds=rectangle_bounds,
-    limits={"size": Limit.POSITIVE},
-    growth=1.0,
-)
+@primitive("ImageField", NOTHING, slope=IMAGE_SLOPE, bounds=rectangle_bounds, growth=1.0)
 @func
 def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: float = 1.0) -> float:
     """A shape whose distances are the texels of an image, in their first channel.

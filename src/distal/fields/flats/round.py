@@ -44,7 +44,7 @@ def _cuts_the_disc(radius: float, height: float) -> str | None:
     return None
 
 
-@primitive("Circle", EXACT, bounds=disc_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Circle", EXACT, bounds=disc_bounds)
 @func
 def circle(p: vec2, radius: float = 1.0) -> float:
     """Disc around the origin.
@@ -69,13 +69,7 @@ def annulus_bounds(radius: float, thickness: float) -> Bounds2:
     return disc_bounds(radius + 0.5 * thickness)
 
 
-@primitive(
-    "Annulus",
-    EXACT,
-    bounds=annulus_bounds,
-    limits={"radius": Limit.POSITIVE, "thickness": Limit.POSITIVE},
-    requires=_hole_is_left,
-)
+@primitive("Annulus", EXACT, bounds=annulus_bounds, requires=_hole_is_left)
 @func
 def annulus(p: vec2, radius: float = 0.75, thickness: float = 0.25) -> float:
     """Ring all around.
@@ -103,13 +97,7 @@ def pie_bounds(radius: float, angle: float) -> Bounds2:
     return Bounds2(vec2(-reach, min(end.y, 0.0)), vec2(reach, radius))
 
 
-@primitive(
-    "Pie",
-    EXACT,
-    bounds=pie_bounds,
-    limits={"radius": Limit.POSITIVE, "angle": Limit.POSITIVE},
-    requires=_less_than_a_turn,
-)
+@primitive("Pie", EXACT, bounds=pie_bounds, requires=_less_than_a_turn)
 @func
 def pie(p: vec2, radius: float = 1.0, angle: float = 0.7) -> float:
     """Sector of a disc around the y axis.
@@ -142,11 +130,7 @@ def cut_disk_bounds(radius: float, height: float) -> Bounds2:
 
 
 @primitive(
-    "CutDisk",
-    EXACT,
-    bounds=cut_disk_bounds,
-    limits={"radius": Limit.POSITIVE},
-    requires=_cuts_the_disc,
+    "CutDisk", EXACT, bounds=cut_disk_bounds, limits={"height": Limit.ANY}, requires=_cuts_the_disc
 )
 @func
 def cut_disk(p: vec2, radius: float = 1.0, height: float = -0.3) -> float:
@@ -193,11 +177,7 @@ def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
 
 
 @primitive(
-    "Arc",
-    EXACT,
-    bounds=arc_bounds,
-    limits={"radius": Limit.POSITIVE, "angle": Limit.NOT_NEGATIVE, "thickness": Limit.POSITIVE},
-    requires=_ends_are_apart,
+    "Arc", EXACT, bounds=arc_bounds, limits={"angle": Limit.NOT_NEGATIVE}, requires=_ends_are_apart
 )
 @func
 def arc(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.2) -> float:
@@ -230,13 +210,7 @@ def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
     return Bounds2(vec2(-reach, low), vec2(reach, outer))
 
 
-@primitive(
-    "Ring",
-    EXACT,
-    bounds=ring_bounds,
-    limits={"radius": Limit.POSITIVE, "angle": Limit.POSITIVE, "thickness": Limit.POSITIVE},
-    requires=_ring_is_open,
-)
+@primitive("Ring", EXACT, bounds=ring_bounds, requires=_ring_is_open)
 @func
 def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.25) -> float:
     """Part of a ring with straight ends, around the y axis.
@@ -281,12 +255,7 @@ def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float)
     "Horseshoe",
     EXACT,
     bounds=horseshoe_bounds,
-    limits={
-        "radius": Limit.POSITIVE,
-        "angle": Limit.POSITIVE,
-        "legs": Limit.NOT_NEGATIVE,
-        "thickness": Limit.POSITIVE,
-    },
+    limits={"legs": Limit.NOT_NEGATIVE},
     requires=_legs_are_apart,
 )
 @func

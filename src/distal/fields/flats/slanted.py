@@ -20,7 +20,7 @@ def _has_a_side(bottom: float, top: float) -> str | None:
     return "bottom or top must be above 0" if bottom == 0.0 and top == 0.0 else None
 
 
-@primitive("Rhombus2", EXACT, bounds=rectangle_bounds, limits={"size": Limit.POSITIVE})
+@primitive("Rhombus2", EXACT, bounds=rectangle_bounds)
 @func
 def rhombus2(p: vec2, size: vec2 = DIAGONALS) -> float:
     """Rhombus with its diagonals along the axes.
@@ -53,7 +53,7 @@ def trapezoid_bounds(bottom: float, top: float, height: float) -> Bounds2:
     "IsoscelesTrapezoid",
     EXACT,
     bounds=trapezoid_bounds,
-    limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE, "height": Limit.POSITIVE},
+    limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE},
     requires=_has_a_side,
 )
 @func
@@ -92,12 +92,7 @@ def parallelogram_bounds(width: float, height: float, skew: float) -> Bounds2:
     return centred_bounds(0.5 * vec2(width + abs(skew), height))
 
 
-@primitive(
-    "Parallelogram",
-    EXACT,
-    bounds=parallelogram_bounds,
-    limits={"width": Limit.POSITIVE, "height": Limit.POSITIVE},
-)
+@primitive("Parallelogram", EXACT, bounds=parallelogram_bounds)
 @func
 def parallelogram(p: vec2, width: float = 0.8, height: float = 0.6, skew: float = 0.3) -> float:
     """Parallelogram with two sides along x.

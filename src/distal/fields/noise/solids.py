@@ -29,7 +29,6 @@ VALUE_TYPICAL: Final = 1.25
 GRADIENT_TYPICAL: Final = 1.13
 SIMPLEX_TYPICAL: Final = 2.45
 
-CELLS: Final = {"cell_size": Limit.POSITIVE}
 # Beyond half of the range hardly anything is left of noise, and of fractal noise sooner.
 HIGHEST_LEVEL: Final = 0.5
 HIGHEST_FBM_LEVEL: Final = 0.25
@@ -48,12 +47,7 @@ def _octaves_are_met(level: float, octaves: int) -> str | None:
 
 
 @primitive(
-    "ValueNoiseSolid",
-    NOTHING,
-    slope=VALUE_SLOPE / VALUE_TYPICAL,
-    limits=CELLS,
-    requires=_level_is_met,
-    tier=2,
+    "ValueNoiseSolid", NOTHING, slope=VALUE_SLOPE / VALUE_TYPICAL, requires=_level_is_met, tier=2
 )
 @func
 def value_noise_solid(p: vec3, cell_size: float = 0.5, level: float = 0.0, seed: int = 0) -> float:
@@ -79,7 +73,6 @@ def value_noise_solid(p: vec3, cell_size: float = 0.5, level: float = 0.0, seed:
     "GradientNoiseSolid",
     NOTHING,
     slope=GRADIENT_SLOPE / GRADIENT_TYPICAL,
-    limits=CELLS,
     requires=_level_is_met,
     tier=2,
 )
@@ -109,7 +102,6 @@ def gradient_noise_solid(
     "SimplexNoiseSolid",
     NOTHING,
     slope=SIMPLEX_SLOPE / SIMPLEX_TYPICAL,
-    limits=CELLS,
     requires=_level_is_met,
     tier=2,
 )
@@ -160,7 +152,7 @@ def fbm_solid_slope(octaves: int, lacunarity: float, gain: float) -> float:
     "FbmSolid",
     NOTHING,
     slope=fbm_solid_slope,
-    limits={**CELLS, "lacunarity": Limit.POSITIVE, "gain": Limit.POSITIVE},
+    limits={"lacunarity": Limit.POSITIVE, "gain": Limit.POSITIVE},
     requires=_octaves_are_met,
     tier=2,
 )

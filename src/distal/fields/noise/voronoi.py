@@ -243,16 +243,7 @@ def _balls_leave_room(cell_size: float, radius: float) -> str | None:
     return "radius must be at most 0.7 cell_size" if radius > 0.7 * cell_size else None
 
 
-CELL_LIMITS: Final = {"cell_size": Limit.POSITIVE, "jitter": Limit.FRACTION}
-
-
-@primitive(
-    "VoronoiWalls",
-    LOWER_BOUND,
-    limits={**CELL_LIMITS, "thickness": Limit.POSITIVE},
-    requires=_walls_leave_room,
-    tier=2,
-)
+@primitive("VoronoiWalls", LOWER_BOUND, requires=_walls_leave_room, tier=2)
 @func
 def voronoi_walls(
     p: vec3, cell_size: float = 0.5, thickness: float = 0.08, jitter: float = 0.8, seed: int = 0
@@ -277,11 +268,7 @@ def voronoi_walls(
 
 
 @primitive(
-    "VoronoiCells",
-    LOWER_BOUND,
-    limits={**CELL_LIMITS, "gap": Limit.POSITIVE},
-    requires=_gap_leaves_room,
-    tier=2,
+    "VoronoiCells", LOWER_BOUND, limits={"gap": Limit.POSITIVE}, requires=_gap_leaves_room, tier=2
 )
 @func
 def voronoi_cells(
@@ -306,13 +293,7 @@ def voronoi_cells(
     return 0.5 * gap - cell_size * voronoi_border(p / cell_size, jitter, seed)
 
 
-@primitive(
-    "VoronoiLines",
-    LOWER_BOUND,
-    limits={**CELL_LIMITS, "thickness": Limit.POSITIVE},
-    requires=_walls_leave_room,
-    tier=2,
-)
+@primitive("VoronoiLines", LOWER_BOUND, requires=_walls_leave_room, tier=2)
 @func
 def voronoi_lines(
     p: vec2, cell_size: float = 0.5, thickness: float = 0.08, jitter: float = 0.8, seed: int = 0
@@ -336,13 +317,7 @@ def voronoi_lines(
     return cell_size * voronoi_border_2(p / cell_size, jitter, seed) - 0.5 * thickness
 
 
-@primitive(
-    "ScatteredBalls",
-    LOWER_BOUND,
-    limits={**CELL_LIMITS, "radius": Limit.POSITIVE},
-    requires=_balls_leave_room,
-    tier=2,
-)
+@primitive("ScatteredBalls", LOWER_BOUND, requires=_balls_leave_room, tier=2)
 @func
 def scattered_balls(
     p: vec3,

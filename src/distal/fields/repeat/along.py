@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.combine.joins import INSIDE_AND_BOUND
 from distal.fields.extents import box_distance, diameter
 from distal.fields.guarantees import (
     EXACT_OUTSIDE,
+    INSIDE_AND_BOUND,
     LOWER_BOUND,
     UNBOUNDED,
     Bounds,

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from distal.fields.combine.joins import INSIDE_AND_BOUND
 from distal.fields.guarantees import (
     EXACT_OUTSIDE,
+    INSIDE_AND_BOUND,
     LOWER_BOUND,
     UNBOUNDED,
     Bounds,

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from distal.fields.combine.joins import INSIDE_AND_BOUND
 from distal.fields.guarantees import (
+    INSIDE_AND_BOUND,
     LOWER_BOUND,
     Bounds,
     Growth,

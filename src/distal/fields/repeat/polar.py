@@ -14,9 +14,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.combine.joins import INSIDE_AND_BOUND
 from distal.fields.extents import ENDLESS, drum_distance
-from distal.fields.guarantees import LOWER_BOUND, UNBOUNDED, Bounds, Growth, Site, operator
+from distal.fields.guarantees import (
+    INSIDE_AND_BOUND,
+    LOWER_BOUND,
+    UNBOUNDED,
+    Bounds,
+    Growth,
+    Site,
+    operator,
+)
 from distal.fields.place.mirrors import kaleidoscope_bounds, outer_radius
 from distal.fields.place.solid import rotated_y
 from distal.fields.repeat.cells import LEAD, ROOM, Nearest

@@ -11,6 +11,7 @@ from typing import Final
 
 from distal.fields.guarantees import Bounds
 from distal.lang import dot, func, length, max, min, sqrt, vec2, vec3
+from distal.lang.functions import Func
 
 # Keeps a division defined where numbers vanish; far below any length that a scene has.
 TINY: Final = 1e-12
@@ -46,6 +47,23 @@ def around_axis(p: vec3, start: vec3, end: vec3) -> vec2:
 def upright_bounds(radius: float, low: float, high: float) -> Bounds:
     """The box of what stands around the y axis."""
     return Bounds(vec3(-radius, low, -radius), vec3(radius, high, radius))
+
+
+@func
+def sphere_bounds(radius: float) -> Bounds:
+    """The cube around the ball."""
+    return Bounds(vec3(-radius), vec3(radius))
+
+
+def cube_of_radius(reach: float) -> Func:
+    """The function that gives the cube around what reaches ``reach`` times its radius."""
+
+    @func
+    def cube_around(radius: float) -> Bounds:
+        """The cube from minus to plus the reach."""
+        return Bounds(vec3(-radius * reach), vec3(radius * reach))
+
+    return cube_around
 
 
 @func

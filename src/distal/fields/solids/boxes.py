@@ -8,16 +8,20 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Claim, Limit, primitive
+from distal.fields.guarantees import (
+    EXACT,
+    EXACT_OUTSIDE,
+    INSIDE_AND_BOUND,
+    Bounds,
+    Limit,
+    primitive,
+)
 from distal.lang import abs, func, length, max, min, sqrt, vec3
 
 UNIT_CUBE: Final = vec3(1.0)
 HALF_ROOT: Final = 0.7071067811865476
 # A point that is past three sides by r each is this times r from the box.
 ROOT_THREE: Final = 1.7320508075688772
-
-# What the largest of several plane distances promises: a convex shape's inside is exact.
-CONVEX_BOUND: Final = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
 
 
 @primitive("Corner", EXACT)
@@ -44,7 +48,7 @@ def box_bounds(size: vec3) -> Bounds:
     return Bounds(-0.5 * size, 0.5 * size)
 
 
-@primitive("Box", EXACT, bounds=box_bounds, limits={"size": Limit.POSITIVE})
+@primitive("Box", EXACT, bounds=box_bounds)
 @func
 def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     """Box.
@@ -63,14 +67,7 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     return corner(abs(p) - 0.5 * size)
 
 
-@primitive(
-    "BoxCheap",
-    CONVEX_BOUND,
-    bounds=box_bounds,
-    limits={"size": Limit.POSITIVE},
-    growth=ROOT_THREE,
-    side_growth=1.0,
-)
+@primitive("BoxCheap", INSIDE_AND_BOUND, bounds=box_bounds, growth=ROOT_THREE, side_growth=1.0)
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     """Box without a square root; outside, off the faces, the value is less than the distance.
@@ -103,13 +100,7 @@ def round_box_requires(size: vec3, rounding: float) -> str | None:
     return _fits_every_side("rounding", rounding, size)
 
 
-@primitive(
-    "RoundBox",
-    EXACT,
-    bounds=box_bounds,
-    limits={"size": Limit.POSITIVE, "rounding": Limit.NOT_NEGATIVE},
-    requires=round_box_requires,
-)
+@primitive("RoundBox", EXACT, bounds=box_bounds, requires=round_box_requires)
 @func
 def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
     """Box whose edges are rounded inward: the full size stays.
@@ -135,12 +126,7 @@ def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
 
 
 @primitive(
-    "ChamferBox",
-    CONVEX_BOUND,
-    bounds=box_bounds,
-    limits={"size": Limit.POSITIVE, "chamfer": Limit.NOT_NEGATIVE},
-    requires=chamfer_box_requires,
-    growth=1.0,
+    "ChamferBox", INSIDE_AND_BOUND, bounds=box_bounds, requires=chamfer_box_requires, growth=1.0
 )
 @func
 def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
@@ -169,13 +155,7 @@ def box_frame_requires(size: vec3, thickness: float) -> str | None:
     return _fits_every_side("thickness", thickness, size)
 
 
-@primitive(
-    "BoxFrame",
-    EXACT,
-    bounds=box_bounds,
-    limits={"size": Limit.POSITIVE, "thickness": Limit.POSITIVE},
-    requires=box_frame_requires,
-)
+@primitive("BoxFrame", EXACT, bounds=box_bounds, requires=box_frame_requires)
 @func
 def box_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
     """The twelve edges of a box as square beams.
@@ -217,7 +197,7 @@ def round_frame_requires(size: vec3, thickness: float) -> str | None:
     "RoundFrame",
     EXACT_OUTSIDE,
     bounds=box_bounds,
-    limits={"size": Limit.POSITIVE, "thickness": Limit.NOT_NEGATIVE},
+    limits={"thickness": Limit.NOT_NEGATIVE},
     requires=round_frame_requires,
 )
 @func

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.guarantees import LOWER_BOUND, Bounds, Limit, primitive
+from distal.fields.guarantees import LOWER_BOUND, Bounds, primitive
 from distal.lang import abs, atan2, func, length, max, round, sqrt, vec2, vec3
 
 PI: Final = 3.141592653589793
@@ -42,10 +42,7 @@ def coil(p: vec3, major: float, minor: float, pitch: float) -> float:
     return (length(vec2(out - major, height)) - minor) / coil_steepest(major, pitch)
 
 
-COIL: Final = {"major": Limit.POSITIVE, "minor": Limit.POSITIVE, "pitch": Limit.POSITIVE}
-
-
-@primitive("Helix", LOWER_BOUND, limits=COIL, tier=2)
+@primitive("Helix", LOWER_BOUND, tier=2)
 @func
 def helix(p: vec3, major: float = 0.5, minor: float = 0.1, pitch: float = 0.4) -> float:
     """A tube that winds around the y axis without end, through the x axis, rising toward z.
@@ -89,7 +86,6 @@ def spring_growth(major: float, pitch: float) -> float:
     "Spring",
     LOWER_BOUND,
     bounds=spring_bounds,
-    limits={**COIL, "height": Limit.POSITIVE},
     tier=2,
     growth=spring_growth,
     side_growth=spring_side_growth,

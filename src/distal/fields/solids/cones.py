@@ -6,7 +6,7 @@ looked at as how far from the axis and how high above the middle.
 
 from __future__ import annotations
 
-from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
+from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
@@ -19,7 +19,6 @@ from distal.fields.solids.axes import (
     discs_bounds,
     upright_bounds,
 )
-from distal.fields.solids.boxes import CONVEX_BOUND
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
 
 
@@ -34,7 +33,7 @@ def opening(q: vec2, angle: float) -> float:
     return select(q.x * s > q.y * c, beside, select(beside > 0.0, tip, -tip))
 
 
-@primitive("InfiniteCone", EXACT, limits={"angle": Limit.POSITIVE}, requires=below_pi)
+@primitive("InfiniteCone", EXACT, requires=below_pi)
 @func
 def infinite_cone(p: vec3, angle: float = 0.5) -> float:
     """Cone without end, downward from its tip at the origin.
@@ -82,7 +81,7 @@ def capped_cone_requires(bottom: float, top: float) -> str | None:
     "CappedCone",
     EXACT,
     bounds=capped_cone_bounds,
-    limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE, "height": Limit.POSITIVE},
+    limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE},
     requires=capped_cone_requires,
 )
 @func
@@ -164,12 +163,7 @@ def cone_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(radius, -0.5 * height, 0.5 * height)
 
 
-@primitive(
-    "Cone",
-    EXACT,
-    bounds=cone_bounds,
-    limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
-)
+@primitive("Cone", EXACT, bounds=cone_bounds)
 @func
 def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cone, its tip on top.
@@ -196,13 +190,7 @@ def cone_cheap_growth(radius: float, height: float) -> float:
     return max(side / radius, length(vec2((side + radius) / height, 1.0)))
 
 
-@primitive(
-    "ConeCheap",
-    CONVEX_BOUND,
-    bounds=cone_bounds,
-    limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
-    growth=cone_cheap_growth,
-)
+@primitive("ConeCheap", INSIDE_AND_BOUND, bounds=cone_bounds, growth=cone_cheap_growth)
 @func
 def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cone by its side and its base alone; beyond tip and rim less than the distance.
@@ -231,13 +219,7 @@ def cone_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
     return discs_bounds(start, end, radius, 0.0)
 
 
-@primitive(
-    "ConeBetween",
-    EXACT,
-    bounds=cone_between_bounds,
-    limits={"radius": Limit.POSITIVE},
-    requires=apart,
-)
+@primitive("ConeBetween", EXACT, bounds=cone_between_bounds, requires=apart)
 @func
 def cone_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5

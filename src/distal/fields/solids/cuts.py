@@ -18,6 +18,7 @@ from distal.fields.solids.axes import (
     around_y,
     below_pi,
     discs_bounds,
+    sphere_bounds,
     upright_bounds,
 )
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
@@ -45,7 +46,7 @@ def cut_sphere_bounds(radius: float, height: float) -> Bounds:
     "CutSphere",
     EXACT,
     bounds=cut_sphere_bounds,
-    limits={"radius": Limit.POSITIVE},
+    limits={"height": Limit.ANY},
     requires=_plane_cuts_ball,
 )
 @func
@@ -92,7 +93,7 @@ def cut_hollow_sphere_requires(radius: float, height: float, thickness: float) -
     "CutHollowSphere",
     EXACT,
     bounds=cut_hollow_sphere_bounds,
-    limits={"radius": Limit.POSITIVE, "thickness": Limit.POSITIVE},
+    limits={"height": Limit.ANY},
     requires=cut_hollow_sphere_requires,
 )
 @func
@@ -120,12 +121,6 @@ def cut_hollow_sphere(
     return select(below_rim, abs(length(q) - radius), length(q - rim)) - 0.5 * thickness
 
 
-@func
-def death_star_bounds(radius: float, cut_radius: float, distance: float) -> Bounds:
-    """The box of the whole ball."""
-    return Bounds(vec3(-radius), vec3(radius))
-
-
 def death_star_requires(radius: float, cut_radius: float, distance: float) -> str | None:
     """The two balls must cross."""
     if math.fabs(radius - cut_radius) < distance < radius + cut_radius:
@@ -136,8 +131,8 @@ def death_star_requires(radius: float, cut_radius: float, distance: float) -> st
 @primitive(
     "DeathStar",
     EXACT,
-    bounds=death_star_bounds,
-    limits={"radius": Limit.POSITIVE, "cut_radius": Limit.POSITIVE, "distance": Limit.POSITIVE},
+    bounds=sphere_bounds,
+    limits={"cut_radius": Limit.POSITIVE, "distance": Limit.POSITIVE},
     requires=death_star_requires,
 )
 @func
@@ -178,13 +173,7 @@ def solid_angle_bounds(angle: float, radius: float) -> Bounds:
     )
 
 
-@primitive(
-    "SolidAngle",
-    EXACT,
-    bounds=solid_angle_bounds,
-    limits={"angle": Limit.POSITIVE, "radius": Limit.POSITIVE},
-    requires=below_pi,
-)
+@primitive("SolidAngle", EXACT, bounds=solid_angle_bounds, requires=below_pi)
 @func
 def solid_angle(p: vec3, angle: float = 0.6, radius: float = 1.0) -> float:
     """The part of a ball that lies within an angle of the y axis, its tip at the origin.
@@ -233,13 +222,7 @@ def vesica_solid_requires(height: float, width: float) -> str | None:
     return "width must be at most height" if width > height else None
 
 
-@primitive(
-    "VesicaSolid",
-    EXACT,
-    bounds=vesica_solid_bounds,
-    limits={"height": Limit.POSITIVE, "width": Limit.POSITIVE},
-    requires=vesica_solid_requires,
-)
+@primitive("VesicaSolid", EXACT, bounds=vesica_solid_bounds, requires=vesica_solid_requires)
 @func
 def vesica_solid(p: vec3, height: float = 1.5, width: float = 0.75) -> float:
     """Upright body between two arcs, with a tip at either end, like a grain of rice.
@@ -272,13 +255,7 @@ def vesica_between_requires(start: vec3, end: vec3, width: float) -> str | None:
     return apart(start, end)
 
 
-@primitive(
-    "VesicaBetween",
-    EXACT,
-    bounds=vesica_between_bounds,
-    limits={"width": Limit.POSITIVE},
-    requires=vesica_between_requires,
-)
+@primitive("VesicaBetween", EXACT, bounds=vesica_between_bounds, requires=vesica_between_requires)
 @func
 def vesica_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, width: float = 0.5

@@ -21,7 +21,7 @@ from distal.fields.solids.axes import (
 from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
 
 
-@primitive("InfiniteCylinder", EXACT, limits={"radius": Limit.POSITIVE})
+@primitive("InfiniteCylinder", EXACT)
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
     """Round bar along the y axis, without end.
@@ -52,12 +52,7 @@ def cylinder_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(radius, -0.5 * height, 0.5 * height)
 
 
-@primitive(
-    "Cylinder",
-    EXACT,
-    bounds=cylinder_bounds,
-    limits={"radius": Limit.POSITIVE, "height": Limit.POSITIVE},
-)
+@primitive("Cylinder", EXACT, bounds=cylinder_bounds)
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cylinder.
@@ -83,13 +78,7 @@ def cylinder_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
     return discs_bounds(start, end, radius, radius)
 
 
-@primitive(
-    "CylinderBetween",
-    EXACT,
-    bounds=cylinder_between_bounds,
-    limits={"radius": Limit.POSITIVE},
-    requires=apart,
-)
+@primitive("CylinderBetween", EXACT, bounds=cylinder_between_bounds, requires=apart)
 @func
 def cylinder_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5
@@ -126,15 +115,7 @@ def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bo
 
 
 @primitive(
-    "RoundedCylinder",
-    EXACT,
-    bounds=rounded_cylinder_bounds,
-    limits={
-        "radius": Limit.POSITIVE,
-        "height": Limit.POSITIVE,
-        "rounding": Limit.NOT_NEGATIVE,
-    },
-    requires=rounded_cylinder_requires,
+    "RoundedCylinder", EXACT, bounds=rounded_cylinder_bounds, requires=rounded_cylinder_requires
 )
 @func
 def rounded_cylinder(
@@ -164,12 +145,7 @@ def capsule_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(radius, -0.5 * height - radius, 0.5 * height + radius)
 
 
-@primitive(
-    "Capsule",
-    EXACT,
-    bounds=capsule_bounds,
-    limits={"radius": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
-)
+@primitive("Capsule", EXACT, bounds=capsule_bounds, limits={"height": Limit.NOT_NEGATIVE})
 @func
 def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
     """Upright round bar with half balls at its ends.
@@ -207,9 +183,7 @@ def capsule_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
     return balls_bounds(start, end, radius, radius)
 
 
-@primitive(
-    "CapsuleBetween", EXACT, bounds=capsule_between_bounds, limits={"radius": Limit.POSITIVE}
-)
+@primitive("CapsuleBetween", EXACT, bounds=capsule_between_bounds)
 @func
 def capsule_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4

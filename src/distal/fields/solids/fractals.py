@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from distal.fields.guarantees import LOWER_BOUND, NOTHING, Bounds, Limit, primitive
+from distal.fields.guarantees import LOWER_BOUND, NOTHING, Bounds, primitive
 from distal.lang import (
     abs,
     atan2,
@@ -60,13 +60,7 @@ def _repeats_are_few(iterations: int) -> str | None:
 
 
 @primitive(
-    "MengerSponge",
-    LOWER_BOUND,
-    bounds=cube_bounds,
-    limits={"size": Limit.POSITIVE},
-    requires=_repeats_are_few,
-    tier=3,
-    growth=1.0,
+    "MengerSponge", LOWER_BOUND, bounds=cube_bounds, requires=_repeats_are_few, tier=3, growth=1.0
 )
 @func
 def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:
@@ -321,7 +315,6 @@ def _scale_folds(scale: float, iterations: int) -> str | None:
     NOTHING,
     slope=1.25,
     bounds=cube_bounds,
-    limits={"size": Limit.POSITIVE},
     requires=_scale_folds,
     estimate=True,
     tier=3,

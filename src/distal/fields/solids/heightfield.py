@@ -60,11 +60,7 @@ def above_height(y: float, height: float, steepness: float) -> float:
 @primitive(
     "Heightfield",
     LOWER_BOUND,
-    limits={
-        "size": Limit.POSITIVE,
-        "height": Limit.NOT_ZERO,
-        "steepness": Limit.NOT_NEGATIVE,
-    },
+    limits={"height": Limit.NOT_ZERO, "steepness": Limit.NOT_NEGATIVE},
     tier=2,
 )
 @func

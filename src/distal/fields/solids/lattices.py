@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import Final
 
 from distal.fields.flats.edges import nearer
-from distal.fields.guarantees import EXACT_OUTSIDE, Limit, primitive
+from distal.fields.guarantees import EXACT_OUTSIDE, primitive
 from distal.lang import abs, func, length, max, min, round, vec2, vec3
 
-LIMITS: Final = {"cell_size": Limit.POSITIVE, "radius": Limit.POSITIVE}
 ROOT_HALF: Final = 0.7071067811865476
 ROOT_THIRD: Final = 0.5773502691896258
 
@@ -45,7 +44,7 @@ def descending(q: vec3) -> vec3:
     return vec3(highest, middle, lowest)
 
 
-@primitive("CubicLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_cubic_gaps_stay, tier=2)
+@primitive("CubicLattice", EXACT_OUTSIDE, requires=_cubic_gaps_stay, tier=2)
 @func
 def cubic_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.06) -> float:
     """Struts along the edges of cubes, a node at the origin.
@@ -72,7 +71,7 @@ def from_face_diagonals(q: vec3) -> vec2:
     return vec2(ROOT_HALF * (s.x - s.y), s.z)
 
 
-@primitive("BccLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_diagonal_gaps_stay, tier=2)
+@primitive("BccLattice", EXACT_OUTSIDE, requires=_diagonal_gaps_stay, tier=2)
 @func
 def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     """Struts from the corners of cubes to their middles (body-centred cubic).
@@ -93,7 +92,7 @@ def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     return ROOT_THIRD * length(q - q.yzx) - radius
 
 
-@primitive("FccLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_diagonal_gaps_stay, tier=2)
+@primitive("FccLattice", EXACT_OUTSIDE, requires=_diagonal_gaps_stay, tier=2)
 @func
 def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     """Struts from the corners of cubes to the middles of their faces (face-centred cubic).
@@ -113,7 +112,7 @@ def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     return length(from_face_diagonals(folded(p, cell_size))) - radius
 
 
-@primitive("OctetLattice", EXACT_OUTSIDE, limits=LIMITS, requires=_octet_gaps_stay, tier=2)
+@primitive("OctetLattice", EXACT_OUTSIDE, requires=_octet_gaps_stay, tier=2)
 @func
 def octet_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> float:
     """The octet truss: the edges of octahedra and tetrahedra that fill space.

@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
-from distal.fields.solids.boxes import CONVEX_BOUND, ROOT_THREE, UNIT_CUBE
-from distal.fields.solids.regular import DIAGONAL, RADIUS, octahedron_bounds
+from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, primitive
+from distal.fields.solids.axes import cube_of_radius, sphere_bounds
+from distal.fields.solids.boxes import ROOT_THREE, UNIT_CUBE, box_bounds
+from distal.fields.solids.regular import DIAGONAL
 from distal.lang import (
     Buffer,
     abs,
@@ -52,7 +53,7 @@ def face_edge(height: float, past_edge: float, past_end: float) -> float:
     return select(past_edge > 0.0, length(vec3(height, past_edge, max(past_end, 0.0))), height)
 
 
-@primitive("Octahedron", EXACT, bounds=octahedron_bounds, limits=RADIUS)
+@primitive("Octahedron", EXACT, bounds=sphere_bounds)
 @func
 def octahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular octahedron.
@@ -81,13 +82,7 @@ def octahedron(p: vec3, radius: float = 1.0) -> float:
     )
 
 
-@func
-def tetrahedron_bounds(radius: float) -> Bounds:
-    """The cube whose corners, every other one, are the vertices."""
-    return Bounds(vec3(-radius * DIAGONAL), vec3(radius * DIAGONAL))
-
-
-@primitive("Tetrahedron", EXACT, bounds=tetrahedron_bounds, limits=RADIUS)
+@primitive("Tetrahedron", EXACT, bounds=cube_of_radius(DIAGONAL))
 @func
 def tetrahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them.
@@ -125,12 +120,7 @@ def pyramid_bounds(size: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive(
-    "Pyramid",
-    EXACT,
-    bounds=pyramid_bounds,
-    limits={"size": Limit.POSITIVE, "height": Limit.POSITIVE},
-)
+@primitive("Pyramid", EXACT, bounds=pyramid_bounds)
 @func
 def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
     """Upright pyramid over a square.
@@ -168,12 +158,6 @@ def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
     return select(max(above, -y) < 0.0, max(above, -y), sqrt(square))
 
 
-@func
-def convex_polyhedron_bounds(planes: Buffer[vec4], size: vec3) -> Bounds:
-    """The box that is cut."""
-    return Bounds(-0.5 * size, 0.5 * size)
-
-
 def convex_polyhedron_requires(planes: Any) -> str | None:
     """A longer normal would make the field too steep."""
     rows: Any = getattr(planes, "data", ()) if isinstance(planes, Buffer) else planes
@@ -185,9 +169,8 @@ def convex_polyhedron_requires(planes: Any) -> str | None:
 
 @primitive(
     "ConvexPolyhedron",
-    CONVEX_BOUND,
-    bounds=convex_polyhedron_bounds,
-    limits={"size": Limit.POSITIVE},
+    INSIDE_AND_BOUND,
+    bounds=box_bounds,
     requires=convex_polyhedron_requires,
     growth=ROOT_THREE,
     side_growth=1.0,

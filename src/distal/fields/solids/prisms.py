@@ -13,7 +13,6 @@ from distal.fields.flats.edges import fold_past, fold_sectors, inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.lang import abs, cos, dot, func, length, max, min, sin, vec2, vec3
 
-SIZES: Final = {"apothem": Limit.POSITIVE, "height": Limit.POSITIVE}
 DIAGONALS: Final = vec2(1.0, 0.6)
 PI: Final = math.pi
 
@@ -39,7 +38,7 @@ def tri_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(vec3(-half, -0.5 * height, -2.0 * apothem), vec3(half, 0.5 * height, apothem))
 
 
-@primitive("TriPrism", EXACT, bounds=tri_prism_bounds, limits=SIZES)
+@primitive("TriPrism", EXACT, bounds=tri_prism_bounds)
 @func
 def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
     """Upright prism over an equilateral triangle; one side looks along z.
@@ -68,7 +67,7 @@ def hex_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("HexPrism", EXACT, bounds=hex_prism_bounds, limits=SIZES)
+@primitive("HexPrism", EXACT, bounds=hex_prism_bounds)
 @func
 def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular hexagon; one side looks along z.
@@ -96,7 +95,7 @@ def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds, limits=SIZES)
+@primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds)
 @func
 def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular octagon; sides look along x and z.
@@ -131,7 +130,7 @@ def prism_requires(count: int) -> str | None:
     return None if count >= 3 else "count must be 3 or more"
 
 
-@primitive("Prism", EXACT, bounds=prism_bounds, limits=SIZES, requires=prism_requires)
+@primitive("Prism", EXACT, bounds=prism_bounds, requires=prism_requires)
 @func
 def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular polygon; one side looks along z.
@@ -161,16 +160,7 @@ def rhombus_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive(
-    "Rhombus",
-    EXACT,
-    bounds=rhombus_bounds,
-    limits={
-        "diagonals": Limit.POSITIVE,
-        "height": Limit.POSITIVE,
-        "rounding": Limit.NOT_NEGATIVE,
-    },
-)
+@primitive("Rhombus", EXACT, bounds=rhombus_bounds, limits={"diagonals": Limit.POSITIVE})
 @func
 def rhombus(
     p: vec3, diagonals: vec2 = DIAGONALS, height: float = 1.0, rounding: float = 0.05

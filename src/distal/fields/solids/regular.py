@@ -11,11 +11,14 @@ International 1999; Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), for the fa
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
-from distal.fields.guarantees import Bounds, Limit, primitive
-from distal.fields.solids.boxes import CONVEX_BOUND, ROOT_THREE
+from distal.fields.guarantees import INSIDE_AND_BOUND, primitive
+from distal.fields.solids.axes import cube_of_radius, sphere_bounds
+from distal.fields.solids.boxes import ROOT_THREE
 from distal.lang import abs, func, max, vec3
+from distal.lang.functions import Func
 
 GOLDEN: Final = (1.0 + math.sqrt(5.0)) / 2.0
 DIAGONAL: Final = 1.0 / math.sqrt(3.0)
@@ -41,12 +44,23 @@ DODECAHEDRON_REACH: Final = FACE_LONG
 ICOSAHEDRON_REACH: Final = VERTEX_LONG
 FOOTBALL_REACH: Final = 3.0 * GOLDEN / FOOTBALL_RADIUS
 
-RADIUS: Final = {"radius": Limit.POSITIVE}
 
+def equal_faces(name: str, face: float, reach: float) -> Callable[[Func], Func]:
+    """Declare the ``@func`` below as a body whose nearest faces are equally far away.
 
-# Growth: to move all faces out by r scales a body whose faces are equally far away by 1 + r over
-# that distance. The vertices then leave the box by at most r times their own distance over it (a
-# side by their reach over it). Faces that are farther away move out by less than the scale.
+    Growth: to move all faces out by r scales such a body by 1 + r over their distance. The vertices
+    then leave the box by at most r times their own distance over it (a side by their reach over
+    it). Faces that are farther away move out by less than the scale.
+
+    Args:
+        name: The shape's.
+        face: Distance of the faces, for vertices at distance 1.
+        reach: How far the vertices reach along an axis.
+    """
+    bounds = cube_of_radius(reach)
+    growth, side_growth = 1.0 / face, reach / face
+    return primitive(name, INSIDE_AND_BOUND, bounds=bounds, growth=growth, side_growth=side_growth)
+
 
 # The largest part of p along any axis of a family. ``q`` is abs(p): every family has the symmetry
 # of the box, so that one octant is enough.
@@ -79,19 +93,7 @@ def along_faces(q: vec3) -> float:
     )
 
 
-@func
-def octahedron_bounds(radius: float) -> Bounds:
-    """The box of the vertices."""
-    return Bounds(vec3(-radius), vec3(radius))
-
-
-@primitive(
-    "OctahedronCheap",
-    CONVEX_BOUND,
-    bounds=octahedron_bounds,
-    limits=RADIUS,
-    growth=1.0 / OCTAHEDRON_FACE,
-)
+@primitive("OctahedronCheap", INSIDE_AND_BOUND, bounds=sphere_bounds, growth=1.0 / OCTAHEDRON_FACE)
 @func
 def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
     """Octahedron by its faces alone; beyond edges less than the distance.
@@ -110,20 +112,7 @@ def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
     return along_diagonals(abs(p)) - radius * OCTAHEDRON_FACE
 
 
-@func
-def dodecahedron_bounds(radius: float) -> Bounds:
-    """The box of the vertices."""
-    return Bounds(vec3(-radius * DODECAHEDRON_REACH), vec3(radius * DODECAHEDRON_REACH))
-
-
-@primitive(
-    "Dodecahedron",
-    CONVEX_BOUND,
-    bounds=dodecahedron_bounds,
-    limits=RADIUS,
-    growth=1.0 / DODECAHEDRON_FACE,
-    side_growth=DODECAHEDRON_REACH / DODECAHEDRON_FACE,
-)
+@equal_faces("Dodecahedron", DODECAHEDRON_FACE, DODECAHEDRON_REACH)
 @func
 def dodecahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular body of twelve pentagons; beyond edges less than the distance.
@@ -142,20 +131,7 @@ def dodecahedron(p: vec3, radius: float = 1.0) -> float:
     return along_vertices(abs(p)) - radius * DODECAHEDRON_FACE
 
 
-@func
-def icosahedron_bounds(radius: float) -> Bounds:
-    """The box of the vertices."""
-    return Bounds(vec3(-radius * ICOSAHEDRON_REACH), vec3(radius * ICOSAHEDRON_REACH))
-
-
-@primitive(
-    "Icosahedron",
-    CONVEX_BOUND,
-    bounds=icosahedron_bounds,
-    limits=RADIUS,
-    growth=1.0 / ICOSAHEDRON_FACE,
-    side_growth=ICOSAHEDRON_REACH / ICOSAHEDRON_FACE,
-)
+@equal_faces("Icosahedron", ICOSAHEDRON_FACE, ICOSAHEDRON_REACH)
 @func
 def icosahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular body of twenty triangles; beyond edges less than the distance.
@@ -174,18 +150,10 @@ def icosahedron(p: vec3, radius: float = 1.0) -> float:
     return along_faces(abs(p)) - radius * ICOSAHEDRON_FACE
 
 
-@func
-def truncated_octahedron_bounds(radius: float) -> Bounds:
-    """The box of the squares."""
-    reach = radius * TRUNCATED_OCTAHEDRON_SQUARE
-    return Bounds(vec3(-reach), vec3(reach))
-
-
 @primitive(
     "TruncatedOctahedron",
-    CONVEX_BOUND,
-    bounds=truncated_octahedron_bounds,
-    limits=RADIUS,
+    INSIDE_AND_BOUND,
+    bounds=cube_of_radius(TRUNCATED_OCTAHEDRON_SQUARE),
     growth=ROOT_THREE,
     side_growth=1.0,
 )
@@ -212,20 +180,7 @@ def truncated_octahedron(p: vec3, radius: float = 1.0) -> float:
     )
 
 
-@func
-def truncated_icosahedron_bounds(radius: float) -> Bounds:
-    """The box of the vertices."""
-    return Bounds(vec3(-radius * FOOTBALL_REACH), vec3(radius * FOOTBALL_REACH))
-
-
-@primitive(
-    "TruncatedIcosahedron",
-    CONVEX_BOUND,
-    bounds=truncated_icosahedron_bounds,
-    limits=RADIUS,
-    growth=1.0 / FOOTBALL_HEXAGON,
-    side_growth=FOOTBALL_REACH / FOOTBALL_HEXAGON,
-)
+@equal_faces("TruncatedIcosahedron", FOOTBALL_HEXAGON, FOOTBALL_REACH)
 @func
 def truncated_icosahedron(p: vec3, radius: float = 1.0) -> float:
     """Football: twenty hexagons and twelve pentagons with equal edges.

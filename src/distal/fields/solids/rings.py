@@ -22,13 +22,7 @@ def flat_bounds(radius: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive(
-    "CircleLine",
-    EXACT_OUTSIDE,
-    bounds=flat_bounds,
-    limits={"radius": Limit.POSITIVE},
-    signed=False,
-)
+@primitive("CircleLine", EXACT_OUTSIDE, bounds=flat_bounds, signed=False)
 @func
 def circle_line(p: vec3, radius: float = 0.75) -> float:
     """A circle without thickness around the y axis.
@@ -47,9 +41,7 @@ def circle_line(p: vec3, radius: float = 0.75) -> float:
     return length(vec2(length(p.xz) - radius, p.y))
 
 
-@primitive(
-    "Disc", EXACT_OUTSIDE, bounds=flat_bounds, limits={"radius": Limit.POSITIVE}, signed=False
-)
+@primitive("Disc", EXACT_OUTSIDE, bounds=flat_bounds, signed=False)
 @func
 def disc(p: vec3, radius: float = 0.75) -> float:
     """A round plate without thickness around the y axis.
@@ -80,13 +72,7 @@ def torus_requires(major: float, minor: float) -> str | None:
     return "minor must be at most major" if minor > major else None
 
 
-@primitive(
-    "Torus",
-    EXACT,
-    bounds=torus_bounds,
-    limits={"major": Limit.POSITIVE, "minor": Limit.POSITIVE},
-    requires=torus_requires,
-)
+@primitive("Torus", EXACT, bounds=torus_bounds, requires=torus_requires)
 @func
 def torus(p: vec3, major: float = 0.75, minor: float = 0.25) -> float:
     """Ring around the y axis.
@@ -128,13 +114,7 @@ def capped_torus_requires(angle: float, major: float, minor: float) -> str | Non
     return None
 
 
-@primitive(
-    "CappedTorus",
-    EXACT,
-    bounds=capped_torus_bounds,
-    limits={"angle": Limit.POSITIVE, "major": Limit.POSITIVE, "minor": Limit.POSITIVE},
-    requires=capped_torus_requires,
-)
+@primitive("CappedTorus", EXACT, bounds=capped_torus_bounds, requires=capped_torus_requires)
 @func
 def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float = 0.25) -> float:
     """Part of a ring around the y axis, with round ends, symmetric about the x axis.
@@ -173,11 +153,7 @@ def link_requires(major: float, minor: float) -> str | None:
 
 
 @primitive(
-    "Link",
-    EXACT,
-    bounds=link_bounds,
-    limits={"height": Limit.NOT_NEGATIVE, "major": Limit.POSITIVE, "minor": Limit.POSITIVE},
-    requires=link_requires,
+    "Link", EXACT, bounds=link_bounds, limits={"height": Limit.NOT_NEGATIVE}, requires=link_requires
 )
 @func
 def link(p: vec3, height: float = 0.5, major: float = 0.4, minor: float = 0.15) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, primitive
-from distal.fields.solids.axes import TINY
+from distal.fields.solids.axes import TINY, sphere_bounds
 from distal.fields.solids.regular import along_vertices
 from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec3
 
@@ -16,13 +16,7 @@ EGG: Final = vec3(0.5, 0.75, 0.5)
 HALF_BALL: Final = vec3(0.5)
 
 
-@func
-def sphere_bounds(radius: float) -> Bounds:
-    """The cube around the ball."""
-    return Bounds(vec3(-radius), vec3(radius))
-
-
-@primitive("Sphere", EXACT, bounds=sphere_bounds, limits={"radius": Limit.POSITIVE})
+@primitive("Sphere", EXACT, bounds=sphere_bounds)
 @func
 def sphere(p: vec3, radius: float = 1.0) -> float:
     """Ball.
@@ -80,7 +74,6 @@ def ellipsoid_growth(radii: vec3) -> float:
     LOWER_BOUND,
     slope=ellipsoid_slope,
     bounds=ellipsoid_bounds,
-    limits={"radii": Limit.POSITIVE},
     growth=ellipsoid_growth,
 )
 @func
@@ -139,7 +132,6 @@ def superellipsoid_growth(radii: vec3, across: float, upward: float) -> float:
     "Superellipsoid",
     LOWER_BOUND,
     bounds=ellipsoid_bounds,
-    limits={"radii": Limit.POSITIVE},
     requires=superellipsoid_requires,
     growth=superellipsoid_growth,
     side_growth=superellipsoid_side_growth,
@@ -208,7 +200,7 @@ def blob_requires(radius: float, height: float) -> str | None:
     NOTHING,
     slope=blob_slope,
     bounds=blob_bounds,
-    limits={"radius": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
+    limits={"height": Limit.NOT_NEGATIVE},
     requires=blob_requires,
     growth=1.0,
 )

@@ -16,6 +16,7 @@ International 1999; the scale to slope 1 is derived here.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 from distal.fields.guarantees import LOWER_BOUND, Bounds, primitive
@@ -32,13 +33,13 @@ from distal.fields.solids.regular import (
     ICOSAHEDRON_FACE,
     ICOSAHEDRON_REACH,
     OCTAHEDRON_FACE,
-    RADIUS,
     TRUNCATED_OCTAHEDRON_HEXAGON,
     TRUNCATED_OCTAHEDRON_SQUARE,
     VERTEX_LONG,
     VERTEX_SHORT,
 )
 from distal.lang import abs, func, max, pow, vec3
+from distal.lang.functions import Func
 
 OCTAHEDRON_WEIGHT: Final = 4.0
 DODECAHEDRON_WEIGHT: Final = 6.0
@@ -93,12 +94,6 @@ def smooth_growth(exponent: float, weight: float, reach: float) -> float:
 
 
 @func
-def cube_around(side: float) -> Bounds:
-    """The box from minus to plus ``side``."""
-    return Bounds(vec3(-side), vec3(side))
-
-
-@func
 def largest_part(p: vec3) -> float:
     """Scale that keeps powers from overflowing."""
     q = abs(p)
@@ -116,26 +111,44 @@ def smooth_requires(exponent: float) -> str | None:
     return None if exponent >= 2.0 else "exponent must be 2 or more"
 
 
-@func
-def smooth_octahedron_growth(exponent: float) -> float:
-    """By how far the vertices are."""
-    return smooth_growth(exponent, OCTAHEDRON_WEIGHT, 1.0 / OCTAHEDRON_FACE)
+def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable[[Func], Func]:
+    """Declare the ``@func`` below as a smooth body, in the box of the sharp one around it.
+
+    Args:
+        name: The shape's.
+        weight: Sum of 1 / distance^2 of the faces, the nearest of which is at distance 1.
+        face: Distance of the nearest faces, for vertices at distance 1.
+        reach: How far the vertices reach along an axis then.
+    """
+    furthest, along_axis = 1.0 / face, reach / face
+
+    @func
+    def growth_of_body(exponent: float) -> float:
+        """By how far the vertices are."""
+        return smooth_growth(exponent, weight, furthest)
+
+    @func
+    def growth_of_sides(exponent: float) -> float:
+        """By how far the vertices reach along an axis."""
+        return smooth_growth(exponent, weight, along_axis)
+
+    @func
+    def smooth_bounds(radius: float, exponent: float) -> Bounds:
+        """The box of the sharp body."""
+        side = radius * growth_of_sides(exponent)
+        return Bounds(vec3(-side), vec3(side))
+
+    return primitive(
+        name,
+        LOWER_BOUND,
+        bounds=smooth_bounds,
+        requires=smooth_requires,
+        growth=growth_of_body,
+        side_growth=growth_of_sides,
+    )
 
 
-@func
-def smooth_octahedron_bounds(radius: float, exponent: float) -> Bounds:
-    """The box of the sharp one around it."""
-    return cube_around(radius * smooth_octahedron_growth(exponent))
-
-
-@primitive(
-    "SmoothOctahedron",
-    LOWER_BOUND,
-    bounds=smooth_octahedron_bounds,
-    limits=RADIUS,
-    requires=smooth_requires,
-    growth=smooth_octahedron_growth,
-)
+@smooth_body("SmoothOctahedron", OCTAHEDRON_WEIGHT, OCTAHEDRON_FACE, 1.0)
 @func
 def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> float:
     """Between a ball and an octahedron; a bound with slope 1.
@@ -157,33 +170,7 @@ def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> f
     return smoothed(total, scale, radius, exponent, OCTAHEDRON_WEIGHT)
 
 
-@func
-def smooth_dodecahedron_side_growth(exponent: float) -> float:
-    """By how far the vertices reach along an axis."""
-    return smooth_growth(exponent, DODECAHEDRON_WEIGHT, DODECAHEDRON_REACH / DODECAHEDRON_FACE)
-
-
-@func
-def smooth_dodecahedron_growth(exponent: float) -> float:
-    """By how far the vertices are."""
-    return smooth_growth(exponent, DODECAHEDRON_WEIGHT, 1.0 / DODECAHEDRON_FACE)
-
-
-@func
-def smooth_dodecahedron_bounds(radius: float, exponent: float) -> Bounds:
-    """The box of the sharp one around it."""
-    return cube_around(radius * smooth_dodecahedron_side_growth(exponent))
-
-
-@primitive(
-    "SmoothDodecahedron",
-    LOWER_BOUND,
-    bounds=smooth_dodecahedron_bounds,
-    limits=RADIUS,
-    requires=smooth_requires,
-    growth=smooth_dodecahedron_growth,
-    side_growth=smooth_dodecahedron_side_growth,
-)
+@smooth_body("SmoothDodecahedron", DODECAHEDRON_WEIGHT, DODECAHEDRON_FACE, DODECAHEDRON_REACH)
 @func
 def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
     """Between a ball and a dodecahedron; a bound with slope 1.
@@ -205,33 +192,7 @@ def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) ->
     return smoothed(total, scale, radius, exponent, DODECAHEDRON_WEIGHT)
 
 
-@func
-def smooth_icosahedron_side_growth(exponent: float) -> float:
-    """By how far the vertices reach along an axis."""
-    return smooth_growth(exponent, ICOSAHEDRON_WEIGHT, ICOSAHEDRON_REACH / ICOSAHEDRON_FACE)
-
-
-@func
-def smooth_icosahedron_growth(exponent: float) -> float:
-    """By how far the vertices are."""
-    return smooth_growth(exponent, ICOSAHEDRON_WEIGHT, 1.0 / ICOSAHEDRON_FACE)
-
-
-@func
-def smooth_icosahedron_bounds(radius: float, exponent: float) -> Bounds:
-    """The box of the sharp one around it."""
-    return cube_around(radius * smooth_icosahedron_side_growth(exponent))
-
-
-@primitive(
-    "SmoothIcosahedron",
-    LOWER_BOUND,
-    bounds=smooth_icosahedron_bounds,
-    limits=RADIUS,
-    requires=smooth_requires,
-    growth=smooth_icosahedron_growth,
-    side_growth=smooth_icosahedron_side_growth,
-)
+@smooth_body("SmoothIcosahedron", ICOSAHEDRON_WEIGHT, ICOSAHEDRON_FACE, ICOSAHEDRON_REACH)
 @func
 def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
     """Between a ball and an icosahedron; a bound with slope 1.
@@ -253,32 +214,11 @@ def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> 
     return smoothed(total, scale, radius, exponent, ICOSAHEDRON_WEIGHT)
 
 
-@func
-def smooth_truncated_octahedron_side_growth(exponent: float) -> float:
-    """By how far the vertices reach along an axis."""
-    return smooth_growth(exponent, TRUNCATED_OCTAHEDRON_WEIGHT, SQUARE_RATIO)
-
-
-@func
-def smooth_truncated_octahedron_growth(exponent: float) -> float:
-    """By how far the vertices are."""
-    return smooth_growth(exponent, TRUNCATED_OCTAHEDRON_WEIGHT, 1.0 / TRUNCATED_OCTAHEDRON_HEXAGON)
-
-
-@func
-def smooth_truncated_octahedron_bounds(radius: float, exponent: float) -> Bounds:
-    """The box of the sharp one around it."""
-    return cube_around(radius * smooth_truncated_octahedron_side_growth(exponent))
-
-
-@primitive(
+@smooth_body(
     "SmoothTruncatedOctahedron",
-    LOWER_BOUND,
-    bounds=smooth_truncated_octahedron_bounds,
-    limits=RADIUS,
-    requires=smooth_requires,
-    growth=smooth_truncated_octahedron_growth,
-    side_growth=smooth_truncated_octahedron_side_growth,
+    TRUNCATED_OCTAHEDRON_WEIGHT,
+    TRUNCATED_OCTAHEDRON_HEXAGON,
+    TRUNCATED_OCTAHEDRON_SQUARE,
 )
 @func
 def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
@@ -304,33 +244,7 @@ def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 
     return smoothed(total, scale, radius, exponent, TRUNCATED_OCTAHEDRON_WEIGHT)
 
 
-@func
-def smooth_truncated_icosahedron_side_growth(exponent: float) -> float:
-    """By how far the vertices reach along an axis."""
-    return smooth_growth(exponent, FOOTBALL_WEIGHT, FOOTBALL_REACH / FOOTBALL_HEXAGON)
-
-
-@func
-def smooth_truncated_icosahedron_growth(exponent: float) -> float:
-    """By how far the vertices are."""
-    return smooth_growth(exponent, FOOTBALL_WEIGHT, 1.0 / FOOTBALL_HEXAGON)
-
-
-@func
-def smooth_truncated_icosahedron_bounds(radius: float, exponent: float) -> Bounds:
-    """The box of the sharp one around it."""
-    return cube_around(radius * smooth_truncated_icosahedron_side_growth(exponent))
-
-
-@primitive(
-    "SmoothTruncatedIcosahedron",
-    LOWER_BOUND,
-    bounds=smooth_truncated_icosahedron_bounds,
-    limits=RADIUS,
-    requires=smooth_requires,
-    growth=smooth_truncated_icosahedron_growth,
-    side_growth=smooth_truncated_icosahedron_side_growth,
-)
+@smooth_body("SmoothTruncatedIcosahedron", FOOTBALL_WEIGHT, FOOTBALL_HEXAGON, FOOTBALL_REACH)
 @func
 def smooth_truncated_icosahedron(p: vec3, radius: float = 0.9, exponent: float = 48.0) -> float:
     """Between a ball and a football; a bound with slope 1.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Limit, primitive
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, primitive
 from distal.fields.solids.axes import TINY
 from distal.fields.solids.cones import opening
 from distal.fields.solids.cylinders import to_segment
@@ -42,7 +42,7 @@ def plane(p: vec3, y: float = 0.0) -> float:
     return p.y - y
 
 
-@primitive("HalfSpace", EXACT, limits={"normal": Limit.UNIT})
+@primitive("HalfSpace", EXACT)
 @func
 def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     """Everything behind a plane.
@@ -62,7 +62,7 @@ def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     return dot(p, normal) - offset
 
 
-@primitive("Slab", EXACT, limits={"thickness": Limit.POSITIVE})
+@primitive("Slab", EXACT)
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:
     """Level slab without end, half of it above the origin.
@@ -86,7 +86,7 @@ def wedge_requires(angle: float) -> str | None:
     return None if angle < TURN else "angle must be below a whole turn, 2 pi"
 
 
-@primitive("Wedge", EXACT, limits={"angle": Limit.POSITIVE}, requires=wedge_requires)
+@primitive("Wedge", EXACT, requires=wedge_requires)
 @func
 def wedge(p: vec3, angle: float = 1.0) -> float:
     """What lies between two planes that meet in the z axis, around the way down; without end.

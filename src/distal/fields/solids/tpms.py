@@ -17,11 +17,13 @@ Nesper, "Nodal surfaces of Fourier series" (1991).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 from distal.fields.extents import moved_out
 from distal.fields.guarantees import NOTHING, Bounds, Growth, Limit, operator, primitive
 from distal.lang import abs, clamp, cos, dot, func, max, sin, vec3
+from distal.lang.functions import Func
 
 TAU: Final = 6.283185307179586
 
@@ -39,8 +41,6 @@ SPLIT_P_STEEPEST: Final = 3.62008
 SPLIT_P_TYPICAL: Final = 2.25
 IWP_STEEPEST: Final = 5.196152422706632  # 3 sqrt(3)
 IWP_TYPICAL: Final = 4.31
-
-LIMITS: Final = {"cell_size": Limit.POSITIVE, "thickness": Limit.POSITIVE}
 
 
 def _sheet_fits(cell_size: float, thickness: float, offset: float) -> str | None:
@@ -61,14 +61,12 @@ def layered(
     return d if solid else abs(d) - 0.5 * thickness
 
 
-@primitive(
-    "Gyroid",
-    NOTHING,
-    slope=GYROID_STEEPEST / GYROID_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+def minimal_surface(name: str, slope: float) -> Callable[[Func], Func]:
+    """Declare the ``@func`` below as a surface that fills space, with this bound on its slope."""
+    return primitive(name, NOTHING, slope=slope, requires=_sheet_fits, tier=2)
+
+
+@minimal_surface("Gyroid", GYROID_STEEPEST / GYROID_TYPICAL)
 @func
 def gyroid(
     p: vec3,
@@ -98,14 +96,7 @@ def gyroid(
     return layered(value, cell_size, GYROID_TYPICAL, thickness, offset, solid)
 
 
-@primitive(
-    "SchwarzP",
-    NOTHING,
-    slope=SCHWARZ_P_STEEPEST / SCHWARZ_P_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+@minimal_surface("SchwarzP", SCHWARZ_P_STEEPEST / SCHWARZ_P_TYPICAL)
 @func
 def schwarz_p(
     p: vec3,
@@ -135,14 +126,7 @@ def schwarz_p(
     return layered(value, cell_size, SCHWARZ_P_TYPICAL, thickness, offset, solid)
 
 
-@primitive(
-    "Diamond",
-    NOTHING,
-    slope=DIAMOND_STEEPEST / DIAMOND_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+@minimal_surface("Diamond", DIAMOND_STEEPEST / DIAMOND_TYPICAL)
 @func
 def diamond(
     p: vec3,
@@ -174,14 +158,7 @@ def diamond(
     return layered(value, cell_size, DIAMOND_TYPICAL, thickness, offset, solid)
 
 
-@primitive(
-    "Neovius",
-    NOTHING,
-    slope=NEOVIUS_STEEPEST / NEOVIUS_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+@minimal_surface("Neovius", NEOVIUS_STEEPEST / NEOVIUS_TYPICAL)
 @func
 def neovius(
     p: vec3,
@@ -211,14 +188,7 @@ def neovius(
     return layered(value, cell_size, NEOVIUS_TYPICAL, thickness, offset, solid)
 
 
-@primitive(
-    "Lidinoid",
-    NOTHING,
-    slope=LIDINOID_STEEPEST / LIDINOID_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+@minimal_surface("Lidinoid", LIDINOID_STEEPEST / LIDINOID_TYPICAL)
 @func
 def lidinoid(
     p: vec3,
@@ -253,14 +223,7 @@ def lidinoid(
     return layered(value, cell_size, LIDINOID_TYPICAL, thickness, offset, solid)
 
 
-@primitive(
-    "SplitP",
-    NOTHING,
-    slope=SPLIT_P_STEEPEST / SPLIT_P_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+@minimal_surface("SplitP", SPLIT_P_STEEPEST / SPLIT_P_TYPICAL)
 @func
 def split_p(
     p: vec3,
@@ -296,14 +259,7 @@ def split_p(
     return layered(value, cell_size, SPLIT_P_TYPICAL, thickness, offset, solid)
 
 
-@primitive(
-    "IWP",
-    NOTHING,
-    slope=IWP_STEEPEST / IWP_TYPICAL,
-    limits=LIMITS,
-    requires=_sheet_fits,
-    tier=2,
-)
+@minimal_surface("IWP", IWP_STEEPEST / IWP_TYPICAL)
 @func
 def iwp(
     p: vec3,

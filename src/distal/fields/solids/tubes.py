@@ -49,13 +49,7 @@ def polyline_tube_bounds(points: Buffer[vec3], radius: float) -> Bounds:
     return Bounds(low - radius, high + radius)
 
 
-@primitive(
-    "PolylineTube",
-    EXACT_OUTSIDE,
-    bounds=polyline_tube_bounds,
-    limits={"radius": Limit.POSITIVE},
-    tier=2,
-)
+@primitive("PolylineTube", EXACT_OUTSIDE, bounds=polyline_tube_bounds, tier=2)
 @func
 def polyline_tube(
     p: vec3, points: Buffer[vec3], radius: float = 0.1, closed: bool = False
@@ -160,13 +154,7 @@ def bezier_tube_bounds(start: vec3, control: vec3, end: vec3, radius: float) -> 
     return Bounds(min(start, end, turn) - radius, max(start, end, turn) + radius)
 
 
-@primitive(
-    "BezierTube",
-    EXACT_OUTSIDE,
-    bounds=bezier_tube_bounds,
-    limits={"radius": Limit.POSITIVE},
-    tier=2,
-)
+@primitive("BezierTube", EXACT_OUTSIDE, bounds=bezier_tube_bounds, tier=2)
 @func
 def bezier_tube(
     p: vec3, start: vec3 = START, control: vec3 = CONTROL, end: vec3 = END, radius: float = 0.1
@@ -213,7 +201,7 @@ def _has_pieces(pieces: int) -> str | None:
     "CubicBezierTube",
     EXACT_OUTSIDE,
     bounds=cubic_tube_bounds,
-    limits=TAPERED,
+    limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
     requires=_has_pieces,
     tier=2,
 )
@@ -277,7 +265,7 @@ def tapered_bezier_bounds(
     "TaperedBezierTube",
     EXACT_OUTSIDE,
     bounds=tapered_bezier_bounds,
-    limits=TAPERED,
+    limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
     requires=_has_pieces,
     tier=2,
 )

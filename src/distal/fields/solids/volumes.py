@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.guarantees import NOTHING, Bounds, Limit, primitive
+from distal.fields.guarantees import NOTHING, primitive
+from distal.fields.solids.boxes import box_bounds
 from distal.lang import (
     Texture3D,
     abs,
@@ -69,21 +70,7 @@ def interpolated(volume: Texture3D, place: vec3) -> float:
     return mix(near, far, weight.z)
 
 
-@func
-def volume_bounds(size: vec3) -> Bounds:
-    """The box that the samples fill."""
-    return Bounds(-0.5 * size, 0.5 * size)
-
-
-@primitive(
-    "VolumeField",
-    NOTHING,
-    slope=GRID_SLOPE,
-    bounds=volume_bounds,
-    limits={"size": Limit.POSITIVE},
-    tier=2,
-    growth=1.0,
-)
+@primitive("VolumeField", NOTHING, slope=GRID_SLOPE, bounds=box_bounds, tier=2, growth=1.0)
 @func
 def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float = 1.0) -> float:
     """A shape whose distances are the samples of a grid, in their first channel.
