@@ -31,6 +31,7 @@ from enum import Enum
 from functools import cache
 from typing import Any, Final, TypeAlias, TypeVar, get_args, get_type_hints
 
+from distal.lang import Func as SceneFunction
 from distal.lang import func, struct, vec2, vec3
 from distal.lang.functions import Func
 
@@ -222,6 +223,8 @@ class Operator:
         requires: As for a primitive.
         needs: What the children must be for a slope to exist; finishes the sentence "twist needs
             …", said when the slope's rule answers ``UNBOUNDED``. None where it never does.
+        cuts: Whether the second shape is taken away, and its ``cut_material`` shows.
+        local: Whether it changes shapes only where they meet.
     """
 
     name: str
@@ -241,6 +244,8 @@ class Operator:
     requires: Requirement | None = None
     keeps_exact: frozenset[Claim] = NOTHING
     needs: str | None = None
+    cuts: bool = False
+    local: bool = True
 
     @property
     def number_functions(self) -> tuple[Func, ...]:
@@ -348,6 +353,13 @@ def operator(name: str, **declared: Any) -> Operator:
     assert name not in OPERATORS, f"two operators are called {name}"
     OPERATORS[name] = Operator(name, **declared)
     return OPERATORS[name]
+
+
+def named(name: str, function: Callable[..., Any]) -> SceneFunction[..., Any]:
+    """Scene code that a Python function makes, under the name that emitted text shows."""
+    function.__name__ = name
+    function.__qualname__ = name
+    return func(function)
 
 
 @func

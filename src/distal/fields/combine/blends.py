@@ -1,8 +1,8 @@
 """Blends by name: each smooth minimum and shaped edge, for unions, intersections and differences.
 
-Input: union forms from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an
-operator for each way to combine with each of them (``combination``). The other ways follow from the
-union: an intersection is the union of the outsides, a difference the intersection with an outside.
+Input: union forms from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an operator for
+each way to combine with each of them (``COMBINATIONS``). The other ways follow from the union: an
+intersection is the union of the outsides, a difference the intersection with an outside.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Final, TypeAlias
 from distal.fields.combine import edge_profiles, smooth
 from distal.fields.combine import joins as combine
 from distal.fields.extents import Boxes, hull_of, moved_out, overlap
-from distal.fields.guarantees import UNBOUNDED, Growth, Limit, Operator, operator
+from distal.fields.guarantees import UNBOUNDED, Growth, Limit, Operator, named, operator
 from distal.lang import Func, exp2, func, length, max, min, vec2
 
 # 2 to this power is beyond any size.
@@ -107,27 +107,20 @@ def power_growth(growth: float, exponent: float) -> float:
 # The other ways to combine, made of the union
 
 
-def _named(name: str, function: Callable[..., Any]) -> Func[..., Any]:
-    """Scene code under a name that emitted text shows."""
-    function.__name__ = name
-    function.__qualname__ = name
-    return func(function)
-
-
 def _turned(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
     """A difference: the intersection with everything but the second."""
 
     def turned(a: float, b: float, k: float) -> float:
         return of_first(a, -b, k)
 
-    return _named(f"{kind}_{name}", turned)
+    return named(f"{kind}_{name}", turned)
 
 
 def _turned_counted(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
     def turned(a: float, b: float, k: float, count: int) -> float:
         return of_first(a, -b, k, count)
 
-    return _named(f"{kind}_{name}", turned)
+    return named(f"{kind}_{name}", turned)
 
 
 def _intersection(name: str, union: Shared) -> Func[..., Any]:
@@ -136,28 +129,28 @@ def _intersection(name: str, union: Shared) -> Func[..., Any]:
     def inverted(a: float, b: float, k: float) -> float:
         return -union(-a, -b, k)
 
-    return _named(f"intersection_{name}", inverted)
+    return named(f"intersection_{name}", inverted)
 
 
 def _intersection_counted(name: str, union: Shared) -> Func[..., Any]:
     def inverted(a: float, b: float, k: float, count: int) -> float:
         return -union(-a, -b, k, count)
 
-    return _named(f"intersection_{name}", inverted)
+    return named(f"intersection_{name}", inverted)
 
 
 def _intersection_mix(name: str, share: Shared) -> Func[..., Any]:
     def inverted(a: float, b: float, k: float) -> float:
         return share(-a, -b, k)
 
-    return _named(f"intersection_{name}_mix", inverted)
+    return named(f"intersection_{name}_mix", inverted)
 
 
 def _intersection_mix_counted(name: str, share: Shared) -> Func[..., Any]:
     def inverted(a: float, b: float, k: float, count: int) -> float:
         return share(-a, -b, k, count)
 
-    return _named(f"intersection_{name}_mix", inverted)
+    return named(f"intersection_{name}_mix", inverted)
 
 
 def _xor(name: str, difference: Shared) -> Func[..., Any]:
@@ -166,14 +159,14 @@ def _xor(name: str, difference: Shared) -> Func[..., Any]:
     def exclusive(a: float, b: float, k: float) -> float:
         return difference(min(a, b), max(a, b), k)
 
-    return _named(f"xor_{name}", exclusive)
+    return named(f"xor_{name}", exclusive)
 
 
 def _xor_counted(name: str, difference: Shared) -> Func[..., Any]:
     def exclusive(a: float, b: float, k: float, count: int) -> float:
         return difference(min(a, b), max(a, b), k, count)
 
-    return _named(f"xor_{name}", exclusive)
+    return named(f"xor_{name}", exclusive)
 
 
 def _count_requirement(count: int) -> str | None:
@@ -211,6 +204,7 @@ def _declare(name: str, blend: Blend) -> None:
             "mix": difference_mix,
             "bounds": combine.first_box,
             "growth": Growth.FIRST,
+            "cuts": True,
         },
         "xor": {"combine": exclusive, "growth": Growth.KEPT},
     }
@@ -220,16 +214,13 @@ def _declare(name: str, blend: Blend) -> None:
             slope=crossed_slope if blend.steep else None,
             limits={"k": Limit.NOT_NEGATIVE},
             requires=_count_requirement if counted else None,
+            local=blend.local,
             **row,
         )
 
 
-COMBINATIONS: Final[dict[tuple[str, str | None], Operator]] = {
-    ("union", None): combine.UNION,
-    ("intersection", None): combine.INTERSECTION,
-    ("difference", None): combine.DIFFERENCE,
-    ("xor", None): combine.XOR,
-}
+# By the sharp operator's name and the blend's.
+COMBINATIONS: Final[dict[tuple[str, str], Operator]] = {}
 for _name, _blend in BLENDS.items():
     _declare(_name, _blend)
 
@@ -268,12 +259,6 @@ TONGUE = operator(
     limits=_SIZES,
     growth=Growth.FIRST,
 )
-# Not Boolean: a form along the line where two surfaces cross. Listed where one would look for it.
-COMBINATIONS["union", "pipe"] = COMBINATIONS["intersection", "pipe"] = PIPE
-COMBINATIONS["union", "tongue"] = TONGUE
-COMBINATIONS["difference", "engrave"] = ENGRAVE
-COMBINATIONS["difference", "groove"] = GROOVE
-
 POWER = operator(
     "union power",
     combine=smooth.power_union,
@@ -281,16 +266,4 @@ POWER = operator(
     limits={"exponent": Limit.POSITIVE},
     growth=power_growth,
 )
-
-
-def combination(kind: str, blend: str | None) -> Operator:
-    """The operator of a combination: ("difference", "chamfer"); None for the sharp one.
-
-    Raises:
-        KeyError: There is none; its text lists what there is.
-    """
-    found = COMBINATIONS.get((kind, blend))
-    if found is None:
-        names = [name for of, name in COMBINATIONS if of == kind and name]
-        raise KeyError(f"a {kind} takes {', '.join(names)}" if names else f"no {kind}")
-    return found
+COMBINATIONS["union", "power"] = POWER

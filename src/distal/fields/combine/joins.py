@@ -175,6 +175,7 @@ DIFFERENCE = operator(
     keeps_exact=INSIDE_AND_BOUND,
     bounds=first_box,
     growth=Growth.FIRST,
+    cuts=True,
 )
 XOR = operator(
     "xor",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from distal.fields.guarantees import Bounds
+from distal.fields.guarantees import Bounds, named
 from distal.lang import dot, func, length, max, min, sqrt, vec2, vec3
 from distal.lang.functions import Func
 
@@ -55,15 +55,18 @@ def sphere_bounds(radius: float) -> Bounds:
     return Bounds(vec3(-radius), vec3(radius))
 
 
-def cube_of_radius(reach: float) -> Func:
-    """The function that gives the cube around what reaches ``reach`` times its radius."""
+def cube_of_radius(name: str, reach: float) -> Func:
+    """The function, of this name, that gives the cube of a shape from its radius.
 
-    @func
+    Args:
+        name: The function's.
+        reach: How far the shape reaches along an axis, for a radius of 1.
+    """
+
     def cube_around(radius: float) -> Bounds:
-        """The cube from minus to plus the reach."""
         return Bounds(vec3(-radius * reach), vec3(radius * reach))
 
-    return cube_around
+    return named(name, cube_around)
 
 
 @func

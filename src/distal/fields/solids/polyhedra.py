@@ -82,7 +82,7 @@ def octahedron(p: vec3, radius: float = 1.0) -> float:
     )
 
 
-@primitive("Tetrahedron", EXACT, bounds=cube_of_radius(DIAGONAL))
+@primitive("Tetrahedron", EXACT, bounds=cube_of_radius("tetrahedron_bounds", DIAGONAL))
 @func
 def tetrahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them.

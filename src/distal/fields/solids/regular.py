@@ -57,9 +57,16 @@ def equal_faces(name: str, face: float, reach: float) -> Callable[[Func], Func]:
         face: Distance of the faces, for vertices at distance 1.
         reach: How far the vertices reach along an axis.
     """
-    bounds = cube_of_radius(reach)
-    growth, side_growth = 1.0 / face, reach / face
-    return primitive(name, INSIDE_AND_BOUND, bounds=bounds, growth=growth, side_growth=side_growth)
+
+    def declare(distance: Func) -> Func:
+        bounds = cube_of_radius(f"{distance.name}_bounds", reach)
+        growth, side_growth = 1.0 / face, reach / face
+        make = primitive(
+            name, INSIDE_AND_BOUND, bounds=bounds, growth=growth, side_growth=side_growth
+        )
+        return make(distance)
+
+    return declare
 
 
 # The largest part of p along any axis of a family. ``q`` is abs(p): every family has the symmetry
@@ -153,7 +160,7 @@ def icosahedron(p: vec3, radius: float = 1.0) -> float:
 @primitive(
     "TruncatedOctahedron",
     INSIDE_AND_BOUND,
-    bounds=cube_of_radius(TRUNCATED_OCTAHEDRON_SQUARE),
+    bounds=cube_of_radius("truncated_octahedron_bounds", TRUNCATED_OCTAHEDRON_SQUARE),
     growth=ROOT_THREE,
     side_growth=1.0,
 )

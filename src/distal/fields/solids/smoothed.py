@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from distal.fields.guarantees import LOWER_BOUND, Bounds, primitive
+from distal.fields.guarantees import LOWER_BOUND, Bounds, named, primitive
 from distal.fields.solids.axes import TINY
 from distal.fields.solids.regular import (
     DIAGONAL,
@@ -94,6 +94,12 @@ def smooth_growth(exponent: float, weight: float, reach: float) -> float:
 
 
 @func
+def cube_around(side: float) -> Bounds:
+    """The box from minus to plus ``side``."""
+    return Bounds(vec3(-side), vec3(side))
+
+
+@func
 def largest_part(p: vec3) -> float:
     """Scale that keeps powers from overflowing."""
     q = abs(p)
@@ -122,30 +128,28 @@ def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable
     """
     furthest, along_axis = 1.0 / face, reach / face
 
-    @func
-    def growth_of_body(exponent: float) -> float:
-        """By how far the vertices are."""
-        return smooth_growth(exponent, weight, furthest)
+    def declare(distance: Func) -> Func:
+        def growth(exponent: float) -> float:
+            return smooth_growth(exponent, weight, furthest)
 
-    @func
-    def growth_of_sides(exponent: float) -> float:
-        """By how far the vertices reach along an axis."""
-        return smooth_growth(exponent, weight, along_axis)
+        def side_growth(exponent: float) -> float:
+            return smooth_growth(exponent, weight, along_axis)
 
-    @func
-    def smooth_bounds(radius: float, exponent: float) -> Bounds:
-        """The box of the sharp body."""
-        side = radius * growth_of_sides(exponent)
-        return Bounds(vec3(-side), vec3(side))
+        def bounds(radius: float, exponent: float) -> Bounds:
+            return cube_around(radius * growth_of_sides(exponent))
 
-    return primitive(
-        name,
-        LOWER_BOUND,
-        bounds=smooth_bounds,
-        requires=smooth_requires,
-        growth=growth_of_body,
-        side_growth=growth_of_sides,
-    )
+        growth_of_sides = named(f"{distance.name}_side_growth", side_growth)
+        make = primitive(
+            name,
+            LOWER_BOUND,
+            bounds=named(f"{distance.name}_bounds", bounds),
+            requires=smooth_requires,
+            growth=named(f"{distance.name}_growth", growth),
+            side_growth=growth_of_sides,
+        )
+        return make(distance)
+
+    return declare
 
 
 @smooth_body("SmoothOctahedron", OCTAHEDRON_WEIGHT, OCTAHEDRON_FACE, 1.0)

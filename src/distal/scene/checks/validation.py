@@ -26,7 +26,6 @@ MOST_MEASURED: Final = 24
 ROUNDING: Final = 1e-4
 # A share of points next to kinks has its foot elsewhere, though the distance is exact.
 ON_FOOT: Final = 0.98
-_UNBOUNDED_BLENDS: Final = ("exponential", "root", "sigmoid")
 
 
 class Severity(Enum):
@@ -277,7 +276,7 @@ def _without_growth(node: Node) -> Node | None:
 
 def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator[Finding]:
     rule = row.node.rule
-    if rule.name.split()[-1] in _UNBOUNDED_BLENDS and len(inner) > 1:
+    if isinstance(rule, Operator) and not rule.local and len(inner) > 1:
         message = f"{rule.name} changes shapes everywhere, not only where they meet"
         yield finding(
             Severity.WARNING, "blend-everywhere", message, "blend='cubic' keeps far parts"

@@ -110,10 +110,9 @@ def _joined(
 ) -> tuple[Expr, Expr]:
     rule, composer = node.rule, kind.composer
     assert isinstance(rule, Operator) and rule.combine is not None
-    cuts = rule.name.startswith("difference")
     a, result = first
     for child, site in zip(node.children[1:], sites[1:], strict=True):
-        if cuts:
+        if rule.cuts:
             b = composer.distance(body, child, site.p, site.cell, site.values)
             other = kind.cutter(body, child, site)
         else:

@@ -11,8 +11,8 @@ from dataclasses import replace
 from typing import Any, ClassVar, Final, NoReturn, Self
 
 from distal.diagnostics import Span
+from distal.fields.combine import blends, joins
 from distal.fields.guarantees import EXACT, Claim, Limit, Operator, ended
-from distal.fields.library import OPERATORS
 from distal.frontend import Assembly
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Call, Param, Read, Return
@@ -158,24 +158,24 @@ class Field(Composed, Presentable):
 
     # Making others
 
-    def _with(self, operator: str, *args: Any, **kwargs: Any) -> Self:
-        """This shape under an operator of the library."""
-        place = author_place()
-        flat = f"flat {operator}" if self.flat else operator
-        rule = OPERATORS.get(flat) or OPERATORS[operator]
-        made: Self = self._under(rule, args, kwargs, place, flat=self.flat)
-        return made
-
     def _under(
         self,
         rule: Operator,
         args: Sequence[Any],
         kwargs: Mapping[str, Any],
         place: Span | None,
-        *,
-        flat: bool,
         others: Sequence[Field] = (),
     ) -> Any:
+        """This shape, and others, under an operator.
+
+        Args:
+            rule: The operator.
+            args: Its numbers by position.
+            kwargs: Its numbers by name.
+            place: The author's line.
+            others: The shapes that it combines this one with.
+        """
+        flat = rule.lies_flat(self.flat)
         if rule.takes_flat(flat) is not self.flat:
             kind, mend = ("solid", ".extrude(height)") if self.flat else ("flat", ".slice()")
             refuse(f"{rule.name} works on {kind} shapes", f"{mend} first", place)
@@ -192,8 +192,10 @@ class Field(Composed, Presentable):
         Field.__init__(made, node)
         return made
 
-    def _combined(self, kind: str, others: Sequence[Any], smooth: Any, blend: str, **k: Any) -> Any:
-        place = author_place()
+    def _combined(
+        self, sharp: Operator, others: Sequence[Any], smooth: Any, blend: str, **k: Any
+    ) -> Any:
+        place, kind = author_place(), sharp.name
         # One list of shapes is as good as the shapes.
         if len(others) == 1 and isinstance(others[0], Iterable) and not isinstance(others[0], str):
             others = tuple(others[0])
@@ -207,11 +209,11 @@ class Field(Composed, Presentable):
                     "make the flat one solid: .extrude(height) or .revolve()",
                     place,
                 )
-        rule, numbers, constants = joining(kind, smooth, blend, k, place)
+        rule, numbers, constants = joining(sharp, smooth, blend, k, place)
         nodes: list[Node] = []
         for shape in (self, *others):
             plain = not numbers and shape.node.rule is rule and _bare(shape.node)
-            nested = plain and (kind in _ASSOCIATIVE or shape is self)
+            nested = plain and (sharp in _ASSOCIATIVE or shape is self)
             nodes.extend(shape.node.children if nested else (shape.node,))
         return self._of(Node(rule, self.flat, tuple(nodes), numbers, constants, place))
 
@@ -225,26 +227,26 @@ class Field(Composed, Presentable):
                 root, sigmoid, or an edge: chamfer, round, columns, stairs, soft.
             k: ``count``: how many columns or stairs.
         """
-        joined: Self = self._combined("union", others, smooth, blend, **k)
+        joined: Self = self._combined(joins.UNION, others, smooth, blend, **k)
         return joined
 
     def intersection(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
         """What is in all of them; ``&``. Arguments as for ``union``."""
-        joined: Self = self._combined("intersection", others, smooth, blend, **k)
+        joined: Self = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
         return joined
 
     def difference(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
         """This without the others; ``-``. Arguments as for ``union``."""
-        joined: Self = self._combined("difference", others, smooth, blend, **k)
+        joined: Self = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
         return joined
 
     def xor(self, *others: Any) -> Self:
         """What is in one of two, and not in the other; ``^``."""
-        joined: Self = self._combined("xor", others, 0.0, "quadratic")
+        joined: Self = self._combined(joins.XOR, others, 0.0, "quadratic")
         return joined
 
     def __or__(self, other: Any) -> Self:
@@ -270,7 +272,8 @@ class Field(Composed, Presentable):
 
     def complement(self) -> Self:
         """Everything else; ``~``."""
-        return self._with("complement")
+        made: Self = self._under(joins.COMPLEMENT, (), {}, author_place())
+        return made
 
     def paint(self, material: Any) -> Self:
         """The shape in a material, or in a color; the outermost ``paint`` wins."""
@@ -324,7 +327,7 @@ def _bare(node: Node) -> bool:
     return node.material is None and node.cut_material is None and not node.label
 
 
-_ASSOCIATIVE = ("union", "intersection")
+_ASSOCIATIVE: Final = (joins.UNION, joins.INTERSECTION)
 
 
 # The classes of shapes that are no library shape's own; the room of methods fills it.
@@ -332,15 +335,28 @@ PLAIN: dict[bool, type[Field]] = {}
 
 
 def joining(
-    kind: str, smooth: Any, blend: str, extra: Mapping[str, Any], place: Span | None
+    sharp: Operator, smooth: Any, blend: str, extra: Mapping[str, Any], place: Span | None
 ) -> tuple[Operator, dict[str, Number], dict[str, Any]]:
-    """The operator of a combination, its numbers and constants."""
+    """The operator of a combination, its numbers and constants.
+
+    Args:
+        sharp: The operator without a blend.
+        smooth: The author's size of the blend.
+        blend: Its name.
+        extra: Its other numbers.
+        place: The author's line.
+
+    Raises:
+        SceneValueError: There is no such blend, or ``smooth`` is beyond its limit.
+        SceneTypeError: The blend has no such number.
+    """
+    kind = sharp.name
     plain = isinstance(smooth, int | float) and smooth == 0 and not extra
     if plain and blend == "quadratic":
-        return OPERATORS[kind], {}, {}
-    rule = OPERATORS.get(f"{kind} {blend}")
+        return sharp, {}, {}
+    rule = blends.COMBINATIONS.get((kind, blend))
     if rule is None:
-        known = [n.removeprefix(f"{kind} ") for n in OPERATORS if n.startswith(f"{kind} ")]
+        known = [name for of, name in blends.COMBINATIONS if of == kind]
         refuse(f"there is no blend '{blend}' for a {kind}", ", ".join(known), place)
     assert rule.combine is not None
     numbered = {slot.name for slot in slots_of(rule.combine)} - {*RESERVED, "k"}

@@ -1,47 +1,65 @@
 """Shapes and their methods: placing, repeating, deforming, thickening.
 
-Input: the author's numbers. Output: ever new shapes; none changes. Every method is
-a row of the field library, found by its name.
+Input: the author's numbers. Output: new shapes; none changes. Every method applies an operator of
+the field library.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Self, cast
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, Self, cast
 
+from distal.fields import library  # first: shapes and operators are declared in its order
+from distal.fields.combine import blends, joins, transitions
+from distal.fields.deform import folds, offsets
+from distal.fields.deform import solid as deform
 from distal.fields.ease import EASES
-from distal.fields.library import OPERATORS
+from distal.fields.guarantees import Operator
+from distal.fields.lift import extrude, path
+from distal.fields.lift import round as lift
+from distal.fields.place import flat as flat_placing
+from distal.fields.place import mirrors
+from distal.fields.place import solid as placing
+from distal.fields.repeat import along, grid, polar
+from distal.fields.solids import heightfield
 from distal.frontend.problems import did_you_mean
 from distal.ir.types import VEC2, VEC3
 from distal.scene.objects.field import PLAIN, Field
+from distal.scene.objects.in_plane import IN_PLANE
 from distal.scene.objects.turns import doubt_degrees
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
 
+_ROTATIONS: Final[Mapping[str, Operator]] = {
+    "x": placing.ROTATE_X,
+    "y": placing.ROTATE_Y,
+    "z": placing.ROTATE_Z,
+}
+_SHELLS: Final[Mapping[str, Operator]] = {
+    "inner": offsets.SHELL_INNER,
+    "centre": offsets.SHELL_CENTRE,
+    "outer": offsets.SHELL_OUTER,
+}
+
 
 class _Placed(Field):
     """What solid and flat shapes can do alike."""
 
-    def _joined(
-        self, operator: str, other: Any, *, flat: bool | None = None, **numbers: Any
-    ) -> Self:
+    def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
+        """This shape under an operator, or under its counterpart in the plane."""
+        if self.flat:
+            operator = IN_PLANE.get(operator, operator)
+        made: Self = self._under(operator, args, kwargs, author_place())
+        return made
+
+    def _joined(self, operator: Operator, other: Any, **numbers: Any) -> Self:
         place = author_place()
         if not isinstance(other, Field) or other.flat != self.flat:
             kind = "flat" if self.flat else "solid"
-            refuse(f"'{operator}' takes another {kind} shape, not {other!r:.60}", None, place)
-        rule = OPERATORS[operator]
-        lies = self.flat if flat is None else flat
-        made: Self = self._under(rule, (), numbers, place, flat=lies, others=(other,))
+            refuse(f"'{operator.name}' takes another {kind} shape, not {other!r:.60}", None, place)
+        made: Self = self._under(operator, (), numbers, place, others=(other,))
         return made
-
-    def _lifted(
-        self, operator: str, args: Sequence[Any], kwargs: dict[str, Any], *, flat: bool
-    ) -> Any:
-        place = author_place()
-        if operator not in OPERATORS:
-            refuse(f"there is no operator '{operator}'", None, place)
-        return self._under(OPERATORS[operator], args, kwargs, place, flat=flat)
 
     def apply(self, operator: str, *args: Any, others: Sequence[Field] = (), **kwargs: Any) -> Any:
         """The shape under an operator of the library by its name, as the catalogue lists it.
@@ -49,21 +67,20 @@ class _Placed(Field):
         What it gives lies in space where the operator's own point does.
         """
         place = author_place()
-        if operator not in OPERATORS:
-            refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
-        rule = OPERATORS[operator]
-        flat = rule.lies_flat(self.flat)
-        return self._under(rule, args, kwargs, place, flat=flat, others=tuple(others))
+        known = library.OPERATORS
+        if operator not in known:
+            refuse(f"there is no operator '{operator}'", did_you_mean(operator, known), place)
+        return self._under(known[operator], args, kwargs, place, others=tuple(others))
 
     def translate(self, *offset: Any, **parts: Any) -> Self:
         """The shape moved: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
-        return self._with("translate", *offset, **parts)
+        return self._with(placing.TRANSLATE, *offset, **parts)
 
     def scale(self, *factors: Any, **parts: Any) -> Self:
         """The shape larger by a factor, or by one for each axis (no longer exact then)."""
         if len(factors) == 1 and not parts and is_scalar(factors[0]):
-            return self._with("scale", *factors)
-        return self._with("scale axes", *factors, **parts)
+            return self._with(placing.SCALE, *factors)
+        return self._with(placing.STRETCH, *factors, **parts)
 
     def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
         """The half that ``normal`` points to, and its image on the other side of the plane.
@@ -72,18 +89,18 @@ class _Placed(Field):
             normal: Length 1.
             offset: How far the plane lies along the normal from the origin.
         """
-        return self._with("mirror", normal, offset)
+        return self._with(mirrors.MIRROR, normal, offset)
 
     def symmetry(self, axes: str) -> Self:
         """The positive side of the axes named, mirrored to the negative one: ``symmetry("xz")``."""
         known = "xy" if self.flat else "xyz"
         if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
             refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
-        return self._with("symmetry", **{axis: axis in axes for axis in known})
+        return self._with(mirrors.SYMMETRY, **{axis: axis in axes for axis in known})
 
     def kaleidoscope(self, count: int) -> Self:
         """The shape's wedge repeated ``count`` times about the y axis, every other one mirrored."""
-        return self._with("kaleidoscope", count)
+        return self._with(mirrors.KALEIDOSCOPE, count)
 
     def repeat(
         self,
@@ -104,11 +121,11 @@ class _Placed(Field):
             mirrored: Whether every other cell is mirrored, so that neighbours meet.
         """
         if mirrored:
-            return self._with("repeat mirrored", *spacing)
+            return self._with(grid.REPEAT_MIRRORED, *spacing)
         if count is None:
             if neighbours:
-                return self._with("repeat neighbours", *spacing, neighbours=neighbours)
-            return self._with("repeat", *spacing)
+                return self._with(grid.REPEAT_NEIGHBOURS, *spacing, neighbours=neighbours)
+            return self._with(grid.REPEAT, *spacing)
         axes = "xy" if self.flat else "xyz"
         try:
             counts = {f"count_{axis}": n for axis, n in zip(axes, count, strict=True)}
@@ -120,33 +137,33 @@ class _Placed(Field):
             )
         if neighbours:
             counts["neighbours"] = neighbours
-            return self._with("repeat limited neighbours", *spacing, **counts)
-        return self._with("repeat limited", *spacing, **counts)
+            return self._with(grid.REPEAT_LIMITED_NEIGHBOURS, *spacing, **counts)
+        return self._with(grid.REPEAT_LIMITED, *spacing, **counts)
 
     def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
         """The shape ``count`` times about the y axis (flat: the origin), itself towards x."""
         if neighbours:
-            return self._with("repeat polar neighbours", count=count, neighbours=neighbours)
-        return self._with("repeat polar", count=count)
+            return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=neighbours)
+        return self._with(polar.REPEAT_POLAR, count=count)
 
     def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
         """Both parts that a plane cuts it into: what lies below, and what lies above."""
-        below = self._with("split below", normal, offset)
-        return below, self._with("split above", normal, offset)
+        below = self._with(offsets.SPLIT_BELOW, normal, offset)
+        return below, self._with(offsets.SPLIT_ABOVE, normal, offset)
 
     def round(self, radius: Any) -> Self:
         """The shape grown by ``radius``, its edges round."""
-        return self._with("round", radius)
+        return self._with(offsets.ROUND, radius)
 
     def offset(self, distance: Any) -> Self:
         """The shape grown by a distance, or shrunk by a negative one."""
-        return self._with("offset", distance)
+        return self._with(offsets.OFFSET, distance)
 
     def shell(self, thickness: Any, where: str = "centre") -> Self:
         """The shape hollow; its wall lies "inner", "centre" or "outer" of the old surface."""
-        if where not in ("inner", "centre", "outer"):
+        if where not in _SHELLS:
             refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
-        return self._with(f"shell {where}", thickness)
+        return self._with(_SHELLS[where], thickness)
 
 
 class Shape(_Placed):
@@ -187,31 +204,31 @@ class Shape(_Placed):
         if euler:
             if len(euler) == 1:
                 ((name, value),) = euler.items()
-                return self._with(f"rotate {name}", value)
-            return self._with("rotate euler", tuple(euler.get(n, 0.0) for n in "xyz"))
+                return self._with(_ROTATIONS[name], value)
+            return self._with(placing.ROTATE_EULER, tuple(euler.get(n, 0.0) for n in "xyz"))
         if quaternion is not None:
-            return self._with("rotate quaternion", quaternion)
+            return self._with(placing.ROTATE_QUATERNION, quaternion)
         if matrix is not None:
-            return self._with("rotate matrix", *_columns(matrix))
+            return self._with(placing.ROTATE_MATRIX, *_columns(matrix))
         if axis is None or angle is None:
             refuse(
                 "a rotation needs an angle and an axis",
                 "rotate(0.5, axis=(0, 1, 0))",
                 author_place(),
             )
-        return self._with("rotate", axis=axis, angle=angle)
+        return self._with(placing.ROTATE, axis=axis, angle=angle)
 
     def orient(self, source: Any, target: Any) -> Self:
         """The shape turned the shortest way, so that ``source`` points where ``target`` does."""
-        return self._with("orient", source, target)
+        return self._with(placing.ORIENT, source, target)
 
     def shear(self, xy: Any = 0.0, xz: Any = 0.0, yz: Any = 0.0) -> Self:
         """The shape leaning: x moved by ``xy`` times y and ``xz`` times z, y by ``yz`` times z."""
-        return self._with("shear", xy, xz, yz)
+        return self._with(placing.SHEAR, xy, xz, yz)
 
     def repeat_half(self, *spacing: Any) -> Self:
         """The shape again and again towards the positive side of each axis only."""
-        return self._with("repeat half", *spacing)
+        return self._with(grid.REPEAT_HALF, *spacing)
 
     def repeat_ring(self, *spacing: Any, count: Sequence[int]) -> Self:
         """The shape along the rim of a rectangle in the xz plane; ``count`` for x and for z."""
@@ -219,7 +236,7 @@ class Shape(_Placed):
             count_x, count_z = count
         except (TypeError, ValueError):
             refuse(f"count is two whole numbers, not {count!r:.40}", "count=(5, 3)", author_place())
-        return self._with("repeat ring", *spacing, count_x=count_x, count_z=count_z)
+        return self._with(along.REPEAT_RING, *spacing, count_x=count_x, count_z=count_z)
 
     def array(
         self,
@@ -238,78 +255,78 @@ class Shape(_Placed):
             count: How many on the line.
         """
         if positions is not None and start is None and end is None and count is None:
-            return self._with("repeat at", positions)
+            return self._with(along.REPEAT_AT, positions)
         if positions is None and start is not None and end is not None and count is not None:
-            return self._with("repeat line", start=start, end=end, count=count)
+            return self._with(along.REPEAT_LINE, start=start, end=end, count=count)
         hint = "array(positions) or array(start=…, end=…, count=…)"
         refuse("an array is told by positions, or by a line and a count", hint, author_place())
 
     def elongate(self, *lengths: Any) -> Self:
         """The shape cut at the origin and pulled apart, ``lengths`` in all along each axis."""
-        return self._with("elongate", *lengths)
+        return self._with(deform.ELONGATE, *lengths)
 
     def twist(self, rate: Any) -> Self:
         """The shape turned about the y axis ever more: ``rate`` radians for each unit of height."""
-        return self._with("twist", rate)
+        return self._with(deform.TWIST, rate)
 
     def bend(self, rate: Any) -> Self:
         """The shape bent in the xy plane: ``rate`` radians for each unit along x."""
-        return self._with("bend", rate)
+        return self._with(deform.BEND, rate)
 
     def bend_linear(self, start: Any, end: Any, shift: Any, ease: str = "linear") -> Self:
         """The shape moved by ``shift`` more and more on the way from ``start`` to ``end``."""
-        return self._with("bend linear", start, end, shift, ease=ease_number(ease))
+        return self._with(deform.BEND_LINEAR, start, end, shift, ease=ease_number(ease))
 
     def bend_radial(self, inner: Any, outer: Any, rise: Any, ease: str = "linear") -> Self:
         """The shape lifted by ``rise`` more and more from a radius to another about the y axis."""
-        return self._with("bend radial", inner, outer, rise, ease=ease_number(ease))
+        return self._with(deform.BEND_RADIAL, inner, outer, rise, ease=ease_number(ease))
 
     def taper(self, bottom: Any, top: Any, factor: Any) -> Self:
         """The shape narrower upwards: full at height ``bottom``, times ``factor`` at ``top``."""
-        return self._with("taper", bottom, top, factor)
+        return self._with(deform.TAPER, bottom, top, factor)
 
     def wrap(self, radius: Any) -> Self:
         """The shape's x axis wrapped around a cylinder about the y axis."""
-        return self._with("wrap", radius)
+        return self._with(folds.WRAP, radius)
 
     def attract(self, center: Any, radius: Any, strength: Any) -> Self:
         """The shape pulled towards a place, within a radius of it."""
-        return self._with("attract", center, radius, strength)
+        return self._with(deform.ATTRACT, center, radius, strength)
 
     def repel(self, center: Any, radius: Any, strength: Any) -> Self:
         """The shape pushed away from a place, within a radius of it."""
-        return self._with("repel", center, radius, strength)
+        return self._with(deform.REPEL, center, radius, strength)
 
     def warp(self, amount: Any, frequency: Any = 1.0, seed: int = 0) -> Self:
         """The shape shaken by noise: every place moved by up to about ``amount``."""
-        return self._with("warp", amount, frequency, seed)
+        return self._with(folds.WARP, amount, frequency, seed)
 
     def transition_linear(self, other: Field, start: Any, end: Any, ease: str = "linear") -> Self:
         """This shape at ``start``, another at ``end``, and between them in between."""
         return self._joined(
-            "transition linear", other, start=start, end=end, ease=ease_number(ease)
+            transitions.TRANSITION_LINEAR, other, start=start, end=end, ease=ease_number(ease)
         )
 
     def transition_radial(self, other: Field, inner: Any, outer: Any, ease: str = "linear") -> Self:
         """This shape within a radius about the y axis, another beyond a larger one."""
         numbers = {"inner": inner, "outer": outer, "ease": ease_number(ease)}
-        return self._joined("transition radial", other, **numbers)
+        return self._joined(transitions.TRANSITION_RADIAL, other, **numbers)
 
     def clearance(self, other: Field, gap: Any) -> Self:
         """The shape with room for another: cut wherever that is nearer than ``gap``."""
-        return self._joined("clearance", other, gap=gap)
+        return self._joined(joins.CLEARANCE, other, gap=gap)
 
     def carve(self, other: Field, depth: Any) -> Self:
         """The other shape sunk into this one's surface, ``depth`` deep."""
-        return self._joined("carve", other, depth=depth)
+        return self._joined(joins.CARVE, other, depth=depth)
 
     def emboss(self, other: Field, height: Any) -> Self:
         """The other shape raised from this one's surface, ``height`` high."""
-        return self._joined("emboss", other, height=height)
+        return self._joined(joins.EMBOSS, other, height=height)
 
     def morph(self, other: Field, t: Any) -> Self:
         """Between two shapes: this one at t = 0, the other at 1."""
-        return self._joined("morph", other, t=t)
+        return self._joined(joins.MORPH, other, t=t)
 
     def displace(self, field: Any, height: Any = 1.0) -> Self:
         """The surface moved out by what a field gives, times ``height``.
@@ -319,23 +336,27 @@ class Shape(_Placed):
             height: A factor.
         """
         other = field if isinstance(field, Field) else self.from_function(field)
-        return self._joined("displace", other, height=height)
+        return self._joined(joins.DISPLACE, other, height=height)
 
     def engrave(self, other: Field, depth: Any) -> Self:
         """A groove of a depth where the other shape's surface meets this one."""
-        return self._joined("engrave", other, k=depth)
+        return self._joined(blends.ENGRAVE, other, k=depth)
 
     def pipe(self, other: Field, radius: Any) -> Self:
         """A round pipe where the two surfaces meet, and nothing else."""
-        return self._joined("pipe", other, k=radius)
+        return self._joined(blends.PIPE, other, k=radius)
 
     def groove(self, other: Field, depth: Any, width: Any) -> Self:
         """A groove of a rectangular profile where the surfaces meet."""
-        return self._joined("groove", other, depth=depth, width=width)
+        return self._joined(blends.GROOVE, other, depth=depth, width=width)
 
     def tongue(self, other: Field, depth: Any, width: Any) -> Self:
         """A ridge of a rectangular profile where the surfaces meet."""
-        return self._joined("tongue", other, depth=depth, width=width)
+        return self._joined(blends.TONGUE, other, depth=depth, width=width)
+
+    def _flat(self, operator: Operator, *args: Any, **kwargs: Any) -> Shape2D:
+        made: Shape2D = self._under(operator, args, kwargs, author_place())
+        return made
 
     def slice(self, origin: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 0.0, 1.0)) -> Shape2D:
         """The flat shape that a plane cuts out.
@@ -344,11 +365,11 @@ class Shape(_Placed):
             origin: A place on the plane; the flat shape's origin.
             normal: The plane's, of length 1.
         """
-        return cast("Shape2D", self._lifted("slice", (origin, normal), {}, flat=True))
+        return self._flat(lift.SLICE, origin, normal)
 
     def project(self, count: int = 32) -> Shape2D:
         """The shape's shadow on the xy plane, looked for at ``count`` depths."""
-        return cast("Shape2D", self._lifted("project", (), {"count": count}, flat=True))
+        return self._flat(lift.PROJECT, count=count)
 
 
 class Shape2D(_Placed):
@@ -360,7 +381,11 @@ class Shape2D(_Placed):
     def rotate(self, angle: Any) -> Self:
         """The shape turned about the origin, counter-clockwise; radians."""
         doubt_degrees(author_place(), angle)
-        return self._with("rotate", angle)
+        return self._with(flat_placing.ROTATE_FLAT, angle)
+
+    def _solid(self, operator: Operator, *args: Any, **kwargs: Any) -> Shape:
+        made: Shape = self._under(operator, args, kwargs, author_place())
+        return made
 
     def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
         """The solid of this outline along z, ``height`` in all, its middle at 0.
@@ -371,14 +396,10 @@ class Shape2D(_Placed):
             chamfer: Size of the edges' bevels.
         """
         if rounding is not None:
-            return cast(
-                "Shape", self._lifted("extrude rounded", (height, rounding), {}, flat=False)
-            )
+            return self._solid(extrude.EXTRUDE_ROUNDED, height, rounding)
         if chamfer is not None:
-            return cast(
-                "Shape", self._lifted("extrude chamfered", (height, chamfer), {}, flat=False)
-            )
-        return cast("Shape", self._lifted("extrude", (height,), {}, flat=False))
+            return self._solid(extrude.EXTRUDE_CHAMFERED, height, chamfer)
+        return self._solid(extrude.EXTRUDE, height)
 
     def revolve(self, offset: Any = 0.0, angle: Any = None) -> Shape:
         """The solid of this outline turned about the y axis; x > 0 is outwards.
@@ -388,40 +409,41 @@ class Shape2D(_Placed):
             angle: How far it is turned; all around without it.
         """
         if angle is None:
-            return cast("Shape", self._lifted("revolve", (offset,), {}, flat=False))
-        return cast("Shape", self._lifted("revolve partly", (offset, angle), {}, flat=False))
+            return self._solid(lift.REVOLVE, offset)
+        return self._solid(lift.REVOLVE_PARTLY, offset, angle)
 
     def loft(self, other: Field, height: Any = 1.0, ease: str = "linear") -> Shape:
         """The solid that goes from this outline at -height/2 along z to another at height/2."""
         numbers = {"height": height, "ease": ease_number(ease)}
-        return cast("Shape", self._joined("loft", other, flat=False, **numbers))
+        return cast("Shape", self._joined(extrude.LOFT, other, **numbers))
 
     def twist_extrude(self, height: Any, angle: Any) -> Shape:
         """The solid of this outline along z, turned by ``angle`` from end to end."""
-        return cast("Shape", self._lifted("extrude twisted", (height, angle), {}, flat=False))
+        return self._solid(extrude.EXTRUDE_TWISTED, height, angle)
 
     def taper_extrude(self, height: Any, top: Any) -> Shape:
         """The solid of this outline along z, at the top end ``top`` times as large."""
-        return cast("Shape", self._lifted("extrude tapered", (height, top), {}, flat=False))
+        return self._solid(extrude.EXTRUDE_TAPERED, height, top)
 
     def sweep(self, points: Any, up: Any = (0.0, 1.0, 0.0)) -> Shape:
         """The solid of this outline along a polyline through (n, 3) points."""
-        return cast("Shape", self._lifted("sweep", (points, up), {}, flat=False))
+        return self._solid(path.SWEEP, points, up)
 
     def sweep_bezier(
         self, start: Any, control: Any, end: Any, up: Any = (0.0, 1.0, 0.0), pieces: int = 16
     ) -> Shape:
         """The solid of this outline along a quadratic curve."""
-        numbers = {"start": start, "control": control, "end": end, "up": up, "pieces": pieces}
-        return cast("Shape", self._lifted("sweep bezier", (), numbers, flat=False))
+        return self._solid(
+            path.SWEEP_BEZIER, start=start, control=control, end=end, up=up, pieces=pieces
+        )
 
     def wrap_cylinder(self, radius: Any, height: Any) -> Shape:
         """The solid of this outline wrapped around a cylinder about the y axis."""
-        return cast("Shape", self._lifted("wrap cylinder", (radius, height), {}, flat=False))
+        return self._solid(lift.WRAP_CYLINDER, radius, height)
 
     def relief(self, *numbers: Any) -> Shape:
         """The ground raised to the height that this flat field gives at each place (x, z)."""
-        return cast("Shape", self._lifted("relief", numbers, {}, flat=False))
+        return self._solid(heightfield.RELIEF, *numbers)
 
 
 def ease_number(name: str) -> int:
