@@ -21,7 +21,7 @@ import numpy as np
 ROOT: Final = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "src")]
 
-from distal.fields.guarantees import EXACT, NOTHING, Claim, Limit, Operator, Primitive  # noqa: E402
+from distal.fields.guarantees import EXACT, NOTHING, Guarantee, Limit, Operator, Primitive  # noqa: E402
 from distal.ir.types import Buffer, Texture  # noqa: E402
 from distal.lang import Func  # noqa: E402
 from tests.fields.checks import Report, examined  # noqa: E402
@@ -150,12 +150,12 @@ def _plain(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _claims(claims: frozenset[Claim]) -> str:
+def _claims(claims: frozenset[Guarantee]) -> str:
     if claims >= EXACT:
         return "exact"
-    named = [c.value for c in Claim if c in claims]
-    if Claim.EXACT_OUTSIDE in claims:
-        named = [n for n in named if n != Claim.LOWER_BOUND.value]  # goes without saying
+    named = [c.value for c in Guarantee if c in claims]
+    if Guarantee.EXACT_OUTSIDE in claims:
+        named = [n for n in named if n != Guarantee.LOWER_BOUND.value]  # goes without saying
     return ", ".join(named) or "slope only"
 
 
@@ -187,9 +187,9 @@ def _shape_measure(row: Primitive) -> Callable[[], tuple[str, ...]]:
 
 
 def _figures(
-    reports: list[tuple[Any, Report]], *, exact: frozenset[Claim], estimate: bool
+    reports: list[tuple[Any, Report]], *, exact: frozenset[Guarantee], estimate: bool
 ) -> tuple[str, ...]:
-    claims_distance = bool(exact & {Claim.EXACT_OUTSIDE, Claim.EXACT_INSIDE})
+    claims_distance = bool(exact & {Guarantee.EXACT_OUTSIDE, Guarantee.EXACT_INSIDE})
     error = max(r.error / s.scale for s, r in reports)
     steepest = max(r.slope / s.slope for s, r in reports if s.slope > 0.0)
     # Below the noise of 64 bits the digits are the machine's.

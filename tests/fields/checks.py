@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from distal.fields.guarantees import UNBOUNDED, Claim
+from distal.fields.guarantees import UNBOUNDED, Guarantee
 from tests.fields.rows import Doubles, Sample
 from tests.fields.slopes import steepest
 from tests.fields.subject import Subject
@@ -195,8 +195,8 @@ def distances_hold(
 ) -> None:
     """Values that claim to be the distance, or below it, are."""
     claims = subject.claims
-    outside = (d > 0.0) & bool(claims & {Claim.LOWER_BOUND, Claim.EXACT_OUTSIDE})
-    inside = (d < 0.0) & (Claim.EXACT_INSIDE in claims)
+    outside = (d > 0.0) & bool(claims & {Guarantee.LOWER_BOUND, Guarantee.EXACT_OUTSIDE})
+    inside = (d < 0.0) & (Guarantee.EXACT_INSIDE in claims)
     checked = outside | inside
     if not checked.any():
         return
@@ -212,7 +212,7 @@ def distances_hold(
             f"{side} at {at(points[worst])} the value is {d[worst]:.6g}, the surface at"
             f" {at(surface[index[worst]])} is {nearest[worst]:.6g} away",
         )
-    exact = ((d > 0.0) & (Claim.EXACT_OUTSIDE in claims)) | inside
+    exact = ((d > 0.0) & (Guarantee.EXACT_OUTSIDE in claims)) | inside
     # Beyond the region the surface of an endless shape was not searched; the witness still serves.
     if exact.any():
         witness = np.minimum(

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices import cpu, reference
-from distal.fields.guarantees import UNBOUNDED, Claim, Primitive
+from distal.fields.guarantees import UNBOUNDED, Guarantee, Primitive
 from distal.frontend import Assembly, lower
 from distal.frontend.signatures.annotations import to_type
 from distal.frontend.signatures.signatures import MISSING, Header, read_header
@@ -101,7 +101,7 @@ class FieldFunction(Composed):
         return assembly.define("with_gradient", params, self.result, (Return(result),))
 
 
-class PromiseFunction(Composed):
+class BoundsFunction(Composed):
     """``(unused, *numbers) -> (slope, low, high, growth, side_growth)``, the choices fixed."""
 
     def __init__(self, row: Primitive, choices: Mapping[str, Any]) -> None:
@@ -117,7 +117,7 @@ class PromiseFunction(Composed):
         given: dict[str, Expr] = {n.name: Read(n.name, n.type) for n in self._numbers}
         given |= {n: _constant(assembly, n, v) for n, v in self._choices.items()}
         row = self._row
-        exact = Claim.EXACT_OUTSIDE in row.claims or row.bounds is None
+        exact = Guarantee.EXACT_OUTSIDE in row.claims or row.bounds is None
         growth = (1.0 if exact else UNBOUNDED) if row.growth is None else row.growth
         side_growth = growth if row.side_growth is None else row.side_growth
         slope, *growths = (
@@ -194,7 +194,7 @@ class Sample:
 
     def promise(self) -> tuple[float, Doubles, Doubles, float, float]:
         """The slope's bound, the box's corners, the growths, from the reference in 64 bits."""
-        module = lower(PromiseFunction(self.row, self.choices))
+        module = lower(BoundsFunction(self.row, self.choices))
         resources = {r.name: r.source for r in module.resources}
         kernel = reference.prepare(module, precision=64)
         numbers = [

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from distal.fields.guarantees import Claim
+from distal.fields.guarantees import Guarantee
 from tests.fields.rows import Doubles, Sample, dimension_of
 
 
@@ -40,7 +40,7 @@ class Subject:
     name: str
     evaluate: Callable[[Doubles], tuple[Any, Any]]
     dimension: int
-    claims: frozenset[Claim]
+    claims: frozenset[Guarantee]
     slope: float
     divisor: float
     low: Doubles
@@ -81,7 +81,7 @@ def subject_of(sample: Sample) -> Subject:
         dimension_of(row.distance),
         row.claims,
         slope,
-        1.0 if Claim.LOWER_BOUND in row.claims else slope,
+        1.0 if Guarantee.LOWER_BOUND in row.claims else slope,
         low,
         high,
         row.signed,

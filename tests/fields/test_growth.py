@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from distal.diagnostics import CompileError
-from distal.fields.guarantees import Claim, Growth, Operator, Primitive
+from distal.fields.guarantees import Growth, Guarantee, Operator, Primitive
 from distal.lang import Func, func, length, slider, vec3
 from distal.scene.objects.field import Field
 from distal.scene.objects.shape import Shape
@@ -82,7 +82,7 @@ def _may_be_unbounded(rule: Func) -> bool:
 
 @pytest.mark.parametrize("row", [pytest.param(r, id=n) for n, r in primitives().items()])
 def test_a_shape_says_how_its_box_grows(row: Primitive):
-    derived = Claim.EXACT_OUTSIDE in row.claims or row.bounds is None
+    derived = Guarantee.EXACT_OUTSIDE in row.claims or row.bounds is None
     assert (row.growth is None) is derived
 
 
@@ -183,6 +183,6 @@ def test_shapes_are_refused_cheaply():
     from distal.scene.lowering import known_bounds as known_promises  # noqa: PLC0415
 
     [Sphere(0.1).translate(0.01 * i, 0, 0).twist(0.1 * i) for i in range(3)]
-    before = len(known_promises._steps)
+    before = len(known_promises._bounds_steps)
     [Sphere(0.1).translate(0.01 * i, 0, 0).twist(0.1 * i) for i in range(30)]
-    assert len(known_promises._steps) == before
+    assert len(known_promises._bounds_steps) == before

@@ -7,7 +7,7 @@ from typing import Final
 
 import pytest
 
-from distal.fields.guarantees import EXACT, Claim, Limit, Operator, Primitive
+from distal.fields.guarantees import EXACT, Guarantee, Limit, Operator, Primitive
 from distal.ir.types import Buffer, Texture
 from distal.lang import Func
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES
@@ -114,7 +114,7 @@ def test_a_shape_is_declared_soundly(row: Primitive):
         given = default_of(slot) if not isinstance(slot.type, Buffer | Texture) else True
         assert given is not None, f"{slot.name} has no default"
     assert row.tier in (1, 2, 3)
-    assert Claim.LOWER_BOUND in row.claims or Claim.EXACT_OUTSIDE not in row.claims
+    assert Guarantee.LOWER_BOUND in row.claims or Guarantee.EXACT_OUTSIDE not in row.claims
     if row.claims >= EXACT:
         assert row.slope == 1.0 and not row.estimate
 
@@ -134,7 +134,7 @@ def test_an_operator_is_declared_soundly(row: Operator):
     if row.requires is not None:
         assert _arguments(row.requires) <= names
     kept = row.keeps | row.keeps_exact
-    assert Claim.LOWER_BOUND in kept or Claim.EXACT_OUTSIDE not in kept
+    assert Guarantee.LOWER_BOUND in kept or Guarantee.EXACT_OUTSIDE not in kept
     for name, limit in row.limits.items():
         assert isinstance(limit, Limit), name
 

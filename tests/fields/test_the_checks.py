@@ -7,7 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Claim, Limit, Primitive
+from distal.fields.guarantees import (
+    EXACT,
+    LOWER_BOUND,
+    NOTHING,
+    Bounds,
+    Guarantee,
+    Limit,
+    Primitive,
+)
 from distal.lang import abs, func, length, max, min, normalize, select, vec2, vec3
 from tests.fields.checks import examined, numbers_hold
 from tests.fields.drawing import default_sample, random_sample
@@ -140,9 +148,9 @@ def test_a_broken_shape_is_noticed(case):
 
 
 def test_a_true_bound_passes_as_what_it_is():
-    inside_and_bound = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
+    inside_and_bound = frozenset({Guarantee.EXACT_INSIDE, Guarantee.LOWER_BOUND})
     assert found(replace(BALL, distance=blunt_box, claims=inside_and_bound)) == ""
-    outside_and_bound = frozenset({Claim.EXACT_OUTSIDE, Claim.LOWER_BOUND})
+    outside_and_bound = frozenset({Guarantee.EXACT_OUTSIDE, Guarantee.LOWER_BOUND})
     assert found(replace(BALL, distance=two_balls, claims=outside_and_bound)) == ""
 
 

@@ -18,15 +18,15 @@ from distal.ir.printer import print_identity
 from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, tuple_type
 from distal.lang import Func
 from distal.lang.composed import Composed
-from distal.scene.lowering.derived import PromiseOf
-from distal.scene.lowering.shapes import ZERO_CELL, Composer
+from distal.scene.lowering.derived import BoundsOf
+from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.objects import shapes  # the classes come from the rows that importing it declares
 from distal.scene.objects.binding import bound
 from distal.scene.objects.field import Field
 from distal.scene.tree.arguments import RESERVED
 from distal.scene.tree.arguments import slots_of as scene_slots_of
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body
+from distal.scene.tree.values import FunctionBody
 from tests.fields.drawing import drawn, fits, random_sample
 from tests.fields.rows import Doubles, Slot, endless
 from tests.fields.subject import Subject
@@ -215,7 +215,7 @@ class FieldOf(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function in a program."""
-        composer = Composer(assembly, [self._node])
+        composer = ShapeComposer(assembly, [self._node])
         field = composer.field(self._node, composer.values.all(self._node), ZERO_CELL)
         assert isinstance(field.type, FunctionType)
         value = Gradient(field, Read("p", self._point), True, self.result)
@@ -235,9 +235,9 @@ class SiteOf(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function in a program."""
-        node, body = self._node, Body(taken={"p"})
+        node, body = self._node, FunctionBody(taken={"p"})
         assert isinstance(node.rule, Operator)
-        composer = Composer(assembly, [node])
+        composer = ShapeComposer(assembly, [node])
         p = Read("p", self._point)
         given, (values,) = composer.given(body, node, p, ZERO_CELL, composer.values.all(node))
         if node.rule.site is not None:
@@ -298,7 +298,7 @@ class Tree:
 
     def subject(self, device: str = "cpu") -> Subject:
         """The shape with its promises; for few points the reference is ready sooner."""
-        promise = Prepared(PromiseOf(self.node), "reference")()
+        promise = Prepared(BoundsOf(self.node), "reference")()
         slope, divisor, low, high, growth, side_growth = promise
         return Subject(
             described(self.node),

@@ -71,6 +71,6 @@ def test_every_row_of_the_library_has_a_cell(tools):
 
 def test_every_cell_can_be_made_and_has_a_bounded_slope(tools):
     cells = tools("catalogue_cells")
-    known_promise = tools("distal.scene.lowering.known_bounds").known_promise
+    known_bounds_of = tools("distal.scene.lowering.known_bounds").known_bounds_of
     for cell in cells.cells():
-        assert known_promise(cell.make().node).slope < UNBOUNDED / 1000.0, cell.title
+        assert known_bounds_of(cell.make().node).slope < UNBOUNDED / 1000.0, cell.title

@@ -8,7 +8,7 @@ import pytest
 
 from distal import Box, Hexagon, Plane, Shape, Sphere
 from distal.lang import func, length, max, sin, slider, vec3
-from distal.scene.checks.bounds_report import survey
+from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.checks.measuring import measure
 from distal.scene.checks.validation import Severity, check, described
 
@@ -172,14 +172,14 @@ def test_flat_shapes_have_boxes_of_two_numbers():
 
 def test_promises_are_those_of_the_shapes_themselves():
     shape = (Box(1.0).twist(1.0) - Sphere(0.5).translate(0.2, 0.0, 0.0)).scale(2.0)
-    found = survey(shape.node, {}, 0.0)[id(shape.node)]
+    found = bounds_of_nodes(shape.node, {}, 0.0)[id(shape.node)]
     assert found.slope == pytest.approx(shape.slope)
     assert found.divisor == pytest.approx(shape.divisor)
     low, high = shape.bounds()
     assert found.low == pytest.approx(low)
     assert found.high == pytest.approx(high)
     plane = Plane()
-    assert not survey(plane.node, {}, 0.0)[id(plane.node)].finite
+    assert not bounds_of_nodes(plane.node, {}, 0.0)[id(plane.node)].finite
 
 
 def test_a_shape_in_several_places_has_one_row():
@@ -228,7 +228,7 @@ def test_plain_values_are_json_without_infinity():
 
 def test_measurements_are_the_same_for_the_same_seed():
     shape = Box(1.0).twist(2.0)
-    promised = survey(shape.node, {}, 0.0)[id(shape.node)]
+    promised = bounds_of_nodes(shape.node, {}, 0.0)[id(shape.node)]
     first, again, other = (measure(shape, promised, {}, 0.0, seed) for seed in (1, 1, 2))
     assert first == again
     assert first != other

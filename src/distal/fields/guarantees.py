@@ -41,10 +41,9 @@ UNBOUNDED: Final = 1e18
 ENDLESS: Final = UNBOUNDED / 1000.0
 
 # What an operator's functions may take of its one child, or of its two children.
-PROMISED: Final = frozenset(
-    f"{promise}{of}"
-    for promise in ("slope", "bounds", "growth", "side_growth")
-    for of in ("", "_a", "_b")
+BOUNDS_OF_CHILD: Final = ("slope", "bounds", "growth", "side_growth")
+BOUNDS_OF_CHILDREN: Final = frozenset(
+    f"{name}{of}" for name in BOUNDS_OF_CHILD for of in ("", "_a", "_b")
 )
 
 
@@ -101,7 +100,7 @@ USUAL_LIMITS: Final[Mapping[str, Limit]] = {
 }
 
 
-class Claim(Enum):
+class Guarantee(Enum):
     """What a field may promise besides a bound on its slope.
 
     EXACT_OUTSIDE: outside, the value is the distance to the surface. EXACT_INSIDE: inside, it is
@@ -113,12 +112,12 @@ class Claim(Enum):
     LOWER_BOUND = "lower bound"
 
 
-EXACT: Final = frozenset(Claim)  # all three
-EXACT_OUTSIDE: Final = frozenset({Claim.EXACT_OUTSIDE, Claim.LOWER_BOUND})
+EXACT: Final = frozenset(Guarantee)  # all three
+EXACT_OUTSIDE: Final = frozenset({Guarantee.EXACT_OUTSIDE, Guarantee.LOWER_BOUND})
 # What the largest of several plane distances keeps: a convex shape's inside is exact.
-INSIDE_AND_BOUND: Final = frozenset({Claim.EXACT_INSIDE, Claim.LOWER_BOUND})
-LOWER_BOUND: Final = frozenset({Claim.LOWER_BOUND})
-NOTHING: Final[frozenset[Claim]] = frozenset()  # the slope's bound alone
+INSIDE_AND_BOUND: Final = frozenset({Guarantee.EXACT_INSIDE, Guarantee.LOWER_BOUND})
+LOWER_BOUND: Final = frozenset({Guarantee.LOWER_BOUND})
+NOTHING: Final[frozenset[Guarantee]] = frozenset()  # the slope's bound alone
 
 
 class Growth(Enum):
@@ -170,7 +169,7 @@ class Primitive:
 
     name: str
     distance: Func
-    claims: frozenset[Claim]
+    claims: frozenset[Guarantee]
     slope: Rule = 1.0
     bounds: Func | None = None
     growth: Rule | None = None
@@ -236,13 +235,13 @@ class Operator:
     around: Func | None = None
     site: Func | None = None
     fixed: Mapping[str, int | bool] = field(default_factory=dict)
-    keeps: frozenset[Claim] = NOTHING
+    keeps: frozenset[Guarantee] = NOTHING
     slope: Rule | None = None
     bounds: Func | None = None
     growth: Growth | Func = Growth.UNKNOWN
     limits: Mapping[str, Limit] = field(default_factory=dict)
     requires: Requirement | None = None
-    keeps_exact: frozenset[Claim] = NOTHING
+    keeps_exact: frozenset[Guarantee] = NOTHING
     needs: str | None = None
     cuts: bool = False
     local: bool = True
@@ -304,7 +303,7 @@ def ended(value: float) -> float:
 
 def primitive(
     name: str,
-    claims: frozenset[Claim],
+    claims: frozenset[Guarantee],
     *,
     slope: Rule = 1.0,
     bounds: Func | None = None,

@@ -11,11 +11,18 @@ A lower bound is not kept by moving the surface: it says nothing of the levels i
 from __future__ import annotations
 
 from distal.fields.extents import Boxes, at_least_one, moved_out
-from distal.fields.guarantees import EXACT_OUTSIDE, INSIDE_AND_BOUND, Claim, Growth, Limit, operator
+from distal.fields.guarantees import (
+    EXACT_OUTSIDE,
+    INSIDE_AND_BOUND,
+    Growth,
+    Guarantee,
+    Limit,
+    operator,
+)
 from distal.lang import abs, dot, func, max, vec2, vec3
 
-INSIDE_ALONE = frozenset({Claim.EXACT_INSIDE})
-OUTSIDE_ALONE = frozenset({Claim.EXACT_OUTSIDE})
+INSIDE_ALONE = frozenset({Guarantee.EXACT_INSIDE})
+OUTSIDE_ALONE = frozenset({Guarantee.EXACT_OUTSIDE})
 
 
 @func

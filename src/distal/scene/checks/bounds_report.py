@@ -19,13 +19,13 @@ from distal.ir.nodes import Construct, Expr, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Array, Vector, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.runtime_hook import executor
-from distal.scene.lowering.bounds import Promise, RememberedPromises
+from distal.scene.lowering.bounds import RememberedBounds, ShapeBounds
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body, Values
+from distal.scene.tree.values import FunctionBody, Values
 
 
 @dataclass(frozen=True, slots=True)
-class Promised:
+class NodeBounds:
     """What a shape promises at one time, for one set of parameters.
 
     Attributes:
@@ -46,16 +46,16 @@ class Promised:
         return all(map(np.isfinite, (*self.low, *self.high)))
 
 
-def survey(root: Node, params: Mapping[str, Any], time: float) -> dict[int, Promised]:
+def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[int, NodeBounds]:
     """What each node of a tree promises, by the id of the node."""
     nodes = list(root.walk())
     which = np.arange(len(nodes), dtype=np.int32)
-    asked = _Survey(root, nodes)
+    asked = _NodeBounds(root, nodes)
     # Interpreted: machine code for the promises of a thousand shapes takes half a minute to make.
     rows = executor().call(asked, (which,), {}, params=params, time=time, device="reference")
     slopes, divisors, lows, highs = (np.asarray(part, np.float64) for part in rows)
     return {
-        id(node): Promised(
+        id(node): NodeBounds(
             ended(slopes[i]),
             ended(divisors[i]),
             tuple(map(ended, lows[i])),
@@ -65,7 +65,7 @@ def survey(root: Node, params: Mapping[str, Any], time: float) -> dict[int, Prom
     }
 
 
-class _Survey(Composed):
+class _NodeBounds(Composed):
     """The promise of the node of a number."""
 
     def __init__(self, root: Node, nodes: Sequence[Node]) -> None:
@@ -76,9 +76,9 @@ class _Survey(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function of the number."""
-        body = Body(taken={"i"})
+        body = FunctionBody(taken={"i"})
         values = Values(assembly)
-        promises = RememberedPromises(values)
+        promises = RememberedBounds(values)
         promises.of(body, self._root, values.all(self._root))
         rows = [_row(promises.found[id(node)]) for node in self._nodes]
         which = Read("i", INT)
@@ -94,7 +94,7 @@ class _Survey(Composed):
         return assembly.define("promises", params, self.result, body.statements)
 
 
-def _row(promise: Promise) -> tuple[Expr, ...]:
+def _row(promise: ShapeBounds) -> tuple[Expr, ...]:
     corners = (field_of(promise.bounds, name) for name in ("low", "high"))
     return (promise.slope, promise.divisor, *map(_in_space, corners))
 

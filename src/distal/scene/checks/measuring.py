@@ -13,7 +13,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.scene.checks.bounds_report import Promised
+from distal.scene.checks.bounds_report import NodeBounds
 from distal.scene.objects.field import Field
 
 Points: TypeAlias = NDArray[np.float64]
@@ -84,7 +84,7 @@ class _Asked:
 
 
 def measure(
-    shape: Field, promised: Promised, params: Mapping[str, Any], time: float, seed: int = 0
+    shape: Field, promised: NodeBounds, params: Mapping[str, Any], time: float, seed: int = 0
 ) -> Measured:
     """Measure a shape in and around its box."""
     asked = _Asked(shape, params, time)
@@ -127,7 +127,7 @@ def measure(
     )
 
 
-def _looked_at(promised: Promised, n: int) -> tuple[Points, Points]:
+def _looked_at(promised: NodeBounds, n: int) -> tuple[Points, Points]:
     low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
     ends_below, ends_above = np.isfinite(low), np.isfinite(high)
     cut = np.where(ends_below, low, np.minimum(np.where(ends_above, high, 0.0), 0.0) - REACH)

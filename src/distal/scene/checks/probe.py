@@ -19,12 +19,12 @@ from distal.lang.functions import Func
 from distal.lang.runtime_hook import executor
 from distal.render.look_along import Seen, look_along
 from distal.scene.checks.validation import claims_told, place_json
-from distal.scene.lowering.attributes import Material, Part, Site
+from distal.scene.lowering.attributes import AttributePoint, Part, SurfaceAttribute
 from distal.scene.lowering.picture import Picturing
-from distal.scene.lowering.shapes import Composer
+from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.scene import Scene
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body
+from distal.scene.tree.values import FunctionBody
 
 # A material's numbers, as ``render.material.Surface`` has them.
 _NUMBERS = ("diffuse", "specular", "transmission", "ior", "roughness", "metal", "fresnel")
@@ -158,7 +158,7 @@ class _Program(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function that gives a ``Seen``."""
-        body = Body(taken={"coord", "resolution"})
+        body = FunctionBody(taken={"coord", "resolution"})
         made = Picturing(assembly, self._scene)
         resolution = Read("resolution", VEC2)
         given = made.given(body, resolution)
@@ -177,10 +177,10 @@ class _Program(Composed):
         return self._scene.functions()
 
 
-class _Paint(Material):
+class _Paint(SurfaceAttribute):
     """Which material a place shows, as a number; of a blend, the one that shows more."""
 
-    def __init__(self, composer: Composer, default: Any) -> None:
+    def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer, default)
         self.materials: list[Any] = []
 
@@ -188,7 +188,7 @@ class _Paint(Material):
         """The one of which more shows."""
         return select(compare(CompareOp.GT, share, number(0.5)), b, a)
 
-    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+    def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
         self.materials.append(material)
         return number(float(len(self.materials) - 1))
 

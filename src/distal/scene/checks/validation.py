@@ -14,15 +14,15 @@ from typing import Any, Final
 
 from distal.diagnostics import Diagnostic, Span
 from distal.fields.boxes import given_slope
-from distal.fields.guarantees import EXACT, Claim, Operator, Primitive
-from distal.scene.checks.bounds_report import Promised, survey
+from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
+from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, measure
 from distal.scene.objects.field import Field
 from distal.scene.tree.node import Node
 
 # Measuring a shape may compile its function; beyond so many only those that matter most are.
 MOST_MEASURED: Final = 24
-# Promises are computed in 32 bits, and 64 bits do not tell nearer values of a kink apart.
+# BoundsComposer are computed in 32 bits, and 64 bits do not tell nearer values of a kink apart.
 ROUNDING: Final = 1e-4
 # A share of points next to kinks has its foot elsewhere, though the distance is exact.
 ON_FOOT: Final = 0.98
@@ -66,7 +66,7 @@ class ShapeRow:
 
     node: Node
     children: tuple[int, ...]
-    promised: Promised
+    promised: NodeBounds
     raised: float | None
     measured: Measured | None
 
@@ -123,7 +123,7 @@ def check(
     given = dict(params or {})
     nodes = list(shape.node.walk())
     numbers = {id(node): i for i, node in enumerate(nodes)}
-    promised = survey(shape.node, given, time)
+    promised = bounds_of_nodes(shape.node, given, time)
     chosen = {id(n) for n in _worth_measuring(nodes, promised)}
     rows = []
     for node in nodes:
@@ -150,7 +150,7 @@ def _at_their_roots(found: Sequence[Finding], rows: Sequence[ShapeRow]) -> list[
     return [f for f in found if not is_passed_on(f)]
 
 
-def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, Promised]) -> list[Node]:
+def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> list[Node]:
     """All shapes of a small tree; of a large one the whole, own functions, and what is steep."""
     if len(nodes) <= MOST_MEASURED:
         return list(nodes)
@@ -172,7 +172,7 @@ def is_own(node: Node) -> bool:
     return isinstance(node.rule, Primitive) and node.rule.slope is given_slope
 
 
-def _raised(node: Node, promised: Mapping[int, Promised]) -> float | None:
+def _raised(node: Node, promised: Mapping[int, NodeBounds]) -> float | None:
     before = max((promised[id(c)].slope for c in node.children), default=1.0)
     return before if promised[id(node)].slope > before * (1.0 + ROUNDING) else None
 
@@ -269,7 +269,7 @@ def _without_growth(node: Node) -> Node | None:
         return None
     for part in node.walk():
         silent = isinstance(part.rule, Primitive) and part.rule.growth is None
-        if silent and is_own(part) and Claim.EXACT_OUTSIDE not in part.claims:
+        if silent and is_own(part) and Guarantee.EXACT_OUTSIDE not in part.claims:
             return part
     return None
 
@@ -281,11 +281,13 @@ def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator
         yield finding(
             Severity.WARNING, "blend-everywhere", message, "blend='cubic' keeps far parts"
         )
-    lost = [c for c in Claim if c not in row.node.claims and all(c in n.claims for n in inner)]
+    lost = [c for c in Guarantee if c not in row.node.claims and all(c in n.claims for n in inner)]
     # Where the slope is 1 the value never exceeds the distance, whoever claims it.
-    lost = [c for c in lost if c is not Claim.LOWER_BOUND or row.promised.slope > 1.0 + ROUNDING]
+    lost = [
+        c for c in lost if c is not Guarantee.LOWER_BOUND or row.promised.slope > 1.0 + ROUNDING
+    ]
     if lost:
-        words = {Claim.LOWER_BOUND: "a lower bound"}
+        words = {Guarantee.LOWER_BOUND: "a lower bound"}
         told = ", ".join(words.get(c, c.value) for c in lost)
         message = f"{described(row.node)} is no longer {told}"
         yield finding(Severity.NOTE, "claim-lost", message)
@@ -363,7 +365,7 @@ def _shape_json(i: int, row: ShapeRow) -> dict[str, Any]:
 
 def claims_told(node: Node) -> list[str]:
     """A shape's claims in words, in a settled order."""
-    return [c.value for c in Claim if c in node.claims]
+    return [c.value for c in Guarantee if c in node.claims]
 
 
 def _measured_json(measured: Measured) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from distal.ir.nodes import Call, Return
 from distal.ir.types import FLOAT, VEC2
 from distal.lang.composed import Composed
 from distal.lang.runtime_hook import executor
-from distal.scene.checks.bounds_report import survey
+from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.lowering.picture import Picturing
 from distal.scene.lowering.shapes import ZERO_CELL
 from distal.scene.lowering.slope_limit import may_be_endless, refuse_steepness
@@ -70,7 +70,7 @@ def check_slopes(shape: Field, params: Mapping[str, Any], time: float) -> None:
     risky = [n for n in shape.node.walk() if may_be_endless(n) and _moves(n)]
     if not risky:
         return
-    promised = survey(shape.node, _read(shape, params), time)
+    promised = bounds_of_nodes(shape.node, _read(shape, params), time)
     # Parents come first: the last one is the innermost.
     for node in reversed(risky):
         if not promised[id(node)].slope < ENDLESS:

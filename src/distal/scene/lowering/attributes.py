@@ -14,19 +14,19 @@ from distal.fields.guarantees import Operator, Primitive
 from distal.ir.build import builtin, compare, number, select
 from distal.ir.nodes import CompareOp, Expr, Gradient
 from distal.render.material import mix_surfaces
-from distal.scene.lowering.shapes import Composer
+from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body
+from distal.scene.tree.values import FunctionBody
 
 
 class Attribute(ABC):
     """A kind of attribute."""
 
-    def __init__(self, composer: Composer) -> None:
+    def __init__(self, composer: ShapeComposer) -> None:
         self.composer = composer
 
     @abstractmethod
-    def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+    def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
         """What the subtree gives as a whole, or None to look into it."""
 
     @abstractmethod
@@ -34,11 +34,11 @@ class Attribute(ABC):
         """Two joined, where a blend shows ``share`` (0 to 1) of b."""
 
     @abstractmethod
-    def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+    def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
         """What a face shows that the subtree cut; None: what is cut shows itself."""
 
 
-class Site:
+class AttributePoint:
     """Where an attribute is asked."""
 
     def __init__(self, p: Expr, cell: Expr, values: Sequence[Expr]) -> None:
@@ -47,13 +47,13 @@ class Site:
         self.values = values
 
 
-def attribute(body: Body, kind: Attribute, node: Node, site: Site) -> Expr:
+def attribute(body: FunctionBody, kind: Attribute, node: Node, site: AttributePoint) -> Expr:
     """The attribute of the place of a subtree that is nearest to a point."""
     return _visit(body, kind, node, site, measured=False)[1]
 
 
 def _visit(
-    body: Body, kind: Attribute, node: Node, site: Site, *, measured: bool
+    body: FunctionBody, kind: Attribute, node: Node, site: AttributePoint, *, measured: bool
 ) -> tuple[Expr | None, Expr]:
     """A subtree's attribute, and its distance where that is wanted."""
     composer = kind.composer
@@ -67,7 +67,7 @@ def _visit(
     if rule.around is not None:
         return _around(body, kind, node, site, given, measured=measured)
     p, cell = composer.moved(body, rule, given)
-    sites = [Site(p, cell, share) for share in shares]
+    sites = [AttributePoint(p, cell, share) for share in shares]
     joins = rule.combine is not None and len(sites) > 1
     first = node.children[0]
     d, result = _visit(body, kind, first, sites[0], measured=measured or joins)
@@ -81,10 +81,10 @@ def _visit(
 
 
 def _around(
-    body: Body,
+    body: FunctionBody,
     kind: Attribute,
     node: Node,
-    site: Site,
+    site: AttributePoint,
     given: dict[str, Expr],
     *,
     measured: bool,
@@ -96,15 +96,15 @@ def _around(
     p, cell = site.p, site.cell
     if rule.site is not None:
         p, cell = composer.site(body, composer.call(rule.site, given), site.cell)
-    _, result = _visit(body, kind, child, Site(p, cell, values), measured=False)
+    _, result = _visit(body, kind, child, AttributePoint(p, cell, values), measured=False)
     return body.let("d", composer.call(rule.around, given)) if measured else None, result
 
 
 def _joined(
-    body: Body,
+    body: FunctionBody,
     kind: Attribute,
     node: Node,
-    sites: Sequence[Site],
+    sites: Sequence[AttributePoint],
     given: dict[str, Expr],
     first: tuple[Expr, Expr],
 ) -> tuple[Expr, Expr]:
@@ -140,15 +140,15 @@ def paints(node: Node) -> bool:
     return any(n.material is not None or n.cut_material is not None for n in node.walk())
 
 
-class Material(Attribute):
+class SurfaceAttribute(Attribute):
     """What a place looks like: a ``Surface``."""
 
-    def __init__(self, composer: Composer, default: Any) -> None:
+    def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer)
         self._default = default
         self._painted: dict[int, bool] = {}
 
-    def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+    def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
         """The paint of a subtree; the default where nothing in it is painted."""
         material = node.material
         if material is None and (isinstance(node.rule, Primitive) or not self._paints(node)):
@@ -159,7 +159,7 @@ class Material(Attribute):
         """Every number of both mixed."""
         return self.composer.call(mix_surfaces, {"a": a, "b": b, "t": share})
 
-    def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+    def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
         """The cutter's ``cut_material``."""
         material = node.cut_material
         return None if material is None else self._shown(body, material, node, site)
@@ -170,7 +170,7 @@ class Material(Attribute):
             found = self._painted[id(node)] = paints(node)
         return found
 
-    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+    def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
         given = {"p": site.p, "cell": site.cell}
         if "n" in material.uses:
             field = self.composer.field(node, site.values, site.cell)
@@ -180,10 +180,10 @@ class Material(Attribute):
         return body.let("shown", surface)
 
 
-class MaterialNumber(Material):
+class MaterialNumber(SurfaceAttribute):
     """Which material a place shows, as a number from 1 on, in the order of the author's tree."""
 
-    def __init__(self, composer: Composer, default: Any) -> None:
+    def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer, default)
         self.materials: list[Any] = []
 
@@ -191,7 +191,7 @@ class MaterialNumber(Material):
         """The one of which more shows."""
         return _more_shown(a, b, share)
 
-    def _shown(self, body: Body, material: Any, node: Node, site: Site) -> Expr:
+    def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
         if not any(known is material for known in self.materials):
             self.materials.append(material)
         found = next(i for i, known in enumerate(self.materials, 1) if known is material)
@@ -201,11 +201,11 @@ class MaterialNumber(Material):
 class Part(Attribute):
     """Which leaf of the tree a place belongs to, as a number."""
 
-    def __init__(self, composer: Composer) -> None:
+    def __init__(self, composer: ShapeComposer) -> None:
         super().__init__(composer)
         self.nodes: list[Node] = []
 
-    def leaf(self, body: Body, node: Node, site: Site) -> Expr | None:
+    def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
         """The next number for a library shape."""
         if not isinstance(node.rule, Primitive):
             return None
@@ -216,6 +216,6 @@ class Part(Attribute):
         """The one of which more shows."""
         return _more_shown(a, b, share)
 
-    def cutter(self, body: Body, node: Node, site: Site) -> Expr | None:
+    def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
         """The cutter's own part: it made the face."""
         return attribute(body, self, node, site)

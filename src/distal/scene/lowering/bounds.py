@@ -12,17 +12,27 @@ from dataclasses import dataclass
 from typing import Final, assert_never
 
 from distal.fields.boxes import everywhere, everywhere2, hull, hull2
-from distal.fields.guarantees import UNBOUNDED, Bounds2, Claim, Growth, Operator, Primitive, Rule
-from distal.ir.build import builtin, multiply
+from distal.fields.guarantees import (
+    BOUNDS_OF_CHILD,
+    UNBOUNDED,
+    Bounds2,
+    Growth,
+    Guarantee,
+    Operator,
+    Primitive,
+    Rule,
+)
+from distal.ir.build import builtin, field, multiply
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Const, Expr
+from distal.ir.nodes import Const, Construct, Expr
+from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body, Values
+from distal.scene.tree.values import FunctionBody, Values
 
 
 @dataclass(frozen=True, slots=True)
-class Promise:
+class ShapeBounds:
     """What is known of a subtree.
 
     Attributes:
@@ -39,19 +49,35 @@ class Promise:
     growth: Expr
     side_growth: Expr
 
+    def packed(self, body: FunctionBody) -> Expr:
+        """(slope, divisor, low, high, growth, side_growth), of ``packed_type``."""
+        bounds = body.let("bounds", self.bounds)
+        low, high = field(bounds, "low"), field(bounds, "high")
+        parts = (self.slope, self.divisor, low, high, self.growth, self.side_growth)
+        return Construct(parts, tuple_type(tuple(part.type for part in parts)))
+
+
+PACKED: Final = ("slope", "divisor", "low", "high", "growth", "side_growth")
+
+
+def packed_types(flat: bool) -> tuple[Type, ...]:
+    """The types of what ``packed`` holds."""
+    corner = VEC2 if flat else VEC3
+    return (FLOAT, FLOAT, corner, corner, FLOAT, FLOAT)
+
 
 ONE: Final = constant_number(1.0)
 UNKNOWN: Final = constant_number(UNBOUNDED)
 
 
-class Promises:
+class BoundsComposer:
     """Composes the promises of subtrees."""
 
     def __init__(self, values: Values) -> None:
         self._values = values
         self._call = values.assembly.call
 
-    def of(self, body: Body, node: Node, values: Sequence[Expr]) -> Promise:
+    def of(self, body: FunctionBody, node: Node, values: Sequence[Expr]) -> ShapeBounds:
         """The promise of a subtree with these numbers."""
         own, shares = self._values.split(node, values)
         rule = node.rule
@@ -63,8 +89,12 @@ class Promises:
         return self.of_operator(body, rule, inner, own)
 
     def of_operator(
-        self, body: Body, rule: Operator, inner: Sequence[Promise], own: Mapping[str, Expr]
-    ) -> Promise:
+        self,
+        body: FunctionBody,
+        rule: Operator,
+        inner: Sequence[ShapeBounds],
+        own: Mapping[str, Expr],
+    ) -> ShapeBounds:
         """The promise of an operator on shapes with these promises."""
         if len(inner) == 1:
             return self._one(body, rule, inner[0], own)
@@ -76,8 +106,12 @@ class Promises:
         return result
 
     def _halved(
-        self, body: Body, rule: Operator, inner: Sequence[Promise], own: Mapping[str, Expr]
-    ) -> Promise:
+        self,
+        body: FunctionBody,
+        rule: Operator,
+        inner: Sequence[ShapeBounds],
+        own: Mapping[str, Expr],
+    ) -> ShapeBounds:
         """Many joined, the halves first: a chain of hundreds would be as deep as it is long."""
         if len(inner) == 1:
             return inner[0]
@@ -85,7 +119,9 @@ class Promises:
         a = self._halved(body, rule, inner[:middle], own)
         return self._two(body, rule, a, self._halved(body, rule, inner[middle:], own), own)
 
-    def given(self, body: Body, node: Node, shares: Sequence[Sequence[Expr]]) -> dict[str, Expr]:
+    def given(
+        self, body: FunctionBody, node: Node, shares: Sequence[Sequence[Expr]]
+    ) -> dict[str, Expr]:
         """What the children promise, under the names that an operator's functions ask for."""
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
@@ -93,45 +129,52 @@ class Promises:
         return _named(inner[0], inner[1] if len(inner) > 1 else None)
 
     def of_primitive(
-        self, body: Body, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
-    ) -> Promise:
+        self, body: FunctionBody, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
+    ) -> ShapeBounds:
         """The promise of a primitive with these numbers."""
         slope = self._number(body, "slope", rule.slope, own)
         whole = everywhere2 if flat else everywhere
         bounds = body.let("bounds", self._call(rule.bounds or whole, own))
-        lower = Claim.LOWER_BOUND in rule.claims
+        lower = Guarantee.LOWER_BOUND in rule.claims
         growth, side_growth = self._growth_of_leaf(body, rule, own)
-        return Promise(slope, ONE if lower else slope, bounds, growth, side_growth)
+        return ShapeBounds(slope, ONE if lower else slope, bounds, growth, side_growth)
 
     def _growth_of_leaf(
-        self, body: Body, rule: Primitive, own: Mapping[str, Expr]
+        self, body: FunctionBody, rule: Primitive, own: Mapping[str, Expr]
     ) -> tuple[Expr, Expr]:
         if rule.growth is None:
-            known = Claim.EXACT_OUTSIDE in rule.claims or rule.bounds is None
+            known = Guarantee.EXACT_OUTSIDE in rule.claims or rule.bounds is None
             return (ONE, ONE) if known else (UNKNOWN, UNKNOWN)
         growth = self._number(body, "growth", rule.growth, own)
         if rule.side_growth is None:
             return growth, growth
         return growth, self._number(body, "side_growth", rule.side_growth, own)
 
-    def _number(self, body: Body, name: str, rule: Rule, given: Mapping[str, Expr]) -> Expr:
+    def _number(self, body: FunctionBody, name: str, rule: Rule, given: Mapping[str, Expr]) -> Expr:
         if isinstance(rule, Func):
             return body.let(name, self._call(rule, given))
         return constant_number(rule)
 
-    def _one(self, body: Body, rule: Operator, child: Promise, own: Mapping[str, Expr]) -> Promise:
+    def _one(
+        self, body: FunctionBody, rule: Operator, child: ShapeBounds, own: Mapping[str, Expr]
+    ) -> ShapeBounds:
         given = {**own, **_named(child, None)}
         slope = self._slope(body, rule, child.slope, given)
         bounds = child.bounds
         if rule.bounds is not None:
             bounds = body.let("bounds", self._call(rule.bounds, given))
-        kept = Claim.LOWER_BOUND in rule.keeps
+        kept = Guarantee.LOWER_BOUND in rule.keeps
         growth, side_growth = self._growth(body, rule, (child,), bounds, given)
-        return Promise(slope, child.divisor if kept else slope, bounds, growth, side_growth)
+        return ShapeBounds(slope, child.divisor if kept else slope, bounds, growth, side_growth)
 
     def _two(
-        self, body: Body, rule: Operator, a: Promise, b: Promise, own: Mapping[str, Expr]
-    ) -> Promise:
+        self,
+        body: FunctionBody,
+        rule: Operator,
+        a: ShapeBounds,
+        b: ShapeBounds,
+        own: Mapping[str, Expr],
+    ) -> ShapeBounds:
         larger = body.let("slope", builtin("max", a.slope, b.slope))
         side_growth = _larger(body, "side_growth", a.side_growth, b.side_growth)
         given = {**own, **_named(a, b), "side_growth": side_growth}
@@ -141,16 +184,16 @@ class Promises:
         around = rule.bounds or (hull2 if flat else hull)
         bounds = body.let("bounds", self._call(around, given))
         divisor = slope
-        if Claim.LOWER_BOUND in rule.keeps:
+        if Guarantee.LOWER_BOUND in rule.keeps:
             divisor = body.let("divisor", builtin("max", a.divisor, b.divisor))
         growth, side_growth = self._growth(body, rule, (a, b), bounds, given)
-        return Promise(slope, divisor, bounds, growth, side_growth)
+        return ShapeBounds(slope, divisor, bounds, growth, side_growth)
 
     def _growth(
         self,
-        body: Body,
+        body: FunctionBody,
         rule: Operator,
-        inner: Sequence[Promise],
+        inner: Sequence[ShapeBounds],
         bounds: Expr,
         given: Mapping[str, Expr],
     ) -> tuple[Expr, Expr]:
@@ -176,7 +219,9 @@ class Promises:
             case _:
                 assert_never(rule.growth)
 
-    def _slope(self, body: Body, rule: Operator, child: Expr, given: Mapping[str, Expr]) -> Expr:
+    def _slope(
+        self, body: FunctionBody, rule: Operator, child: Expr, given: Mapping[str, Expr]
+    ) -> Expr:
         if rule.slope is None:
             return child
         if isinstance(rule.slope, Func):
@@ -184,14 +229,14 @@ class Promises:
         return body.let("slope", multiply(child, constant_number(rule.slope)))
 
 
-class RememberedPromises(Promises):
+class RememberedBounds(BoundsComposer):
     """Promises of one function: that of every node is made once, and kept."""
 
     def __init__(self, values: Values) -> None:
         super().__init__(values)
-        self.found: dict[int, Promise] = {}
+        self.found: dict[int, ShapeBounds] = {}
 
-    def of(self, body: Body, node: Node, values: Sequence[Expr]) -> Promise:
+    def of(self, body: FunctionBody, node: Node, values: Sequence[Expr]) -> ShapeBounds:
         """The promise of a subtree, made once."""
         known = self.found.get(id(node))
         if known is None:
@@ -199,27 +244,13 @@ class RememberedPromises(Promises):
         return known
 
 
-def _named(a: Promise, b: Promise | None) -> dict[str, Expr]:
-    if b is None:
-        return {
-            "slope": a.slope,
-            "bounds": a.bounds,
-            "growth": a.growth,
-            "side_growth": a.side_growth,
-        }
-    return {
-        "slope_a": a.slope,
-        "slope_b": b.slope,
-        "bounds_a": a.bounds,
-        "bounds_b": b.bounds,
-        "growth_a": a.growth,
-        "growth_b": b.growth,
-        "side_growth_a": a.side_growth,
-        "side_growth_b": b.side_growth,
-    }
+def _named(a: ShapeBounds, b: ShapeBounds | None) -> dict[str, Expr]:
+    """Under the names by which an operator's functions take them."""
+    of = {"": a} if b is None else {"_a": a, "_b": b}
+    return {f"{n}{end}": getattr(of[end], n) for n in BOUNDS_OF_CHILD for end in of}
 
 
-def _larger(body: Body, name: str, a: Expr, b: Expr) -> Expr:
+def _larger(body: FunctionBody, name: str, a: Expr, b: Expr) -> Expr:
     """The larger of two; nothing to compute where both are constants, as for exact shapes."""
     if a is b:
         return a
@@ -228,7 +259,7 @@ def _larger(body: Body, name: str, a: Expr, b: Expr) -> Expr:
     return body.let(name, builtin("max", a, b))
 
 
-def _corner_growth(body: Body, side_growth: Expr, dimensions: int) -> Expr:
+def _corner_growth(body: FunctionBody, side_growth: Expr, dimensions: int) -> Expr:
     """How far from the box a point is that is as far past each side; infinity stays."""
     root = constant_number(math.sqrt(dimensions))
     if isinstance(side_growth, Const):

@@ -14,25 +14,24 @@ from weakref import WeakKeyDictionary
 
 from distal.fields.guarantees import Bounds, Bounds2, Primitive
 from distal.frontend import Assembly
-from distal.ir.build import field as field_of
 from distal.ir.nodes import Construct, Param, Read, Return
-from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
+from distal.ir.types import Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.resources import Buffer, TextureValue
 from distal.lang.runtime_hook import executor
-from distal.scene.lowering.bounds import Promise, Promises
+from distal.packages import imported
+from distal.scene.lowering.bounds import PACKED, BoundsComposer, ShapeBounds, packed_types
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body, Values
+from distal.scene.tree.values import FunctionBody, Values
 
 # Functions of operators and primitives are kept; those with data of their own are too many to be.
 MOST_KEPT: Final = 512
-_PARTS: Final = ("slope", "divisor", "low", "high", "growth", "side_growth")
 
 
 @dataclass(frozen=True, slots=True)
-class KnownPromise:
-    """A promise as plain numbers; see ``promises.Promise``."""
+class KnownBounds:
+    """A promise as plain numbers; see ``promises.ShapeBounds``."""
 
     slope: float
     divisor: float
@@ -42,15 +41,15 @@ class KnownPromise:
     side_growth: float
 
 
-_known: WeakKeyDictionary[Node, KnownPromise] = WeakKeyDictionary()
-_steps: dict[Any, _Step] = {}
+_known: WeakKeyDictionary[Node, KnownBounds] = WeakKeyDictionary()
+_bounds_steps: dict[Any, _BoundsStep] = {}
 
 
-def known_promise(node: Node) -> KnownPromise:
+def known_bounds_of(node: Node) -> KnownBounds:
     """What a node promises for the parameters' defaults at time 0.
 
     Raises:
-        ModuleNotFoundError: NumPy is not installed, without which nothing is computed.
+        PackageError: NumPy is missing or broken, without which nothing is computed.
     """
     # Children first, without recursion: chains are longer than Python's stack is deep.
     for part in reversed(list(node.walk())):
@@ -59,8 +58,8 @@ def known_promise(node: Node) -> KnownPromise:
     return _known[node]
 
 
-def _computed(node: Node) -> KnownPromise:
-    inner = [known_promise(child) for child in node.children]
+def _computed(node: Node) -> KnownBounds:
+    inner = [known_bounds_of(child) for child in node.children]
     if len(inner) < 2:
         return _call(node, inner)
     # Many are joined two by two, as they are in a program.
@@ -70,19 +69,19 @@ def _computed(node: Node) -> KnownPromise:
     return result
 
 
-def _call(node: Node, inner: Sequence[KnownPromise]) -> KnownPromise:
-    import numpy as np  # noqa: PLC0415  # only what runs scene code needs it
+def _call(node: Node, inner: Sequence[KnownBounds]) -> KnownBounds:
+    np = imported("numpy")  # only what runs scene code needs it
 
     args: list[Any] = []
     for promise in inner:
-        args += [getattr(promise, part) for part in _PARTS]
+        args += [getattr(promise, part) for part in PACKED]
     args += [_plain(number.value) for number in node.numbers.values()]
     doubles = tuple(np.asarray(arg, np.float64)[None] for arg in args)
-    found = executor().call(_step_of(node, len(inner)), doubles, {}, device="reference")
+    found = executor().call(_bounds_step(node, len(inner)), doubles, {}, device="reference")
     # A shape without numbers is a function of nothing: its results have no axis of rows.
     first = [np.asarray(part, np.float64)[0 if doubles else ...].tolist() for part in found]
     slope, divisor, low, high, growth, side_growth = first
-    return KnownPromise(slope, divisor, tuple(low), tuple(high), growth, side_growth)
+    return KnownBounds(slope, divisor, tuple(low), tuple(high), growth, side_growth)
 
 
 def _plain(value: Any) -> Any:
@@ -92,23 +91,23 @@ def _plain(value: Any) -> Any:
     return found if isinstance(found, float) else tuple(found)
 
 
-def _step_of(node: Node, count: int) -> _Step:
+def _bounds_step(node: Node, count: int) -> _BoundsStep:
     """The function of a node's kind."""
     data = any(isinstance(v, Buffer | TextureValue) for v in node.constants.values())
     choices = tuple((n, getattr(v, "value", v)) for n, v in node.constants.items())
     types = tuple((n, number.type) for n, number in node.numbers.items())
     key = (node.rule, count, node.flat, types, choices)
     if data:
-        return _Step(node, count)
-    found = _steps.get(key)
+        return _BoundsStep(node, count)
+    found = _bounds_steps.get(key)
     if found is None:
-        if len(_steps) >= MOST_KEPT:
-            _steps.clear()
-        found = _steps[key] = _Step(node, count)
+        if len(_bounds_steps) >= MOST_KEPT:
+            _bounds_steps.clear()
+        found = _bounds_steps[key] = _BoundsStep(node, count)
     return found
 
 
-class _Step(Composed):
+class _BoundsStep(Composed):
     """The promise of a primitive of its numbers; of an operator of its children's promises."""
 
     def __init__(self, node: Node, count: int) -> None:
@@ -119,37 +118,33 @@ class _Step(Composed):
         self._flat, self._flat_inner, self._own = node.flat, flat_inner, own
         inner = [p for i, flat in enumerate(flat_inner) for p in _signature(f"_{i}", flat)]
         self.signature = (*inner, *own.items())
-        self.result = tuple_type(tuple(type for _, type in _signature("", node.flat)))
+        self.result = tuple_type(packed_types(node.flat))
 
     def compose(self, assembly: Assembly) -> str:
         """The function in a program."""
         values = Values(assembly)
-        body = Body(taken={name for name, _ in self.signature})
+        body = FunctionBody(taken={name for name, _ in self.signature})
         numbers = {name: Read(name, type) for name, type in self._own.items()}
         own = values.complete(self._rule, numbers, self._constants, self.name)
         inner = [_read(assembly, f"_{i}", flat) for i, flat in enumerate(self._flat_inner)]
-        promises = Promises(values)
+        promises = BoundsComposer(values)
         if isinstance(self._rule, Primitive):
             found = promises.of_primitive(body, self._rule, own, flat=self._flat)
         else:
             found = promises.of_operator(body, self._rule, inner, own)
-        bounds = body.let("bounds", found.bounds)
-        low, high = field_of(bounds, "low"), field_of(bounds, "high")
-        parts = (found.slope, found.divisor, low, high, found.growth, found.side_growth)
-        body.statements.append(Return(Construct(parts, self.result)))
+        body.statements.append(Return(found.packed(body)))
         params = [Param(name, type) for name, type in self.signature]
         return assembly.define("promise", params, self.result, body.statements)
 
 
 def _signature(suffix: str, flat: bool) -> list[tuple[str, Type]]:
-    corner = VEC2 if flat else VEC3
-    types: tuple[Type, ...] = (FLOAT, FLOAT, corner, corner, FLOAT, FLOAT)
-    return [(f"child_{part}{suffix}", type) for part, type in zip(_PARTS, types, strict=True)]
+    parts = zip(PACKED, packed_types(flat), strict=True)
+    return [(f"child_{part}{suffix}", type) for part, type in parts]
 
 
-def _read(assembly: Assembly, suffix: str, flat: bool) -> Promise:
+def _read(assembly: Assembly, suffix: str, flat: bool) -> ShapeBounds:
     slope, divisor, low, high, growth, side_growth = (
         Read(name, type) for name, type in _signature(suffix, flat)
     )
     box = Construct((low, high), assembly.struct(Bounds2 if flat else Bounds))
-    return Promise(slope, divisor, box, growth, side_growth)
+    return ShapeBounds(slope, divisor, box, growth, side_growth)

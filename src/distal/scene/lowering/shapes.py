@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from distal.fields.guarantees import PROMISED, Operator, Primitive
+from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Operator, Primitive
 from distal.frontend import Assembly
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
@@ -18,23 +18,23 @@ from distal.ir.nodes import Call, Expr, FunctionRef, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
-from distal.scene.lowering.bounds import Promises
+from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import Body, Values, plain_name
+from distal.scene.tree.values import FunctionBody, Values, plain_name
 
 # The cell of what lies in no repetition.
 ZERO_CELL: Final = constant_number(0.0, VEC3)
 
 
-class Composer:
+class ShapeComposer:
     """Makes the functions of one program's shapes."""
 
     def __init__(self, assembly: Assembly, root_nodes: Sequence[Node]) -> None:
         self.assembly = assembly
         self.call = assembly.call
         self.values = Values(assembly)
-        self.promises = Promises(self.values)
+        self.promises = BoundsComposer(self.values)
         self._keys: dict[int, int] = {}
         self._known_keys: dict[Any, int] = {}
         self._functions: dict[tuple[int, str, int | None], str] = {}
@@ -105,7 +105,7 @@ class Composer:
         names = fresh_names(node) if passed else []
         params = [Param(n, v.type) for n, v in zip(names, passed, strict=True)]
         values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
-        body = Body(taken={"p", "cell", *names})
+        body = FunctionBody(taken={"p", "cell", *names})
         cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
         result = self._emit(body, node, Read("p", point), cell, values)
         body.statements.append(Return(result))
@@ -113,7 +113,9 @@ class Composer:
         wish = f"{plain_name(node.name)}_distance"
         return self.assembly.define(wish, params, FLOAT, body.statements, node.place)
 
-    def distance(self, body: Body, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]) -> Expr:
+    def distance(
+        self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+    ) -> Expr:
         """A subtree's distance at a point."""
         shared = self._count.get(self.key(node), 0) > 1 and len(node.children) > 0
         if not shared and not node.label:
@@ -121,7 +123,9 @@ class Composer:
         name, passed = self._function(node, values, cell)
         return body.let("d", Call(name, (p, *passed), FLOAT))
 
-    def _emit(self, body: Body, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]) -> Expr:
+    def _emit(
+        self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+    ) -> Expr:
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -148,23 +152,25 @@ class Composer:
         return result
 
     def given(
-        self, body: Body, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+        self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
         """What a node's functions may ask for by name, and the numbers of each child."""
         own, shares = self.values.split(node, values)
         given = {**own, "p": p, "cell": cell}
         asked = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
-        if node.children and asked & PROMISED:
+        if node.children and asked & BOUNDS_OF_CHILDREN:
             given |= self.promises.given(body, node, shares)
         return given, shares
 
-    def moved(self, body: Body, rule: Operator, given: Mapping[str, Expr]) -> tuple[Expr, Expr]:
+    def moved(
+        self, body: FunctionBody, rule: Operator, given: Mapping[str, Expr]
+    ) -> tuple[Expr, Expr]:
         """The point and the cell that an operator's children are asked with."""
         if rule.point is None:
             return given["p"], given["cell"]
         return self.site(body, self.call(rule.point, given), given["cell"])
 
-    def site(self, body: Body, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
+    def site(self, body: FunctionBody, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
         """The point and the cell of a place that an operator gave."""
         if isinstance(place.type, Struct):
             site = body.let("site", place)

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from typing import NoReturn, TypeAlias
 
 from distal.fields.guarantees import ENDLESS, Operator
-from distal.scene.lowering.known_bounds import known_promise
+from distal.packages import PackageError
+from distal.scene.lowering.known_bounds import known_bounds_of
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 
@@ -28,11 +29,11 @@ def check_slope(node: Node) -> None:
     if not may_be_endless(node):
         return
     try:
-        slope = known_promise(node).slope
-    except ModuleNotFoundError:  # without NumPy nothing is marched here, only compiled to text
+        slope = known_bounds_of(node).slope
+    except PackageError:  # without NumPy nothing is marched here, only compiled to text
         return
     if not slope < ENDLESS:
-        boxes = [known_promise(child) for child in node.children]
+        boxes = [known_bounds_of(child) for child in node.children]
         refuse_steepness(node, [(box.low, box.high) for box in boxes])
 
 

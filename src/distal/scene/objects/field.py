@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Final, NoReturn, Self
 
 from distal.diagnostics import Span
 from distal.fields.combine import blends, joins
-from distal.fields.guarantees import EXACT, Claim, Limit, Operator, ended
+from distal.fields.guarantees import EXACT, Guarantee, Limit, Operator, ended
 from distal.frontend import Assembly
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Call, Param, Read, Return
@@ -21,8 +21,8 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
 from distal.lang.runtime_hook import executor
-from distal.scene.lowering.derived import GradientOf, PromiseOf
-from distal.scene.lowering.shapes import ZERO_CELL, Composer
+from distal.scene.lowering.derived import BoundsOf, GradientOf
+from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_slope
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
@@ -46,7 +46,7 @@ class Field(Composed, Presentable):
     result = FLOAT
     node: Node
     _gradient: GradientOf
-    _promised: PromiseOf
+    _promised: BoundsOf
 
     def __init__(self, node: Node) -> None:
         if node.parts > MOST_PARTS:
@@ -60,7 +60,7 @@ class Field(Composed, Presentable):
             "node": node,
             "signature": (("p", self.point_type),),
             "_gradient": GradientOf(node),
-            "_promised": PromiseOf(node),
+            "_promised": BoundsOf(node),
         }
         self.__dict__.update(made)
 
@@ -81,7 +81,7 @@ class Field(Composed, Presentable):
 
     def compose(self, assembly: Assembly) -> str:
         """Its distance as a function of scene code."""
-        composer = Composer(assembly, [self.node])
+        composer = ShapeComposer(assembly, [self.node])
         found = composer.field(self.node, composer.values.all(self.node), ZERO_CELL)
         if not found.captures:
             return found.name
@@ -147,7 +147,7 @@ class Field(Composed, Presentable):
         return float(self._promise(None, 0.0)[1])
 
     @property
-    def claims(self) -> frozenset[Claim]:
+    def claims(self) -> frozenset[Guarantee]:
         """What it promises besides its slope."""
         return self.node.claims
 

@@ -26,7 +26,7 @@ from distal.frontend.problems import did_you_mean
 from distal.ir.types import VEC2, VEC3
 from distal.scene.objects.field import PLAIN, Field
 from distal.scene.objects.in_plane import IN_PLANE
-from distal.scene.objects.turns import doubt_degrees
+from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
@@ -195,7 +195,7 @@ class Shape(_Placed):
             matrix: Three rows, orthonormal.
         """
         euler = {name: value for name, value in (("x", x), ("y", y), ("z", z)) if value is not None}
-        doubt_degrees(author_place(), angle, *euler.values())
+        warn_of_degrees(author_place(), angle, *euler.values())
         ways = [angle is not None or axis is not None, bool(euler)]
         ways += [quaternion is not None, matrix is not None]
         if sum(ways) != 1:
@@ -380,7 +380,7 @@ class Shape2D(_Placed):
 
     def rotate(self, angle: Any) -> Self:
         """The shape turned about the origin, counter-clockwise; radians."""
-        doubt_degrees(author_place(), angle)
+        warn_of_degrees(author_place(), angle)
         return self._with(flat_placing.ROTATE_FLAT, angle)
 
     def _solid(self, operator: Operator, *args: Any, **kwargs: Any) -> Shape:

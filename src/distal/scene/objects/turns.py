@@ -16,7 +16,7 @@ LEAST_DEGREES: Final = 30
 STEP_OF_DEGREES: Final = 15
 
 
-def doubt_degrees(place: Span | None, *angles: Any) -> None:
+def warn_of_degrees(place: Span | None, *angles: Any) -> None:
     """Warn of plain angles that are whole multiples of 15 and so large that degrees are meant."""
     for angle in angles:
         plain = isinstance(angle, int | float) and not isinstance(angle, bool)

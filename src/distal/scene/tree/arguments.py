@@ -14,7 +14,7 @@ from typing import Any, Final, NoReturn, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Span
-from distal.fields.guarantees import PROMISED, Limit, Requirement
+from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Limit, Requirement
 from distal.frontend.problems import did_you_mean
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, read_header
@@ -42,7 +42,7 @@ Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
 Accept: TypeAlias = Callable[[Any, Asked], Any]
 
 # The names of ``fields.claims`` that are no numbers of a shape.
-RESERVED: Final = PROMISED | {"p", "d", "a", "b", "field", "cell", "copies"}
+RESERVED: Final = BOUNDS_OF_CHILDREN | {"p", "d", "a", "b", "field", "cell", "copies"}
 # Those that a shape of its own keeps from its numbers: it has no distances to join.
 RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d", "copies"}
 # One number stands for all components of these.
@@ -53,7 +53,7 @@ _LETTERS: Final = "xyzw"
 
 
 @dataclass(frozen=True, slots=True)
-class Slot:
+class FunctionParameter:
     """One parameter of a scene function; ``type`` is None where a call decides it."""
 
     name: str
@@ -71,10 +71,10 @@ class Slot:
         return self.type is FLOAT or self.is_vector
 
 
-_slots: WeakKeyDictionary[Func, tuple[Slot, ...]] = WeakKeyDictionary()
+_slots: WeakKeyDictionary[Func, tuple[FunctionParameter, ...]] = WeakKeyDictionary()
 
 
-def slots_of(func: Func) -> tuple[Slot, ...]:
+def slots_of(func: Func) -> tuple[FunctionParameter, ...]:
     """A function's parameters (of its first overload).
 
     Raises:
@@ -93,7 +93,7 @@ def slots_of(func: Func) -> tuple[Slot, ...]:
                 type = None
             except AnnotationError as error:
                 raise CompileError.at(error.message, slot.span, error.hint) from None
-            made.append(Slot(slot.name, type, slot.default))
+            made.append(FunctionParameter(slot.name, type, slot.default))
         found = _slots[func] = tuple(made)
     return found
 
@@ -133,7 +133,7 @@ def arguments(
         SceneTypeError: Something unknown, missing, twice, too many, or of another kind.
         SceneValueError: A number is not finite, beyond its limit, or does not go with the others.
     """
-    binding = _Binding(_number_slots(functions, reserved), what, place, accept is not None)
+    binding = _ArgumentBinding(_number_slots(functions, reserved), what, place, accept is not None)
     binding.take_keywords(kwargs)
     binding.take_positional(args)
     values: dict[str, Given] = {}
@@ -152,9 +152,11 @@ def arguments(
     return values
 
 
-def _number_slots(functions: Func | Iterable[Func], reserved: Collection[str]) -> tuple[Slot, ...]:
+def _number_slots(
+    functions: Func | Iterable[Func], reserved: Collection[str]
+) -> tuple[FunctionParameter, ...]:
     """The parameters of all functions that are numbers or choices, each name once."""
-    found: dict[str, Slot] = {}
+    found: dict[str, FunctionParameter] = {}
     for func in (functions,) if isinstance(functions, Func) else functions:
         for slot in slots_of(func):
             if slot.name in reserved:
@@ -165,7 +167,7 @@ def _number_slots(functions: Func | Iterable[Func], reserved: Collection[str]) -
     return tuple(found.values())
 
 
-def _known_type(slot: Slot, what: str, place: Span | None) -> Type:
+def _known_type(slot: FunctionParameter, what: str, place: Span | None) -> Type:
     usable = slot.is_number or slot.type in (INT, BOOL)
     if not usable and not isinstance(slot.type, Texture | Buffer | Struct):
         kind = "no one type" if slot.type is None else f"the type {slot.type}"
@@ -197,10 +199,10 @@ def _value(given: Any, asked: Asked, accept: Accept | None) -> Given:
 
 
 @dataclass(slots=True)
-class _Binding:
+class _ArgumentBinding:
     """Which argument belongs to which parameter."""
 
-    slots: tuple[Slot, ...]
+    slots: tuple[FunctionParameter, ...]
     what: str
     place: Span | None
     takes_objects: bool
@@ -231,7 +233,7 @@ class _Binding:
         if parts:
             self._take_parts(vectors[0], parts)
 
-    def _take_parts(self, slot: Slot, parts: Mapping[str, Any]) -> None:
+    def _take_parts(self, slot: FunctionParameter, parts: Mapping[str, Any]) -> None:
         if slot.name in self.given:
             self._wrong(f"{self.what} got '{slot.name}' and its part '{next(iter(parts))}' too")
         rest = _parts_of_default(slot)
@@ -269,7 +271,7 @@ class _Binding:
                 hint = f"'{last.name}' is one number for all, or {letters}"
             self._wrong(message, hint)
 
-    def _gathered(self, slot: Slot, left: Sequence[Any]) -> int:
+    def _gathered(self, slot: FunctionParameter, left: Sequence[Any]) -> int:
         """How many scalars in a row stand for a vector: its size, or 0 where it is given whole."""
         size = _size(slot)
         scalars = 0
@@ -288,7 +290,7 @@ class _Binding:
             f"give {letters}, one vector, or parts by name: x=…",
         )
 
-    def value_of(self, slot: Slot) -> Any:
+    def value_of(self, slot: FunctionParameter) -> Any:
         """What a parameter was given, or its default."""
         if slot.name in self.given:
             return self.given[slot.name]
@@ -297,12 +299,12 @@ class _Binding:
         return slot.default
 
 
-def _size(slot: Slot) -> int:
+def _size(slot: FunctionParameter) -> int:
     assert isinstance(slot.type, Vector)
     return slot.type.size
 
 
-def _parts_of_default(slot: Slot) -> tuple[Any, ...]:
+def _parts_of_default(slot: FunctionParameter) -> tuple[Any, ...]:
     """What the parts are that nobody gave: the default's, else those that change nothing."""
     size = _size(slot)
     if slot.default is MISSING:
@@ -346,9 +348,9 @@ __all__ = [
     "RESERVED_OF_SHAPES",
     "Accept",
     "Asked",
+    "FunctionParameter",
     "Given",
     "Number",
-    "Slot",
     "arguments",
     "number",
     "slots_of",

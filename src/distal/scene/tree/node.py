@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from distal.diagnostics import Span
-from distal.fields.guarantees import EXACT, Claim, Operator, Primitive
+from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.lang.functions import Func
 from distal.scene.tree.conversion import Number
 
@@ -57,7 +57,7 @@ class Node:
         return self.label or self.rule.name
 
     @property
-    def claims(self) -> frozenset[Claim]:
+    def claims(self) -> frozenset[Guarantee]:
         """What it promises besides its slope."""
         rule = self.rule
         if isinstance(rule, Primitive):
