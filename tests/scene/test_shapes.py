@@ -141,7 +141,7 @@ def test_flat_shapes_answer_in_the_plane():
         (lambda: Sphere(-1.0), "radius of Sphere must be above 0"),
         (lambda: Sphere() | Circle(), "joins a flat shape and a solid one"),
         (lambda: Sphere().union(Box(), blend="soap"), "there is no blend 'soap'"),
-        (lambda: Sphere().rotate(x=1.0, axis=(0, 1, 0)), "a rotation is told in one way"),
+        (lambda: Sphere().rotate(x=1.0, axis=(0, 1, 0)), "a rotation is given in exactly one way"),
         (lambda: Sphere().symmetry("xw"), "symmetry takes letters of 'xyz'"),
         (lambda: Sphere().union("box"), "a union joins shapes"),
         (lambda: Scene([]), "a scene without shapes shows nothing"),

@@ -27,7 +27,7 @@ from distal.cli.base import (
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
-    from distal.scene.checks.validation import Checkup, Finding, ShapeRow
+    from distal.scene.checks.validation import CheckFinding, Checkup, ShapeRow
 
 # A tree is shown so deep; what is below a shared shape only once.
 DEEPEST = 12
@@ -170,13 +170,13 @@ def _measurements(checkup: Checkup) -> Iterator[str]:
         yield f"{count} of {all_of_them} shapes were measured"
 
 
-def _is_in(finding: Finding, checkup: Checkup) -> bool:
+def _is_in(finding: CheckFinding, checkup: Checkup) -> bool:
     return finding.shape in checkup.slope_from
 
 
-def _gathered(findings: Sequence[Finding]) -> list[tuple[Finding, int]]:
+def _gathered(findings: Sequence[CheckFinding]) -> list[tuple[CheckFinding, int]]:
     """Findings, each with how many more of its kind come from the same line."""
-    groups: dict[Any, list[Finding]] = {}
+    groups: dict[Any, list[CheckFinding]] = {}
     for finding in findings:
         groups.setdefault((finding.severity, finding.code, finding.told.span), []).append(finding)
     return [(group[0], len(group) - 1) for group in groups.values()]

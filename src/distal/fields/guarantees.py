@@ -1,10 +1,10 @@
-"""What fields and operators promise, beside the functions themselves.
+"""Declarations of primitives and operators: their functions and what these guarantee.
 
-Input: ``@func`` functions and the promises made about them. Output: ``Primitive``
-and ``Operator`` rows, kept in the order of their declaration. Knows neither the object model that
-reads them nor how anything is rendered.
+Input: ``@func`` functions, and bounds on their slopes, boxes and growth. Output: ``Primitive`` and
+``Operator`` declarations, in their order. Does not depend on the object model that reads them, or
+on rendering.
 
-Functions are joined by the names of their parameters. Some names have a fixed meaning:
+Values are bound by parameter name. Some names have a fixed meaning:
 ``p`` the point, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a function of a point,
 ``cell`` the index of the repetition the point lies in, ``slope``/``slope_a``/``slope_b`` bounds on
 |gradient|, ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and ``side_growth`` (with ``_a``,
@@ -13,7 +13,7 @@ other parameter is a number of the shape, or a choice (int, bool) fixed when it 
 
 Growth. A box holds the surface and the inside: all points where the field is 0 or less. An operator
 that moves the surface out by r (rounding, offsets, blends) needs a box around all points where the
-field is r or less. A field may be far below the distance there, so each field also promises its
+field is r or less. A field may be far below the distance there, so each field also declares its
 *growth* c: for every r >= 0 these points lie within c * r of the box. In other words: a point
 outside the box is at most c times its value away from it. ``growth`` measures the Euclidean
 distance from the box, which rotations keep. ``side_growth`` measures how far each side must be
@@ -35,7 +35,7 @@ from distal.lang import Func as SceneFunction
 from distal.lang import func, struct, vec2, vec3
 from distal.lang.functions import Func
 
-# Stands for infinity in boxes: finite, so that it can be added and turned. A side beyond a
+# Represents infinity in boxes: finite, so that it can be added and rotated. A side beyond a
 # thousandth of it is infinite.
 UNBOUNDED: Final = 1e18
 ENDLESS: Final = UNBOUNDED / 1000.0
@@ -101,7 +101,7 @@ USUAL_LIMITS: Final[Mapping[str, Limit]] = {
 
 
 class Guarantee(Enum):
-    """What a field may promise besides a bound on its slope.
+    """What a field may guarantee besides a bound on its slope.
 
     EXACT_OUTSIDE: outside, the value is the distance to the surface. EXACT_INSIDE: inside, it is
     minus that. LOWER_BOUND: outside, it is never more than the distance.
@@ -152,9 +152,10 @@ class Primitive:
 
     Attributes:
         name: The class's name in the object model: "CappedTorus".
-        distance: ``(p, *numbers) -> float``; the point's type tells solid or flat. Defaults of its
+        distance: ``(p, *numbers) -> float``; the point's type is vec3 for a solid, vec2 for a flat
+            shape. Defaults of its
             parameters are the shape's defaults; its docstring is the shape's.
-        claims: What it promises.
+        claims: Its guarantees besides the bound on its slope.
         slope: Bound on |gradient| everywhere; a number, or a function of the shape's numbers.
         bounds: ``(*numbers) -> Bounds`` (``Bounds2``), or None for a shape without end.
         growth: Bound on the growth; a number, or a function of the shape's numbers. None: 1 where
@@ -192,15 +193,15 @@ class Operator:
 
     One of four kinds, by what is given:
 
-    * ``point`` and/or ``finish``: the child is asked at ``point(p, …)`` (a vec3, a vec2 or a
+    * ``point`` and/or ``finish``: the child is evaluated at ``point(p, …)`` (a vec3, a vec2 or a
       ``Site``), and its value ``d`` goes through ``finish(d[, p], …) -> float``. ``p`` is the
       operator's own point, before ``point`` moved it.
-    * ``combine(a, b[, p], …) -> float``: of two children; ``mix`` tells with the same parameters
-      how much of b's material shows, 0 to 1 (None: whichever child is nearer by ``b < a``).
-    * ``around(field, p, …) -> float``: asks the child at several points. ``site(field, p, …)``
+    * ``combine(a, b[, p], …) -> float``: of two children; ``mix`` gives with the same parameters
+      the share of b's material, 0 to 1 (None: whichever child is nearer by ``b < a``).
+    * ``around(field, p, …) -> float``: evaluates the child at several points. ``site(field, p, …)``
       gives the place (vec3 or ``Site``) whose material shows at p.
 
-    All of these may also ask for what the rules ask for, by the same names: the ``bounds`` and the
+    All of these may also take what the rules take, by the same names: the ``bounds`` and the
     ``slope`` of the child (``bounds_a``, ``slope_b`` …), computed once per frame.
 
     Attributes:
@@ -208,9 +209,9 @@ class Operator:
         copies: ``(*numbers) -> struct``: a value of the numbers alone, which the other functions
             take by the name ``copies``: which copies a repetition has.
         fixed: Values of parameters of the other functions that are no numbers of the operator.
-        keeps: The claims that survive when all children have them. The others are lost (a slope of
-            at most 1 makes a lower bound anyway, whoever claims it).
-        keeps_exact: The claims that hold, besides those, when all children are exact inside and
+        keeps: The guarantees that hold when they hold for all children. The others are lost (a
+            slope of at most 1 makes a lower bound in any case).
+        keeps_exact: The guarantees that hold, besides those, when all children are exact inside and
             outside: a difference is exact inside only if what it takes away is exact outside.
         slope: None where the slope stays (of two: the larger); a number multiplies it; a function
             of ``slope`` (``slope_a``, ``slope_b``), ``bounds`` and numbers gives it.
@@ -297,7 +298,7 @@ F = TypeVar("F", bound=Func)
 
 
 def ended(value: float) -> float:
-    """A computed bound as a number, infinite where it is none."""
+    """A computed bound as a number, infinite where there is no bound."""
     return float(value) if abs(value) < ENDLESS else math.copysign(math.inf, value)
 
 

@@ -1,4 +1,4 @@
-"""Shaped edges: what stands where two shapes meet, and what is cut along their seam.
+"""Shaped edges: material added where two shapes meet, and cut along their seam.
 
 Input: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. What
 flows out: the distance of the union (``edges`` makes the intersections and differences of it),

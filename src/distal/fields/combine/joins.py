@@ -1,7 +1,7 @@
 """Shapes made of two others: unions, cuts, morphs, displacement.
 
 Input: two distances. Output: the distance of the result, and the rules of its
-slope, its box and its material. Knows no names of blends (``edges`` makes those rows), no points.
+slope, its box and its material. Blends are declared in ``blends``.
 """
 
 from __future__ import annotations

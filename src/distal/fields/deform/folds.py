@@ -83,7 +83,7 @@ def wrapped_value(d: float, p: vec3, radius: float, bounds: Bounds) -> float:
 
 @func
 def wrapped_slope(slope: float, bounds: Bounds, radius: float) -> float:
-    """The radius over the least distance from the axis at which the child is asked."""
+    """The radius over the least distance from the axis at which the child is evaluated."""
     inner = wrapped_inner(bounds, radius)
     crowded = inner <= 1e-3 * radius or wrapped_half(bounds, radius) > 0.98 * PI
     stretch = radius / max(0.75 * inner, 1e-12)
@@ -146,7 +146,7 @@ def farthest_of(bounds: Bounds) -> float:
 
 @func
 def scale_index(p: vec3, ratio: float, bounds: Bounds) -> float:
-    """Which of the copies is asked: the borders are halfway between their annuli."""
+    """Which of the copies is evaluated: the borders are halfway between their annuli."""
     border = 0.5 * (nearest_of(bounds) + farthest_of(bounds) / ratio)
     return floor(log2(max(length(p), 1e-12) / border) / log2(ratio))
 
@@ -163,7 +163,7 @@ def rescaled(p: vec3, ratio: float, bounds: Bounds) -> Site:
 
 @func
 def rescaled_value(d: float, p: vec3, ratio: float, bounds: Bounds) -> float:
-    """The value, safe for the copies inside and outside: annuli stand in for them (``repeat``)."""
+    """The value, safe for the copies inside and outside: annuli replace them (``repeat``)."""
     scale = exp2(scale_index(p, ratio, bounds) * log2(ratio))
     rho = length(p) / scale
     near, far = nearest_of(bounds), farthest_of(bounds)
@@ -174,7 +174,7 @@ def rescaled_value(d: float, p: vec3, ratio: float, bounds: Bounds) -> float:
 
 @func
 def rescaled_slope(slope: float, bounds: Bounds, ratio: float) -> float:
-    """The child's, where its annulus leaves room for the next."""
+    """The child's, where its annulus leaves a gap to the next."""
     near, far = nearest_of(bounds), farthest_of(bounds)
     crowded = far * (1.0 + 2.0 * ROOM) >= near * ratio
     return select(crowded, UNBOUNDED, max(slope, 1.0))

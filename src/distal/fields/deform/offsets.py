@@ -1,10 +1,10 @@
 """A shape changed by its value alone, and cut by a plane: rounding, offsets, shells.
 
-Input: a distance. Output: the distance of the new surface, its box, its claims.
+Input: a distance. Output: the distance of the new surface, its box, its guarantees.
 Knows no second shape.
 
 A surface that is moved out by r is where the old field is r. The box grows by r times the growth
-(``claims``), as a field may be far below the distance there.
+(``guarantees``), as a field may be far below the distance there.
 A lower bound is not kept by moving the surface: it says nothing of the levels inside and near it.
 """
 

@@ -30,7 +30,7 @@ from distal.lang import (
     vec2,
 )
 
-# Ends of what lies between two points, unless told otherwise.
+# The default ends of shapes between two points.
 LEFT: Final = vec2(-0.5, 0.0)
 RIGHT: Final = vec2(0.5, 0.0)
 PI: Final = 3.141592653589793

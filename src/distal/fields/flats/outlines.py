@@ -4,7 +4,7 @@ Input: a point, and the edges as data. Curves must rise or fall all the way, so 
 crosses a level once; whoever makes the data splits them (``scene.outlines``). Output: the
 distance to the nearest edge, negative where the chains go around.
 
-No class is made of this row: its data have a form that only ``scene.outlines`` knows.
+No class is made of this primitive: only ``scene.objects.outlines`` writes its data.
 """
 
 from __future__ import annotations

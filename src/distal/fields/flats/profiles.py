@@ -239,7 +239,7 @@ def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: floa
         p: Point.
         image: The distances, negative inside.
         size: Width and height that the image covers, its middle at the origin.
-        scale: The distance that a texel of value 1 stands for.
+        scale: The distance that a texel of value 1 represents.
 
     Source: bilinear interpolation; outside the image the way to it is added.
 

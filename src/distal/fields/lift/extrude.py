@@ -1,6 +1,6 @@
 """From the plane to space: extruding flat shapes, plain, twisted, tapered, and from one to another.
 
-Input: the distance of a flat shape, the point, and what the shape promises. What flows out:
+Input: the distance of a flat shape, the point, and the shape's bounds. Output:
 the distance of the solid, and the rules of its slope and box. The plane is that of x and y, solids
 stand along z, their middle at z = 0.
 """
@@ -71,7 +71,7 @@ def circle_around(bounds: Bounds2) -> float:
 
 @func
 def within_circle(q: vec2, radius: float) -> vec2:
-    """The point, or that of the circle before it: what lies farther is not asked."""
+    """The point, or that of the circle before it: what lies farther is not evaluated."""
     return q * min(1.0, radius / max(length(q), TINY))
 
 

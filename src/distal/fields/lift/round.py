@@ -1,6 +1,6 @@
 """Between the plane and space by turning, wrapping, cutting and casting shadows.
 
-Input: the distance of a flat shape or of a solid, the point, and what the shape promises.
+Input: the distance of a flat shape or of a solid, the point, and the shape's bounds.
 Output: the distance of the solid or the flat shape, and the rules of its slope and box.
 """
 

@@ -4,7 +4,7 @@ Input: a point. Output: the point to ask the shape at, and the box of all images
 Knows nothing of repetition (``repeat``).
 
 A fold never moves two points apart: it keeps every slope, and a lower bound stays one, since no
-image of the shape is nearer to a point than the shape is to where the point is asked. Exactness is
+image of the shape is nearer to a point than the shape is to the point of evaluation. Exactness is
 lost where the shape reaches through a mirror: what lies behind it is not seen, but still measured.
 """
 

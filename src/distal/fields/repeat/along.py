@@ -168,7 +168,7 @@ def nearest_on_ring(
     beyond = abs(away.xz) - copies.origin.xz - half.xz
     opposite = length(vec2(max(min(beyond.x, beyond.y), 0.0), above))
     best = column if column.distance < row.distance else row
-    # A side that is not asked stands in as endless, which it is not beyond the box of all.
+    # A side that is not evaluated counts as endless, which is wrong beyond the box of all copies.
     block = bounds_in(bounds, copies)
     return Nearest(max(min(best.distance, opposite), box_distance(p, block)), best.site)
 
@@ -192,7 +192,7 @@ def around_ring_site(
 
 @func
 def nearest_at(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> Nearest:
-    """The nearest of all copies: every one is asked."""
+    """The nearest of all copies: every one is evaluated."""
     nearest = UNBOUNDED
     site = Site(p, vec3(0.0))
     for i in range(size(positions)):

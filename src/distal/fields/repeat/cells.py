@@ -47,7 +47,7 @@ from distal.lang import (
 
 # The share of the spacing that must be free on each side of a copy's box.
 ROOM = 0.01
-# The same where copies may overlap: how much nearer the asked ones must be than the others.
+# The same where copies may overlap: how much nearer the evaluated ones must be than the others.
 LEAD = 0.1
 
 
@@ -63,7 +63,7 @@ class Copies:
 
 @struct
 class Nearest:
-    """The nearest of the copies that were asked: its distance, and where it was asked."""
+    """The nearest of the evaluated copies: its distance, and the place of evaluation."""
 
     distance: float
     site: Site
@@ -142,14 +142,14 @@ def at_end(away: vec3, copies: Copies, index: vec3) -> vec3:
 def to_others(
     away: vec3, half: vec3, copies: Copies, index: vec3, neighbours: int, limited: bool
 ) -> vec3:
-    """Along each axis, how far the box of the nearest copy is that is not asked.
+    """Along each axis, the distance to the box of the nearest copy that is not evaluated.
 
     Args:
         away: The point from the middle of the nearest copy's box.
         half: Half of the box.
         copies: All copies.
         index: The nearest copy.
-        neighbours: 0: only it is asked; 1: also the next toward the point; 2: on both sides.
+        neighbours: 0: only it is evaluated; 1: also the next toward the point; 2: on both sides.
         limited: Whether there are ends.
     """
     distance = abs(away)
@@ -171,10 +171,10 @@ def distance_to_box(away: vec3, half: vec3) -> float:
 
 @func
 def distance_to_others(away: vec3, half: vec3, gap: vec3) -> float:
-    """The distance to the boxes of the copies that are not asked.
+    """The distance to the boxes of the copies that are not evaluated.
 
     Such a copy is ``gap`` away along at least one axis; along the others it may stand as near as
-    the asked ones.
+    the evaluated ones.
     """
     beside = max(abs(away) - half, vec3(0.0))
     across = max(gap, beside)
@@ -209,7 +209,7 @@ def value_in(d: float, p: vec3, copies: Copies, bounds: Bounds, limited: bool) -
 
 @func
 def slope_in(slope: float, bounds: Bounds, copies: Copies, neighbours: int) -> float:
-    """The child's slope, or 1; none where the boxes leave no room."""
+    """The child's slope, or 1; none where the boxes leave no gap."""
     half = half_of(bounds)
     room = 0.5 * copies.spacing - half
     share = ROOM
@@ -246,7 +246,7 @@ def nearest_copy(
     neighbours: int,
     limited: bool,
 ) -> Nearest:
-    """The nearest of the copies around the point; safe for those that are not asked."""
+    """The nearest of the copies around the point; safe for those that are not evaluated."""
     index = nearest_index(p, copies, bounds)
     middle = middle_of(bounds)
     q = beside(p, copies, index)

@@ -172,7 +172,7 @@ def mirrored_cells_bounds(bounds: Bounds2, spacing: vec2) -> Bounds2:
     return flat_bounds(bounds_in(slab(bounds), endless(in_space(spacing))))
 
 
-# Around the origin: the plane stands for the ground, where y points away from z
+# Around the origin: the plane becomes the ground, with y along -z
 
 
 @func
@@ -239,7 +239,7 @@ def repeated_polar_flat_site(
 def repeated_polar_flat_around_slope(
     slope: float, bounds: Bounds2, count: int, neighbours: int
 ) -> float:
-    """The child's, where the asked copies are nearer than the others."""
+    """The child's, where the evaluated copies are nearer than the others."""
     return repeated_polar_around_slope(slope, column(bounds), count, neighbours)
 
 

@@ -42,8 +42,8 @@ FITS_CELL: Final = (
     "larger one, or mirrored=True for one that is symmetric in its cell"
 )
 FITS_NEIGHBOURS: Final = (
-    "a shape smaller than the cells that are asked: its box may reach 0.9 spacings from its middle "
-    "with neighbours=1, 1.4 with neighbours=2"
+    "a shape smaller than the cells that are evaluated: its box may reach 0.9 spacings from its "
+    "middle with neighbours=1, 1.4 with neighbours=2"
 )
 
 

@@ -1,13 +1,13 @@
-"""A solid again and again around the y axis.
+"""Repetition of a solid around the y axis.
 
 Input: a point, how many copies, the child's box. Output: the point in a copy's own
 space, the copy's index, and a value that is safe to march. The first copy is the child itself,
 wherever it stands; the others follow counterclockwise as seen from above.
 
-Safe by the rule of ``repeat``, with sectors of an annulus for boxes: a copy's box lies within an
+Bounded as in ``cells``, with sectors of an annulus for boxes: a copy's box lies within an
 angle of the direction to its middle and no nearer to the axis than some radius. Both distances, to
-the sector's flat side and to its inner radius, rise by 1 per unit, and where the set of asked
-copies changes the one that leaves is as far as the one that enters.
+the sector's flat side and to its inner radius, rise by 1 per unit, and where the set of
+evaluated copies changes, the one that leaves it is as far away as the one that enters.
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
 def nearest_polar(
     field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> Nearest:
-    """The nearest of the copies next to the point; safe for those that are not asked."""
+    """The nearest of the copies next to the point; safe for those that are not evaluated."""
     sector = sector_of(bounds)
     index = polar_index(p, count, sector)
     own = turned_by(p, index, count)
@@ -223,7 +223,7 @@ def repeated_polar_around_site(
 
 @func
 def repeated_polar_around_slope(slope: float, bounds: Bounds, count: int, neighbours: int) -> float:
-    """The child's, where the asked copies are nearer than the others."""
+    """The child's, where the evaluated copies are nearer than the others."""
     reach = 1.0 if neighbours == 1 else 1.5
     free = min(2.0 * PI / float(count) * reach * (1.0 - LEAD), 0.49 * PI)
     return sector_slope(slope, bounds, free)
@@ -235,7 +235,7 @@ def polar_requirement(count: int) -> str | None:
 
 
 def polar_around_requirement(count: int, neighbours: int) -> str | None:
-    """Why so many copies cannot be asked, or None."""
+    """Why so many copies cannot be evaluated, or None."""
     if neighbours not in (1, 2):
         return "neighbours must be 0, 1 or 2"
     return None if count > neighbours else f"count must be {neighbours + 1} or more"
@@ -246,8 +246,8 @@ POLAR_FITTING = (
     "for a wider one, or kaleidoscope for one that is symmetric in its sector"
 )
 POLAR_SMALLER = (
-    "a shape beside the y axis, narrower than the sectors that are asked and less than half a turn "
-    "wide"
+    "a shape beside the y axis, narrower than the sectors that are evaluated and less than half a "
+    "turn wide"
 )
 REPEAT_POLAR = operator(
     "repeat polar",

@@ -16,7 +16,7 @@ from distal.lang.functions import Func
 # Keeps a division defined where numbers vanish; far below any length that a scene has.
 TINY: Final = 1e-12
 
-# Where shapes between two points stand unless told otherwise.
+# The default ends of shapes between two points.
 LOW_END: Final = vec3(0.0, -0.5, 0.0)
 HIGH_END: Final = vec3(0.0, 0.5, 0.0)
 

@@ -73,7 +73,7 @@ def heightfield(
 ) -> float:
     """Terrain from an image of heights, in its first channel; its edges go on without end.
 
-    The promise holds if the ground rises nowhere by more than ``steepness``: take it from the data,
+    The bound holds if the ground rises nowhere by more than ``steepness``: take it from the data,
     the largest difference of neighbouring texels times ``height`` over their distance, across and
     along, squared, added, the root drawn.
 
@@ -82,7 +82,7 @@ def heightfield(
         image: The heights; the image lies on the ground, its upper side away from the viewer (at
             the smallest z).
         size: Width and depth that the image covers, its middle at the origin.
-        height: The height that a texel of value 1 stands for.
+        height: The height that a texel of value 1 represents.
         steepness: The most that the ground rises over a horizontal way of 1.
 
     Source: John C. Hart, "Sphere tracing" (1996), for the bound.

@@ -1,4 +1,4 @@
-"""Circles and what stands at a distance from them: rings, arcs, links, discs.
+"""Circles and what lies at a distance from them: rings, arcs, links, discs.
 
 Input: a point and the numbers of a shape. Output: the distance. Rings lie flat,
 around the y axis.

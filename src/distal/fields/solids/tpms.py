@@ -292,14 +292,14 @@ def iwp(
 
 @func
 def graded(a: float, b: float, near_thickness: float, far_thickness: float, span: float) -> float:
-    """A sheet around the first surface, its thickness told by the second shape's distance."""
+    """A sheet around the first surface, its thickness set by the second shape's distance."""
     share = clamp(b / span, 0.0, 1.0)
     return abs(a) - 0.5 * (near_thickness + (far_thickness - near_thickness) * share)
 
 
 @func
 def graded_mix(a: float, b: float) -> float:
-    """The second shape tells the thickness alone and shows nowhere."""
+    """The second shape sets only the thickness and shows nowhere."""
     return 0.0
 
 

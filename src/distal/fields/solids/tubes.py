@@ -226,7 +226,7 @@ def cubic_bezier_tube(
         end: Where it ends.
         start_radius: Radius at ``start``.
         end_radius: Radius at ``end``.
-        pieces: How many straight pieces stand for the curve.
+        pieces: Number of straight pieces that approximate the curve.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/), for
     each piece, a round cone.
@@ -288,7 +288,7 @@ def tapered_bezier_tube(
         end: Where it ends.
         start_radius: Radius at ``start``.
         end_radius: Radius at ``end``.
-        pieces: How many straight pieces stand for the curve.
+        pieces: Number of straight pieces that approximate the curve.
 
     Source: ``cubic_bezier_tube``, the curve raised by a degree.
 

@@ -84,7 +84,7 @@ def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float
         p: Point.
         volume: The distances, negative inside.
         size: Of the box, its middle at the origin; samples lie in the middles of equal cells.
-        scale: The distance that a sample of value 1 stands for.
+        scale: The distance that a sample of value 1 represents.
 
     Source: trilinear interpolation.
 

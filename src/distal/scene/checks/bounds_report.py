@@ -1,6 +1,6 @@
-"""What every shape of a tree promises, as numbers: its slope, its divisor, its box.
+"""The bounds of every shape of a tree as numbers: its slope, its divisor, its box.
 
-Input: a tree. Output: one row for each node, computed in one call.
+Input: a tree. Output: bounds for each node, computed in one call.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from distal.scene.tree.values import FunctionBody, Values
 
 @dataclass(frozen=True, slots=True)
 class NodeBounds:
-    """What a shape promises at one time, for one set of parameters.
+    """The bounds of a shape at one time, for one set of parameters.
 
     Attributes:
         slope: Bound on |gradient|.
@@ -47,11 +47,11 @@ class NodeBounds:
 
 
 def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[int, NodeBounds]:
-    """What each node of a tree promises, by the id of the node."""
+    """The bounds of each node of a tree, by the id of the node."""
     nodes = list(root.walk())
     which = np.arange(len(nodes), dtype=np.int32)
     asked = _NodeBounds(root, nodes)
-    # Interpreted: machine code for the promises of a thousand shapes takes half a minute to make.
+    # Interpreted: machine code for the bounds of a thousand shapes takes half a minute to make.
     rows = executor().call(asked, (which,), {}, params=params, time=time, device="reference")
     slopes, divisors, lows, highs = (np.asarray(part, np.float64) for part in rows)
     return {
@@ -66,11 +66,11 @@ def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[
 
 
 class _NodeBounds(Composed):
-    """The promise of the node of a number."""
+    """The bounds of the node of a number."""
 
     def __init__(self, root: Node, nodes: Sequence[Node]) -> None:
         self._root, self._nodes = root, nodes
-        self.name = f"promises of {root.name}"
+        self.name = f"bounds of {root.name}"
         self.signature = (("i", INT),)
         self.result = tuple_type((FLOAT, FLOAT, VEC3, VEC3))
 
@@ -78,9 +78,9 @@ class _NodeBounds(Composed):
         """The function of the number."""
         body = FunctionBody(taken={"i"})
         values = Values(assembly)
-        promises = RememberedBounds(values)
-        promises.of(body, self._root, values.all(self._root))
-        rows = [_row(promises.found[id(node)]) for node in self._nodes]
+        composer = RememberedBounds(values)
+        composer.of(body, self._root, values.all(self._root))
+        rows = [_columns(composer.found[id(node)]) for node in self._nodes]
         which = Read("i", INT)
         picked: list[Expr] = []
         # One list for each column: a chain of a thousand ifs would be too deep for the passes.
@@ -91,12 +91,12 @@ class _NodeBounds(Composed):
             picked.append(index(body.let(name, whole), which))
         body.statements.append(Return(Construct(tuple(picked), self.result)))
         params = (Param("i", INT),)
-        return assembly.define("promises", params, self.result, body.statements)
+        return assembly.define("bounds", params, self.result, body.statements)
 
 
-def _row(promise: ShapeBounds) -> tuple[Expr, ...]:
-    corners = (field_of(promise.bounds, name) for name in ("low", "high"))
-    return (promise.slope, promise.divisor, *map(_in_space, corners))
+def _columns(bounds: ShapeBounds) -> tuple[Expr, ...]:
+    corners = (field_of(bounds.bounds, name) for name in ("low", "high"))
+    return (bounds.slope, bounds.divisor, *map(_in_space, corners))
 
 
 def _in_space(corner: Expr) -> Expr:

@@ -44,7 +44,7 @@ class Probed:
         path: The shape that was met, and what it is part of, from the whole inwards; empty where
             nothing was met.
         material: What paints it, or None.
-        slope: What the whole promises.
+        slope: The bound on the slope of the whole.
     """
 
     pixel: tuple[int, int]
@@ -115,7 +115,9 @@ def probe(
     place = (x + 0.5, height - y - 0.5)
     resolution = (float(width), float(height))
     seen = executor().call(program, (place, resolution), {}, params=params, time=time)
-    slope = float(executor().call(scene.shape._promised, (), {}, params=params, time=time)[0])
+    slope = float(
+        executor().call(scene.shape._bounds_function, (), {}, params=params, time=time)[0]
+    )
     path: tuple[Node, ...] = ()
     material = None
     if seen.found:

@@ -1,7 +1,7 @@
-"""What a tree of shapes claims, where its slope comes from, and whether measurements agree.
+"""Validation of a tree of shapes: its guarantees, its bounds, and measurements of both.
 
-Input: a shape. Output: a ``Checkup``: a row for each shape, findings, each with its
-place in the author's file, and the same as plain values for editors (``Checkup.as_json``).
+Input: a shape. Output: a ``Checkup``: figures for each shape, findings, each with its place in the
+author's file, and the same as plain values for editors (``Checkup.as_json``).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ON_FOOT: Final = 0.98
 
 
 class Severity(Enum):
-    """How grave a finding is: an error is a claim that does not hold."""
+    """How severe a finding is: an error is a guarantee that does not hold."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -37,7 +37,7 @@ class Severity(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CheckFinding:
     """One thing to know of a shape.
 
     Attributes:
@@ -56,7 +56,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class ShapeRow:
-    """One shape of a tree; a shape that stands in several places has one row.
+    """One shape of a tree; a shape used in several places is listed once.
 
     Attributes:
         children: Numbers of the shapes that it is made of.
@@ -81,11 +81,11 @@ class Checkup:
 
     shapes: tuple[ShapeRow, ...]
     slope_from: tuple[int, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[CheckFinding, ...]
 
     @property
     def holds(self) -> bool:
-        """Whether no claim was found violated."""
+        """Whether no guarantee was found violated."""
         return not any(f.severity is Severity.ERROR for f in self.findings)
 
     def as_json(self) -> dict[str, Any]:
@@ -112,7 +112,7 @@ class Checkup:
 def check(
     shape: Field, params: Mapping[str, Any] | None = None, time: float = 0.0, seed: int = 0
 ) -> Checkup:
-    """Look a shape and all its parts over.
+    """Validate a shape and all its parts.
 
     Args:
         shape: The whole.
@@ -139,11 +139,11 @@ def check(
     return Checkup(tuple(rows), _slope_from(rows), tuple(found))
 
 
-def _at_their_roots(found: Sequence[Finding], rows: Sequence[ShapeRow]) -> list[Finding]:
+def _at_their_roots(found: Sequence[CheckFinding], rows: Sequence[ShapeRow]) -> list[CheckFinding]:
     """Without the errors of shapes that only pass on what is wrong with a part of theirs."""
     wrong = {(f.code, id(rows[f.shape].node)) for f in found if f.severity is Severity.ERROR}
 
-    def is_passed_on(f: Finding) -> bool:
+    def is_passed_on(f: CheckFinding) -> bool:
         below = list(rows[f.shape].node.walk())[1:]
         return f.severity is Severity.ERROR and any((f.code, id(n)) in wrong for n in below)
 
@@ -192,9 +192,11 @@ def _slope_from(rows: Sequence[ShapeRow]) -> tuple[int, ...]:
 # Findings
 
 
-def _findings(i: int, row: ShapeRow, rows: Sequence[ShapeRow]) -> Iterator[Finding]:
-    def finding(severity: Severity, code: str, message: str, hint: str | None = None) -> Finding:
-        return Finding(severity, code, i, Diagnostic(message, row.node.place, hint))
+def _findings(i: int, row: ShapeRow, rows: Sequence[ShapeRow]) -> Iterator[CheckFinding]:
+    def finding(
+        severity: Severity, code: str, message: str, hint: str | None = None
+    ) -> CheckFinding:
+        return CheckFinding(severity, code, i, Diagnostic(message, row.node.place, hint))
 
     if row.measured is not None:
         yield from _violations(row, row.measured, finding)
@@ -213,7 +215,7 @@ def _findings(i: int, row: ShapeRow, rows: Sequence[ShapeRow]) -> Iterator[Findi
         yield from _of_operator(row, [r.node for r in inner], finding)
 
 
-def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[Finding]:
+def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[CheckFinding]:
     name, own = row.node.name, is_own(row.node)
     severity = Severity.WARNING if row.node.estimate else Severity.ERROR
     if measured.undefined_at is not None:
@@ -240,7 +242,7 @@ def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[Fin
         yield finding(Severity.ERROR, "not-exact", message, "exact=False" if own else None)
 
 
-def _endless(row: ShapeRow, finding: Any) -> Finding:
+def _endless(row: ShapeRow, finding: Any) -> CheckFinding:
     unknown = _without_growth(row.node)
     if unknown is not None:
         message = (
@@ -248,12 +250,12 @@ def _endless(row: ShapeRow, finding: Any) -> Finding:
             "bounds is not known"
         )
         hint = f"growth=1 for '{unknown.name}' if it is at least the distance to its bounds"
-        grown: Finding = finding(Severity.WARNING, "no-growth", message, hint)
+        grown: CheckFinding = finding(Severity.WARNING, "no-growth", message, hint)
         return grown
     message = f"{described(row.node)} has no end: no box keeps rays from looking for it"
     if is_own(row.node):
         hint = "bounds=((x, y, z), (x, y, z)) say where it ends"
-        found: Finding = finding(Severity.WARNING, "no-box", message, hint)
+        found: CheckFinding = finding(Severity.WARNING, "no-box", message, hint)
     else:
         found = finding(Severity.NOTE, "no-box", message)
     return found
@@ -274,7 +276,7 @@ def _without_growth(node: Node) -> Node | None:
     return None
 
 
-def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator[Finding]:
+def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator[CheckFinding]:
     rule = row.node.rule
     if isinstance(rule, Operator) and not rule.local and len(inner) > 1:
         message = f"{rule.name} changes shapes everywhere, not only where they meet"
@@ -282,7 +284,7 @@ def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator
             Severity.WARNING, "blend-everywhere", message, "blend='cubic' keeps far parts"
         )
     lost = [c for c in Guarantee if c not in row.node.claims and all(c in n.claims for n in inner)]
-    # Where the slope is 1 the value never exceeds the distance, whoever claims it.
+    # Where the slope is 1 the value never exceeds the distance, whatever is guaranteed.
     lost = [
         c for c in lost if c is not Guarantee.LOWER_BOUND or row.promised.slope > 1.0 + ROUNDING
     ]
@@ -364,7 +366,7 @@ def _shape_json(i: int, row: ShapeRow) -> dict[str, Any]:
 
 
 def claims_told(node: Node) -> list[str]:
-    """A shape's claims in words, in a settled order."""
+    """A shape's guarantees in words, in a fixed order."""
     return [c.value for c in Guarantee if c in node.claims]
 
 

@@ -1,8 +1,8 @@
-"""Doubts about a scene that is drawn: own functions that break their word, pictures that are black.
+"""Warnings while a scene is drawn: own functions that break their bounds, black pictures.
 
-Input: a scene, the values of its parameters, the picture. Output: a warning at the
-author's line, or an error where nothing can be seen. A few hundred places are asked: enough for
-the mistakes that spoil a picture. ``checkup`` looks more closely, when it is asked to.
+Input: a scene, the values of its parameters, the picture. Output: a warning at the author's line,
+or an error where nothing can be seen. A few hundred points are evaluated, enough for mistakes that
+spoil a picture; ``validation`` measures more closely.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ from distal.scene.tree.node import Node
 Points = NDArray[np.float64]
 
 PLACES: Final = 512
-# Where a function says nothing of its box it is looked at within this.
+# A function without a box is evaluated within this.
 REACH: Final = 2.0
 # Differences are taken over this share of the box.
 STEP: Final = 1e-4
-# A slope written with two digits is meant well.
+# A slope written with two digits is accepted.
 SLACK: Final = 1.05
 
 _looked_at: WeakSet[Node] = WeakSet()
 
 
 def doubt_functions(shape: Field, params: Mapping[str, Any], time: float) -> None:
-    """Look once at every function of the author's in a shape.
+    """Check once every function of the author's in a shape.
 
     Raises:
         SceneValueError: One gives no number anywhere.
@@ -111,7 +111,7 @@ def _read(obj: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
 
 def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float) -> None:
     claimed = node.numbers["slope"].plain
-    if not isinstance(claimed, float):  # it may follow parameters: the checkup computes it
+    if not isinstance(claimed, float):  # it may follow parameters: ``validation`` computes it
         return
     h = STEP * size
     # Along the direction in which the value changes fastest, the change is at most the slope.
@@ -122,8 +122,8 @@ def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float)
     at = int(np.argmax(change))
     if change[at] > SLACK * claimed:
         found = f"'{node.name}' changes by {change[at]:.3g} for a unit of way near {_shown(p[at])}"
-        mend = f"rays may pass through it; give slope={1.05 * change[at]:.2g} or more"
-        _warn(f"{found}, and its slope promises {claimed:g} at most: {mend}", node)
+        hint = f"rays may pass through it; give slope={1.05 * change[at]:.2g} or more"
+        _warn(f"{found}, and its slope promises {claimed:g} at most: {hint}", node)
 
 
 def _box(node: Node) -> tuple[Points, Points]:
@@ -135,7 +135,7 @@ def _box(node: Node) -> tuple[Points, Points]:
 
 
 def doubt_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
-    """Say what a picture without any light may come from.
+    """Warn of a picture without any light, and say what may cause it.
 
     Raises:
         SceneValueError: The camera is inside a solid.

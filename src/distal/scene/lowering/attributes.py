@@ -1,7 +1,7 @@
-"""What is known of a place beside its distance: its material, and which part it belongs to.
+"""Attributes of a place besides its distance: its material, and the part it belongs to.
 
-Input: nodes, and a kind of attribute: what a leaf gives, how two are joined. What flows
-out: an expression. Each is computed once for each hit, so nothing is shared between subtrees.
+Input: nodes, and a kind of attribute: what a leaf gives, how two are joined. Output:
+an expression. Each is computed once for each hit, so nothing is shared between subtrees.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Attribute(ABC):
 
 
 class AttributePoint:
-    """Where an attribute is asked."""
+    """The place at which an attribute is evaluated."""
 
     def __init__(self, p: Expr, cell: Expr, values: Sequence[Expr]) -> None:
         self.p = p

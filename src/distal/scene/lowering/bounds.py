@@ -1,7 +1,7 @@
-"""What a tree promises: a bound on its slope, a safe divisor for marching, a box, its growth.
+"""Bounds of a tree: on its slope (Lipschitz bound), a divisor for marching, a box, its growth.
 
-Input: nodes and the rules of their rows. Output: expressions of numbers alone,
-which every target computes once a frame: parameters move them.
+Input: nodes and the rules of their primitives and operators. Output: expressions of numbers alone,
+which every target computes once per frame.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from distal.scene.tree.values import FunctionBody, Values
 
 @dataclass(frozen=True, slots=True)
 class ShapeBounds:
-    """What is known of a subtree.
+    """The bounds of a subtree.
 
     Attributes:
         slope: Bound on |gradient| everywhere.
@@ -71,14 +71,14 @@ UNKNOWN: Final = constant_number(UNBOUNDED)
 
 
 class BoundsComposer:
-    """Composes the promises of subtrees."""
+    """Composes the bounds of subtrees."""
 
     def __init__(self, values: Values) -> None:
         self._values = values
         self._call = values.assembly.call
 
     def of(self, body: FunctionBody, node: Node, values: Sequence[Expr]) -> ShapeBounds:
-        """The promise of a subtree with these numbers."""
+        """The bounds of a subtree with these numbers."""
         own, shares = self._values.split(node, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -95,7 +95,7 @@ class BoundsComposer:
         inner: Sequence[ShapeBounds],
         own: Mapping[str, Expr],
     ) -> ShapeBounds:
-        """The promise of an operator on shapes with these promises."""
+        """The bounds of an operator on shapes with these bounds."""
         if len(inner) == 1:
             return self._one(body, rule, inner[0], own)
         if rule.bounds is None and rule.slope is None:
@@ -122,7 +122,7 @@ class BoundsComposer:
     def given(
         self, body: FunctionBody, node: Node, shares: Sequence[Sequence[Expr]]
     ) -> dict[str, Expr]:
-        """What the children promise, under the names that an operator's functions ask for."""
+        """The children's bounds, by the parameter names of an operator's functions."""
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
@@ -131,7 +131,7 @@ class BoundsComposer:
     def of_primitive(
         self, body: FunctionBody, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
     ) -> ShapeBounds:
-        """The promise of a primitive with these numbers."""
+        """The bounds of a primitive with these numbers."""
         slope = self._number(body, "slope", rule.slope, own)
         whole = everywhere2 if flat else everywhere
         bounds = body.let("bounds", self._call(rule.bounds or whole, own))
@@ -230,14 +230,14 @@ class BoundsComposer:
 
 
 class RememberedBounds(BoundsComposer):
-    """Promises of one function: that of every node is made once, and kept."""
+    """Bounds composed within one function: those of every node once."""
 
     def __init__(self, values: Values) -> None:
         super().__init__(values)
         self.found: dict[int, ShapeBounds] = {}
 
     def of(self, body: FunctionBody, node: Node, values: Sequence[Expr]) -> ShapeBounds:
-        """The promise of a subtree, made once."""
+        """The bounds of a subtree, composed once."""
         known = self.found.get(id(node))
         if known is None:
             known = self.found[id(node)] = super().of(body, node, values)

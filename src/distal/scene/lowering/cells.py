@@ -1,4 +1,4 @@
-"""Refusing paint that tells cells apart where there is only one.
+"""Refusing materials that depend on the cell outside of any repetition.
 
 Input: a shape's tree. Output: an error where a material asks for the cell of a
 repetition, but paints the repetition as a whole: every copy would look like the first.
@@ -20,18 +20,18 @@ def check_cells(root: Node) -> None:
     seen: set[tuple[int, bool]] = set()
     stack = [(root, False)]
     while stack:
-        node, told = stack.pop()
-        if (id(node), told) in seen:
+        node, inside = stack.pop()
+        if (id(node), inside) in seen:
             continue
-        seen.add((id(node), told))
+        seen.add((id(node), inside))
         for material in (node.material, node.cut_material):
-            if material is not None and not told and "cell" in material.uses and _repeats(node):
+            if material is not None and not inside and "cell" in material.uses and _repeats(node):
                 refuse(
                     "this material tells cells apart, but it paints what is repeated already",
                     "paint first, then repeat: shape.paint(by_cell()).repeat(2.0)",
                     material.call.place or node.place,
                 )
-        inner = told or (isinstance(node.rule, Operator) and node.rule.repeats)
+        inner = inside or (isinstance(node.rule, Operator) and node.rule.repeats)
         stack.extend((child, inner) for child in node.children)
 
 

@@ -41,7 +41,7 @@ class BoundsOf(Composed):
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self.name = f"promise of {node.name}"
+        self.name = f"bounds of {node.name}"
         self.signature = ()
         self.result = tuple_type(packed_types(node.flat))
 
@@ -51,4 +51,4 @@ class BoundsOf(Composed):
         values = Values(assembly)
         found = BoundsComposer(values).of(body, node, values.all(node))
         body.statements.append(Return(found.packed(body)))
-        return assembly.define("promise", (), self.result, body.statements, node.place)
+        return assembly.define("bounds", (), self.result, body.statements, node.place)

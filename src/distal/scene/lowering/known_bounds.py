@@ -1,4 +1,4 @@
-"""What shapes promise as plain numbers, known as soon as they are made.
+"""Bounds of shapes as plain numbers, known as soon as the shapes are made.
 
 Input: a node. Output: its slope, box and growth for the parameters' defaults. Each
 operator is computed from the numbers of its children, once for each node, by a function that all
@@ -31,7 +31,7 @@ MOST_KEPT: Final = 512
 
 @dataclass(frozen=True, slots=True)
 class KnownBounds:
-    """A promise as plain numbers; see ``promises.ShapeBounds``."""
+    """Bounds as plain numbers; see ``bounds.ShapeBounds``."""
 
     slope: float
     divisor: float
@@ -46,7 +46,7 @@ _bounds_steps: dict[Any, _BoundsStep] = {}
 
 
 def known_bounds_of(node: Node) -> KnownBounds:
-    """What a node promises for the parameters' defaults at time 0.
+    """A node's bounds for the parameters' defaults at time 0.
 
     Raises:
         PackageError: NumPy is missing or broken, without which nothing is computed.
@@ -73,8 +73,8 @@ def _call(node: Node, inner: Sequence[KnownBounds]) -> KnownBounds:
     np = imported("numpy")  # only what runs scene code needs it
 
     args: list[Any] = []
-    for promise in inner:
-        args += [getattr(promise, part) for part in PACKED]
+    for bounds in inner:
+        args += [getattr(bounds, part) for part in PACKED]
     args += [_plain(number.value) for number in node.numbers.values()]
     doubles = tuple(np.asarray(arg, np.float64)[None] for arg in args)
     found = executor().call(_bounds_step(node, len(inner)), doubles, {}, device="reference")
@@ -108,12 +108,12 @@ def _bounds_step(node: Node, count: int) -> _BoundsStep:
 
 
 class _BoundsStep(Composed):
-    """The promise of a primitive of its numbers; of an operator of its children's promises."""
+    """The bounds of a primitive from its numbers, of an operator from its children's bounds."""
 
     def __init__(self, node: Node, count: int) -> None:
         flat_inner = [child.flat for child in node.children[:count]]
         own = {name: number.type for name, number in node.numbers.items()}
-        self.name = f"promise of {node.rule.name}"
+        self.name = f"bounds of {node.rule.name}"
         self._rule, self._constants = node.rule, node.constants
         self._flat, self._flat_inner, self._own = node.flat, flat_inner, own
         inner = [p for i, flat in enumerate(flat_inner) for p in _signature(f"_{i}", flat)]
@@ -127,14 +127,14 @@ class _BoundsStep(Composed):
         numbers = {name: Read(name, type) for name, type in self._own.items()}
         own = values.complete(self._rule, numbers, self._constants, self.name)
         inner = [_read(assembly, f"_{i}", flat) for i, flat in enumerate(self._flat_inner)]
-        promises = BoundsComposer(values)
+        composer = BoundsComposer(values)
         if isinstance(self._rule, Primitive):
-            found = promises.of_primitive(body, self._rule, own, flat=self._flat)
+            found = composer.of_primitive(body, self._rule, own, flat=self._flat)
         else:
-            found = promises.of_operator(body, self._rule, inner, own)
+            found = composer.of_operator(body, self._rule, inner, own)
         body.statements.append(Return(found.packed(body)))
         params = [Param(name, type) for name, type in self.signature]
-        return assembly.define("promise", params, self.result, body.statements)
+        return assembly.define("bounds", params, self.result, body.statements)
 
 
 def _signature(suffix: str, flat: bool) -> list[tuple[str, Type]]:

@@ -1,8 +1,8 @@
 """A scene's function from a pixel to its light, put together.
 
 Input: a scene. Output: functions in a program: distance, surface, lights, what is
-around, rays, and one that joins them by a renderer of the library. Everything that a renderer may
-ask for is known by name; it takes what it names.
+around, rays, and one that joins them by a renderer of the library. Values are bound by
+parameter name.
 """
 
 from __future__ import annotations
@@ -108,15 +108,15 @@ class Picturing:
         return self.composer.call(tonemap.display, given)
 
     def given(self, body: FunctionBody, resolution: Expr) -> dict[str, Expr]:
-        """Everything that a renderer may ask for, by name."""
+        """Everything that a renderer may take, by name."""
         composer, scene, node = self.composer, self._scene, self._node
         values = composer.values.all(node)
-        promise = composer.promises.of(body, node, values)
+        bounds_of_scene = composer.bounds.of(body, node, values)
         given: dict[str, Expr] = {
             **self._numbers,
             "resolution": resolution,
-            "divisor": promise.divisor,
-            "slope": promise.slope,
+            "divisor": bounds_of_scene.divisor,
+            "slope": bounds_of_scene.slope,
             "field": composer.field(node, values, ZERO_CELL),
             "surface": self.surface(),
             "lights": self._lights(),
@@ -130,7 +130,7 @@ class Picturing:
             "light_count": integer(len(self._samples())),
             "shadow_steps": integer(max(64, 2 * scene.steps // 5) if scene.shadows else 0),
         }
-        room = {"bounds": promise.bounds}
+        room = {"bounds": bounds_of_scene.bounds}
         given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
@@ -252,7 +252,7 @@ class Picturing:
     def _pivot(self, body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
         """What a camera without a target turns around."""
         values = self.composer.values.all(self._node)
-        bounds = self.composer.promises.of(body, self._node, values).bounds
+        bounds = self.composer.bounds.of(body, self._node, values).bounds
         return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
 
     def _camera(self, resolution: Expr) -> FunctionRef:

@@ -1,8 +1,8 @@
 """A shape's tree becomes functions of the IR.
 
-Input: nodes. Output: calls of the field library's functions, joined by the names of
-their parameters. Floats become number uniforms; a subtree that occurs again, with whatever numbers,
-becomes a function of its own that takes them. Knows nothing of materials (``attributes``).
+Input: nodes. Output: calls of the field library's functions, bound by parameter
+name. Floats become number uniforms; a subtree that occurs again, with whatever numbers,
+becomes a function of its own that takes them. Materials are lowered by ``attributes``.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class ShapeComposer:
         self.assembly = assembly
         self.call = assembly.call
         self.values = Values(assembly)
-        self.promises = BoundsComposer(self.values)
+        self.bounds = BoundsComposer(self.values)
         self._keys: dict[int, int] = {}
         self._known_keys: dict[Any, int] = {}
         self._functions: dict[tuple[int, str, int | None], str] = {}
@@ -154,18 +154,18 @@ class ShapeComposer:
     def given(
         self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
-        """What a node's functions may ask for by name, and the numbers of each child."""
+        """What a node's functions may take by name, and the numbers of each child."""
         own, shares = self.values.split(node, values)
         given = {**own, "p": p, "cell": cell}
-        asked = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
-        if node.children and asked & BOUNDS_OF_CHILDREN:
-            given |= self.promises.given(body, node, shares)
+        taken = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
+        if node.children and taken & BOUNDS_OF_CHILDREN:
+            given |= self.bounds.given(body, node, shares)
         return given, shares
 
     def moved(
         self, body: FunctionBody, rule: Operator, given: Mapping[str, Expr]
     ) -> tuple[Expr, Expr]:
-        """The point and the cell that an operator's children are asked with."""
+        """The point and the cell at which an operator's children are evaluated."""
         if rule.point is None:
             return given["p"], given["cell"]
         return self.site(body, self.call(rule.point, given), given["cell"])
@@ -179,7 +179,7 @@ class ShapeComposer:
 
 
 def rule_functions(node: Node) -> tuple[Func, ...]:
-    """The functions of a node's row that are asked at points."""
+    """The functions of a node's rule that are called for each point."""
     rule = node.rule
     if isinstance(rule, Primitive):
         return (rule.distance,)

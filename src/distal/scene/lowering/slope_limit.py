@@ -2,7 +2,7 @@
 
 Input: a shape's tree. Output: an error at the place where the bound was lost: a
 twist of something that has no end, say. An operator is refused when it is made, for the parameters'
-defaults; other values and times are looked at when it is drawn (``doubts``).
+defaults; other values and times are checked when it is drawn (``scene.checks.warnings``).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What an author gives for a row's numbers, and an author's own function as a row.
+"""Arguments of primitives and operators, and an author's own function as a primitive.
 
-Input: rows of the library, Python arguments. Output: checked numbers and constants,
-nodes. Knows nothing of the classes that authors see.
+Input: primitives and operators, Python arguments. Output: checked numbers and constants, nodes.
+Does not depend on the classes that authors see.
 """
 
 from __future__ import annotations
@@ -26,7 +26,18 @@ from distal.scene.tree.node import Node, Rule
 def bound(
     rule: Rule, args: Sequence[Any], kwargs: Mapping[str, Any], place: Span | None
 ) -> tuple[dict[str, Number], dict[str, Any]]:
-    """A rule's numbers and constants from what the author gave."""
+    """A rule's numbers and constants from the author's arguments.
+
+    Args:
+        rule: The primitive or operator.
+        args: Arguments by position.
+        kwargs: Arguments by name.
+        place: The author's line.
+
+    Raises:
+        SceneTypeError: An argument is unknown, missing or of another type.
+        SceneValueError: A number is beyond its limit.
+    """
     given = arguments(
         rule.distance if isinstance(rule, Primitive) else rule.number_functions,
         args,

@@ -1,7 +1,7 @@
-"""What solid and flat shapes share: asking them, combining them, painting them.
+"""What solid and flat shapes share: evaluation, combination, paint.
 
-Input: the author's numbers and shapes. Output: ever new shapes; none changes. A
-shape is a function of scene code too: ``shape(p)`` in a ``@func``, ``shape(points)`` in Python.
+Input: the author's numbers and shapes. Output: new shapes; none changes. A shape is a function of
+scene code too: ``shape(p)`` in a ``@func``, ``shape(points)`` in Python.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Field(Composed, Presentable):
     result = FLOAT
     node: Node
     _gradient: GradientOf
-    _promised: BoundsOf
+    _bounds_function: BoundsOf
 
     def __init__(self, node: Node) -> None:
         if node.parts > MOST_PARTS:
@@ -60,7 +60,7 @@ class Field(Composed, Presentable):
             "node": node,
             "signature": (("p", self.point_type),),
             "_gradient": GradientOf(node),
-            "_promised": BoundsOf(node),
+            "_bounds_function": BoundsOf(node),
         }
         self.__dict__.update(made)
 
@@ -74,10 +74,10 @@ class Field(Composed, Presentable):
 
     @property
     def name(self) -> str:  # type: ignore[override]
-        """What people call it."""
+        """The author's name for it, else the primitive's or operator's."""
         return self.node.name
 
-    # Asking
+    # Evaluation
 
     def compose(self, assembly: Assembly) -> str:
         """Its distance as a function of scene code."""
@@ -97,23 +97,32 @@ class Field(Composed, Presentable):
     def __call__(
         self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
     ) -> Any:
-        """The distance at points: an array (n, 3) ((n, 2) for flat shapes) gives (n,).
+        """The distance at points, negative inside.
 
-        An array of more dimensions, a grid, gives one of the same without the last. float32 or
-        float64, as the points are; negative inside.
+        Args:
+            points: One array (n, 3), or (n, 2) for a flat shape; float32 or float64. A grid, an
+                array of more dimensions, is allowed too.
+            params: Values of parameters by name; the others have their defaults.
+            time: Seconds.
+
+        Returns:
+            An array of the shape of ``points`` without the last axis, of the same type.
         """
         return self._asked(self, points, params, time)
 
     def gradient(
         self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
     ) -> Any:
-        """How the distance changes at points: an array of the shape of ``points``."""
+        """The gradient of the distance at points, an array of the shape of ``points``.
+
+        Arguments as for a call.
+        """
         return self._asked(self._gradient, points, params, time)
 
     def _asked(
         self, what: Composed, points: Any, params: Mapping[str, Any] | None, time: float
     ) -> Any:
-        """What a function of a point gives at points, also at a grid of them."""
+        """The values of a function of a point at points, or at a grid of points."""
         if len(points) != 1:
             size = 2 if self.flat else 3
             raise TypeError(
@@ -127,28 +136,28 @@ class Field(Composed, Presentable):
         found = executor().call(what, (rows,), {}, params=params, time=time)
         return found.reshape(*sizes[:-1], *found.shape[1:])
 
-    def _promise(self, params: Mapping[str, Any] | None, time: float) -> tuple[Any, ...]:
-        found = executor().call(self._promised, (), {}, params=params, time=time)
+    def _known_bounds(self, params: Mapping[str, Any] | None, time: float) -> tuple[Any, ...]:
+        found = executor().call(self._bounds_function, (), {}, params=params, time=time)
         return tuple(found)
 
     def bounds(self, *, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
         """A box around the surface and the inside: (low, high), each a tuple; infinite allowed."""
-        low, high = self._promise(params, time)[2:4]
+        low, high = self._known_bounds(params, time)[2:4]
         return tuple(tuple(map(ended, corner)) for corner in (low, high))
 
     @property
     def slope(self) -> float:
         """A bound on |gradient|, everywhere, for the parameters' defaults."""
-        return float(self._promise(None, 0.0)[0])
+        return float(self._known_bounds(None, 0.0)[0])
 
     @property
     def divisor(self) -> float:
         """What the marcher divides distances by, for the parameters' defaults."""
-        return float(self._promise(None, 0.0)[1])
+        return float(self._known_bounds(None, 0.0)[1])
 
     @property
     def claims(self) -> frozenset[Guarantee]:
-        """What it promises besides its slope."""
+        """Its guarantees besides the bound on its slope."""
         return self.node.claims
 
     @property
@@ -177,8 +186,8 @@ class Field(Composed, Presentable):
         """
         flat = rule.lies_flat(self.flat)
         if rule.takes_flat(flat) is not self.flat:
-            kind, mend = ("solid", ".extrude(height)") if self.flat else ("flat", ".slice()")
-            refuse(f"{rule.name} works on {kind} shapes", f"{mend} first", place)
+            kind, fix = ("solid", ".extrude(height)") if self.flat else ("flat", ".slice()")
+            refuse(f"{rule.name} works on {kind} shapes", f"{fix} first", place)
         numbers, constants = bound(rule, args, kwargs, place)
         children = (self.node, *(other.node for other in others))
         node = Node(rule, flat, children, numbers, constants, place)
@@ -218,7 +227,7 @@ class Field(Composed, Presentable):
         return self._of(Node(rule, self.flat, tuple(nodes), numbers, constants, place))
 
     def union(self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> Self:
-        """What is in any of them; ``|``.
+        """Unite with others; ``|``.
 
         Args:
             others: Shapes, or one list of them.
@@ -233,19 +242,19 @@ class Field(Composed, Presentable):
     def intersection(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
-        """What is in all of them; ``&``. Arguments as for ``union``."""
+        """Intersect with others; ``&``. Arguments as for ``union``."""
         joined: Self = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
         return joined
 
     def difference(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
-        """This without the others; ``-``. Arguments as for ``union``."""
+        """Subtract others; ``-``. Arguments as for ``union``."""
         joined: Self = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
         return joined
 
     def xor(self, *others: Any) -> Self:
-        """What is in one of two, and not in the other; ``^``."""
+        """Keep what is in one of two shapes and not in the other; ``^``."""
         joined: Self = self._combined(joins.XOR, others, 0.0, "quadratic")
         return joined
 
@@ -271,22 +280,22 @@ class Field(Composed, Presentable):
         return self.complement()
 
     def complement(self) -> Self:
-        """Everything else; ``~``."""
+        """Swap inside and outside; ``~``."""
         made: Self = self._under(joins.COMPLEMENT, (), {}, author_place())
         return made
 
     def paint(self, material: Any) -> Self:
-        """The shape in a material, or in a color; the outermost ``paint`` wins."""
+        """Set the material, or its color; the outermost ``paint`` counts."""
         changed: Self = self._of(replace(self.node, material=as_material(material)))
         return changed
 
     def cut_material(self, material: Any) -> Self:
-        """What the faces show that this shape cuts into others; else they show what is cut."""
+        """Set the material of faces cut by this shape; without it they show what is cut."""
         changed: Self = self._of(replace(self.node, cut_material=as_material(material)))
         return changed
 
     def named(self, name: str) -> Self:
-        """The shape under a name: of its function in emitted text, and in messages."""
+        """Give a name, for its function in emitted text and for messages."""
         if not isinstance(name, str) or not name.strip():
             refuse(f"a name is a text, not {name!r}", None, author_place())
         changed: Self = self._of(replace(self.node, label=name))
@@ -303,7 +312,7 @@ class Field(Composed, Presentable):
         growth: float | None = None,
         **numbers: Any,
     ) -> Any:
-        """A shape from a ``@func`` of a point (and of numbers, given by name).
+        """Make a shape from a ``@func`` of a point (and of numbers, given by name).
 
         Args:
             function: ``(p: vec3, …) -> float``; vec2 makes a flat shape. A parameter
@@ -330,7 +339,7 @@ def _bare(node: Node) -> bool:
 _ASSOCIATIVE: Final = (joins.UNION, joins.INTERSECTION)
 
 
-# The classes of shapes that are no library shape's own; the room of methods fills it.
+# The classes of shapes that come from operators, by ``flat``; ``shape`` fills it.
 PLAIN: dict[bool, type[Field]] = {}
 
 

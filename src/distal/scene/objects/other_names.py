@@ -1,7 +1,6 @@
-"""What authors look for by names that shapes do not have.
+"""Names that shapes do not have, and the methods to use instead.
 
-Input: a name that was not found. Output: the sentence that tells which method to
-use instead. Knows the methods by name only.
+Input: a name that was not found. Output: a message that names the method. Does not import shapes.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ _SHELLS: Final[Mapping[str, Operator]] = {
 
 
 class _Placed(Field):
-    """What solid and flat shapes can do alike."""
+    """The methods that solid and flat shapes share."""
 
     def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
         """This shape under an operator, or under its counterpart in the plane."""
@@ -62,9 +62,16 @@ class _Placed(Field):
         return made
 
     def apply(self, operator: str, *args: Any, others: Sequence[Field] = (), **kwargs: Any) -> Any:
-        """The shape under an operator of the library by its name, as the catalogue lists it.
+        """Apply an operator of the library by its name in the catalogue.
 
-        What it gives lies in space where the operator's own point does.
+        Args:
+            operator: The name: "twist", "flat repeat".
+            args: Its numbers by position.
+            others: The shapes that it combines this one with.
+            kwargs: Its numbers by name.
+
+        Raises:
+            SceneValueError: There is no such operator, or it does not work on this shape.
         """
         place = author_place()
         known = library.OPERATORS
@@ -73,17 +80,17 @@ class _Placed(Field):
         return self._under(known[operator], args, kwargs, place, others=tuple(others))
 
     def translate(self, *offset: Any, **parts: Any) -> Self:
-        """The shape moved: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
+        """Move: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
         return self._with(placing.TRANSLATE, *offset, **parts)
 
     def scale(self, *factors: Any, **parts: Any) -> Self:
-        """The shape larger by a factor, or by one for each axis (no longer exact then)."""
+        """Scale by one factor, or by one factor for each axis (no longer exact then)."""
         if len(factors) == 1 and not parts and is_scalar(factors[0]):
             return self._with(placing.SCALE, *factors)
         return self._with(placing.STRETCH, *factors, **parts)
 
     def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
-        """The half that ``normal`` points to, and its image on the other side of the plane.
+        """Mirror in a plane: the half that ``normal`` points to replaces the other half.
 
         Args:
             normal: Length 1.
@@ -92,14 +99,14 @@ class _Placed(Field):
         return self._with(mirrors.MIRROR, normal, offset)
 
     def symmetry(self, axes: str) -> Self:
-        """The positive side of the axes named, mirrored to the negative one: ``symmetry("xz")``."""
+        """Mirror the positive side of the named axes to the negative side: ``symmetry("xz")``."""
         known = "xy" if self.flat else "xyz"
         if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
             refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
         return self._with(mirrors.SYMMETRY, **{axis: axis in axes for axis in known})
 
     def kaleidoscope(self, count: int) -> Self:
-        """The shape's wedge repeated ``count`` times about the y axis, every other one mirrored."""
+        """Repeat a wedge ``count`` times about the y axis, every other one mirrored."""
         return self._with(mirrors.KALEIDOSCOPE, count)
 
     def repeat(
@@ -109,16 +116,20 @@ class _Placed(Field):
         neighbours: int = 0,
         mirrored: bool = False,
     ) -> Self:
-        """The shape again and again, in cells of a grid; its middle cell is where the shape is.
+        """Repeat on a grid, around the shape itself.
 
         Args:
-            spacing: From cell to cell, for each axis; 0 for an axis along which it is not repeated.
-                One number is meant for all three.
-            count: How many along each axis; without it there is no end. Cells are then counted from
-                0, at the lower corner.
-            neighbours: How many cells around are asked too: 0 where the shape keeps within its
-                cell, 1 or 2 where it reaches into others.
-            mirrored: Whether every other cell is mirrored, so that neighbours meet.
+            spacing: From cell to cell along each axis, in scene units; 0 for an axis along which it
+                is not repeated. One number counts for all axes.
+            count: Number of copies along each axis, two or three whole numbers; None repeats
+                without end. Cells are then counted from 0, at the lower corner.
+            neighbours: How many cells around the nearest are evaluated too: 0 for a shape that
+                stays within its cell, 1 or 2 for one that reaches into others.
+            mirrored: Whether every other cell is mirrored, so that adjacent copies touch.
+
+        Raises:
+            SceneValueError: ``count`` is not one whole number for each axis, or the shape does not
+                fit its cell.
         """
         if mirrored:
             return self._with(grid.REPEAT_MIRRORED, *spacing)
@@ -141,33 +152,33 @@ class _Placed(Field):
         return self._with(grid.REPEAT_LIMITED, *spacing, **counts)
 
     def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
-        """The shape ``count`` times about the y axis (flat: the origin), itself towards x."""
+        """Repeat ``count`` times about the y axis (flat: about the origin)."""
         if neighbours:
             return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=neighbours)
         return self._with(polar.REPEAT_POLAR, count=count)
 
     def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
-        """Both parts that a plane cuts it into: what lies below, and what lies above."""
+        """Cut by a plane into two shapes: the part below, and the part above."""
         below = self._with(offsets.SPLIT_BELOW, normal, offset)
         return below, self._with(offsets.SPLIT_ABOVE, normal, offset)
 
     def round(self, radius: Any) -> Self:
-        """The shape grown by ``radius``, its edges round."""
+        """Grow by ``radius``, with round edges."""
         return self._with(offsets.ROUND, radius)
 
     def offset(self, distance: Any) -> Self:
-        """The shape grown by a distance, or shrunk by a negative one."""
+        """Grow by a distance, or shrink by a negative one."""
         return self._with(offsets.OFFSET, distance)
 
     def shell(self, thickness: Any, where: str = "centre") -> Self:
-        """The shape hollow; its wall lies "inner", "centre" or "outer" of the old surface."""
+        """Make a hollow shape whose wall lies "inner", "centre" or "outer" of the surface."""
         if where not in _SHELLS:
             refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
         return self._with(_SHELLS[where], thickness)
 
 
 class Shape(_Placed):
-    """A solid: a signed distance in space. Shapes never change; methods give new ones."""
+    """A solid: a signed distance in space. Shapes never change; methods return new ones."""
 
     flat = False
     point_type = VEC3
@@ -183,7 +194,7 @@ class Shape(_Placed):
         quaternion: Any = None,
         matrix: Any = None,
     ) -> Self:
-        """The shape turned about the origin; angles in radians.
+        """Rotate about the origin, in one of four ways; angles in radians.
 
         Args:
             angle: About ``axis``.
@@ -193,6 +204,9 @@ class Shape(_Placed):
             z: About the fixed z axis, last.
             quaternion: (x, y, z, w), of length 1.
             matrix: Three rows, orthonormal.
+
+        Raises:
+            SceneValueError: No way is given, or more than one.
         """
         euler = {name: value for name, value in (("x", x), ("y", y), ("z", z)) if value is not None}
         warn_of_degrees(author_place(), angle, *euler.values())
@@ -200,7 +214,7 @@ class Shape(_Placed):
         ways += [quaternion is not None, matrix is not None]
         if sum(ways) != 1:
             hint = "rotate(y=0.5), rotate(0.5, axis=(0, 1, 0)), quaternion=… or matrix=…"
-            refuse("a rotation is told in one way", hint, author_place())
+            refuse("a rotation is given in exactly one way", hint, author_place())
         if euler:
             if len(euler) == 1:
                 ((name, value),) = euler.items()
@@ -219,19 +233,25 @@ class Shape(_Placed):
         return self._with(placing.ROTATE, axis=axis, angle=angle)
 
     def orient(self, source: Any, target: Any) -> Self:
-        """The shape turned the shortest way, so that ``source`` points where ``target`` does."""
+        """Rotate by the smallest angle that takes direction ``source`` to ``target``."""
         return self._with(placing.ORIENT, source, target)
 
     def shear(self, xy: Any = 0.0, xz: Any = 0.0, yz: Any = 0.0) -> Self:
-        """The shape leaning: x moved by ``xy`` times y and ``xz`` times z, y by ``yz`` times z."""
+        """Shear: x moves by ``xy`` times y and ``xz`` times z, y by ``yz`` times z.
+
+        Args:
+            xy: Shift of x for each unit of y.
+            xz: Shift of x for each unit of z.
+            yz: Shift of y for each unit of z.
+        """
         return self._with(placing.SHEAR, xy, xz, yz)
 
     def repeat_half(self, *spacing: Any) -> Self:
-        """The shape again and again towards the positive side of each axis only."""
+        """Repeat infinitely along +x, +y and +z."""
         return self._with(grid.REPEAT_HALF, *spacing)
 
     def repeat_ring(self, *spacing: Any, count: Sequence[int]) -> Self:
-        """The shape along the rim of a rectangle in the xz plane; ``count`` for x and for z."""
+        """Repeat along the sides of a rectangle in the xz plane; ``count`` for x and for z."""
         try:
             count_x, count_z = count
         except (TypeError, ValueError):
@@ -246,90 +266,139 @@ class Shape(_Placed):
         end: Any = None,
         count: int | None = None,
     ) -> Self:
-        """The shape at given places, or ``count`` times evenly along a line.
+        """Repeat at given positions, or ``count`` times evenly along a line.
 
         Args:
             positions: An (n, 3) array.
             start: Where the line begins.
             end: Where it ends.
-            count: How many on the line.
+            count: Number of copies on the line.
+
+        Raises:
+            SceneValueError: Neither positions alone nor start, end and count are given.
         """
         if positions is not None and start is None and end is None and count is None:
             return self._with(along.REPEAT_AT, positions)
         if positions is None and start is not None and end is not None and count is not None:
             return self._with(along.REPEAT_LINE, start=start, end=end, count=count)
         hint = "array(positions) or array(start=…, end=…, count=…)"
-        refuse("an array is told by positions, or by a line and a count", hint, author_place())
+        refuse("an array takes positions, or a line and a count", hint, author_place())
 
     def elongate(self, *lengths: Any) -> Self:
-        """The shape cut at the origin and pulled apart, ``lengths`` in all along each axis."""
+        """Cut at the origin and pull apart by ``lengths`` along each axis."""
         return self._with(deform.ELONGATE, *lengths)
 
     def twist(self, rate: Any) -> Self:
-        """The shape turned about the y axis ever more: ``rate`` radians for each unit of height."""
+        """Twist about the y axis by ``rate`` radians for each unit of height."""
         return self._with(deform.TWIST, rate)
 
     def bend(self, rate: Any) -> Self:
-        """The shape bent in the xy plane: ``rate`` radians for each unit along x."""
+        """Bend in the xy plane by ``rate`` radians for each unit along x."""
         return self._with(deform.BEND, rate)
 
     def bend_linear(self, start: Any, end: Any, shift: Any, ease: str = "linear") -> Self:
-        """The shape moved by ``shift`` more and more on the way from ``start`` to ``end``."""
+        """Move gradually from ``start`` on, by ``shift`` at ``end``.
+
+        Args:
+            start: A point; before it nothing moves.
+            end: A point; beyond it all moves by ``shift``.
+            shift: A vector in scene units.
+            ease: How the shift begins and ends, one of ``EASES``.
+        """
         return self._with(deform.BEND_LINEAR, start, end, shift, ease=ease_number(ease))
 
     def bend_radial(self, inner: Any, outer: Any, rise: Any, ease: str = "linear") -> Self:
-        """The shape lifted by ``rise`` more and more from a radius to another about the y axis."""
+        """Raise gradually from radius ``inner`` about the y axis, by ``rise`` at ``outer``.
+
+        Args:
+            inner: Radius in scene units.
+            outer: A larger radius.
+            rise: Shift along y.
+            ease: How the shift begins and ends, one of ``EASES``.
+        """
         return self._with(deform.BEND_RADIAL, inner, outer, rise, ease=ease_number(ease))
 
     def taper(self, bottom: Any, top: Any, factor: Any) -> Self:
-        """The shape narrower upwards: full at height ``bottom``, times ``factor`` at ``top``."""
+        """Scale x and z gradually with height.
+
+        Args:
+            bottom: Height up to which the shape keeps its size.
+            top: Height from which it is scaled fully.
+            factor: The scale there.
+        """
         return self._with(deform.TAPER, bottom, top, factor)
 
     def wrap(self, radius: Any) -> Self:
-        """The shape's x axis wrapped around a cylinder about the y axis."""
+        """Wrap the x axis around a cylinder about the y axis."""
         return self._with(folds.WRAP, radius)
 
     def attract(self, center: Any, radius: Any, strength: Any) -> Self:
-        """The shape pulled towards a place, within a radius of it."""
+        """Pull towards a point, within a radius of it.
+
+        Args:
+            center: The point.
+            radius: Beyond it nothing moves.
+            strength: How far the shape is pulled.
+        """
         return self._with(deform.ATTRACT, center, radius, strength)
 
     def repel(self, center: Any, radius: Any, strength: Any) -> Self:
-        """The shape pushed away from a place, within a radius of it."""
+        """Push away from a point, within a radius of it; arguments as for ``attract``."""
         return self._with(deform.REPEL, center, radius, strength)
 
     def warp(self, amount: Any, frequency: Any = 1.0, seed: int = 0) -> Self:
-        """The shape shaken by noise: every place moved by up to about ``amount``."""
+        """Displace by noise: every point moves by up to about ``amount``.
+
+        Args:
+            amount: Largest shift, in scene units.
+            frequency: Cells of the noise for each unit.
+            seed: Selects one of many noises.
+        """
         return self._with(folds.WARP, amount, frequency, seed)
 
     def transition_linear(self, other: Field, start: Any, end: Any, ease: str = "linear") -> Self:
-        """This shape at ``start``, another at ``end``, and between them in between."""
+        """Change from this shape at ``start`` to another at ``end``.
+
+        Args:
+            other: The other shape.
+            start: A point.
+            end: A point.
+            ease: How the change begins and ends, one of ``EASES``.
+        """
         return self._joined(
             transitions.TRANSITION_LINEAR, other, start=start, end=end, ease=ease_number(ease)
         )
 
     def transition_radial(self, other: Field, inner: Any, outer: Any, ease: str = "linear") -> Self:
-        """This shape within a radius about the y axis, another beyond a larger one."""
+        """Change from this shape within a radius about the y axis to another beyond a larger one.
+
+        Args:
+            other: The other shape.
+            inner: Radius in scene units.
+            outer: A larger radius.
+            ease: How the change begins and ends, one of ``EASES``.
+        """
         numbers = {"inner": inner, "outer": outer, "ease": ease_number(ease)}
         return self._joined(transitions.TRANSITION_RADIAL, other, **numbers)
 
     def clearance(self, other: Field, gap: Any) -> Self:
-        """The shape with room for another: cut wherever that is nearer than ``gap``."""
+        """Cut away all that is nearer than ``gap`` to another shape."""
         return self._joined(joins.CLEARANCE, other, gap=gap)
 
     def carve(self, other: Field, depth: Any) -> Self:
-        """The other shape sunk into this one's surface, ``depth`` deep."""
+        """Cut the other shape into this one's surface, ``depth`` deep."""
         return self._joined(joins.CARVE, other, depth=depth)
 
     def emboss(self, other: Field, height: Any) -> Self:
-        """The other shape raised from this one's surface, ``height`` high."""
+        """Raise the other shape from this one's surface, ``height`` high."""
         return self._joined(joins.EMBOSS, other, height=height)
 
     def morph(self, other: Field, t: Any) -> Self:
-        """Between two shapes: this one at t = 0, the other at 1."""
+        """Interpolate between this shape at t = 0 and another at t = 1."""
         return self._joined(joins.MORPH, other, t=t)
 
     def displace(self, field: Any, height: Any = 1.0) -> Self:
-        """The surface moved out by what a field gives, times ``height``.
+        """Move the surface out by the value of a field, times ``height``.
 
         Args:
             field: A shape, or a ``@func`` of a point (its slope is then taken for 1).
@@ -339,19 +408,19 @@ class Shape(_Placed):
         return self._joined(joins.DISPLACE, other, height=height)
 
     def engrave(self, other: Field, depth: Any) -> Self:
-        """A groove of a depth where the other shape's surface meets this one."""
+        """Cut a groove of a depth where the other shape's surface crosses this one."""
         return self._joined(blends.ENGRAVE, other, k=depth)
 
     def pipe(self, other: Field, radius: Any) -> Self:
-        """A round pipe where the two surfaces meet, and nothing else."""
+        """Keep only a round pipe along the curve where the two surfaces cross."""
         return self._joined(blends.PIPE, other, k=radius)
 
     def groove(self, other: Field, depth: Any, width: Any) -> Self:
-        """A groove of a rectangular profile where the surfaces meet."""
+        """Cut a groove of rectangular profile where the surfaces cross."""
         return self._joined(blends.GROOVE, other, depth=depth, width=width)
 
     def tongue(self, other: Field, depth: Any, width: Any) -> Self:
-        """A ridge of a rectangular profile where the surfaces meet."""
+        """Add a ridge of rectangular profile where the surfaces cross."""
         return self._joined(blends.TONGUE, other, depth=depth, width=width)
 
     def _flat(self, operator: Operator, *args: Any, **kwargs: Any) -> Shape2D:
@@ -359,16 +428,16 @@ class Shape(_Placed):
         return made
 
     def slice(self, origin: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 0.0, 1.0)) -> Shape2D:
-        """The flat shape that a plane cuts out.
+        """Cut by a plane: the flat shape in it.
 
         Args:
-            origin: A place on the plane; the flat shape's origin.
+            origin: A point of the plane; the flat shape's origin.
             normal: The plane's, of length 1.
         """
         return self._flat(lift.SLICE, origin, normal)
 
     def project(self, count: int = 32) -> Shape2D:
-        """The shape's shadow on the xy plane, looked for at ``count`` depths."""
+        """Project onto the xy plane, by evaluating ``count`` depths."""
         return self._flat(lift.PROJECT, count=count)
 
 
@@ -379,7 +448,7 @@ class Shape2D(_Placed):
     point_type = VEC2
 
     def rotate(self, angle: Any) -> Self:
-        """The shape turned about the origin, counter-clockwise; radians."""
+        """Rotate about the origin, counterclockwise; radians."""
         warn_of_degrees(author_place(), angle)
         return self._with(flat_placing.ROTATE_FLAT, angle)
 
@@ -388,7 +457,7 @@ class Shape2D(_Placed):
         return made
 
     def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
-        """The solid of this outline along z, ``height`` in all, its middle at 0.
+        """Extrude along z to a solid centred at z = 0.
 
         Args:
             height: From end to end.
@@ -402,52 +471,70 @@ class Shape2D(_Placed):
         return self._solid(extrude.EXTRUDE, height)
 
     def revolve(self, offset: Any = 0.0, angle: Any = None) -> Shape:
-        """The solid of this outline turned about the y axis; x > 0 is outwards.
+        """Revolve about the y axis; x > 0 is outwards.
 
         Args:
-            offset: How far the outline is moved outwards first.
-            angle: How far it is turned; all around without it.
+            offset: Distance by which the outline is moved outwards first.
+            angle: Angle of the revolution in radians; None for a full turn.
         """
         if angle is None:
             return self._solid(lift.REVOLVE, offset)
         return self._solid(lift.REVOLVE_PARTLY, offset, angle)
 
     def loft(self, other: Field, height: Any = 1.0, ease: str = "linear") -> Shape:
-        """The solid that goes from this outline at -height/2 along z to another at height/2."""
+        """Connect this outline at z = -height / 2 to another at z = height / 2.
+
+        Args:
+            other: The other outline.
+            height: Length along z.
+            ease: How the change begins and ends, one of ``EASES``.
+        """
         numbers = {"height": height, "ease": ease_number(ease)}
         return cast("Shape", self._joined(extrude.LOFT, other, **numbers))
 
     def twist_extrude(self, height: Any, angle: Any) -> Shape:
-        """The solid of this outline along z, turned by ``angle`` from end to end."""
+        """Extrude along z, rotated by ``angle`` from end to end."""
         return self._solid(extrude.EXTRUDE_TWISTED, height, angle)
 
     def taper_extrude(self, height: Any, top: Any) -> Shape:
-        """The solid of this outline along z, at the top end ``top`` times as large."""
+        """Extrude along z, scaled by ``top`` at the upper end."""
         return self._solid(extrude.EXTRUDE_TAPERED, height, top)
 
     def sweep(self, points: Any, up: Any = (0.0, 1.0, 0.0)) -> Shape:
-        """The solid of this outline along a polyline through (n, 3) points."""
+        """Sweep along a polyline through (n, 3) points."""
         return self._solid(path.SWEEP, points, up)
 
     def sweep_bezier(
         self, start: Any, control: Any, end: Any, up: Any = (0.0, 1.0, 0.0), pieces: int = 16
     ) -> Shape:
-        """The solid of this outline along a quadratic curve."""
+        """Sweep along a quadratic Bézier curve.
+
+        Args:
+            start: First point.
+            control: Control point.
+            end: Last point.
+            up: Direction of the outline's y axis.
+            pieces: Number of straight pieces that approximate the curve.
+        """
         return self._solid(
             path.SWEEP_BEZIER, start=start, control=control, end=end, up=up, pieces=pieces
         )
 
     def wrap_cylinder(self, radius: Any, height: Any) -> Shape:
-        """The solid of this outline wrapped around a cylinder about the y axis."""
+        """Wrap around a cylinder about the y axis, to a solid."""
         return self._solid(lift.WRAP_CYLINDER, radius, height)
 
     def relief(self, *numbers: Any) -> Shape:
-        """The ground raised to the height that this flat field gives at each place (x, z)."""
+        """Raise the ground to the height that this flat field gives at each point (x, z)."""
         return self._solid(heightfield.RELIEF, *numbers)
 
 
 def ease_number(name: str) -> int:
-    """The number of an easing by its name."""
+    """The number of an easing by its name.
+
+    Raises:
+        SceneValueError: There is no such easing.
+    """
     if name not in EASES:
         refuse(f"there is no easing {name!r:.40}", ", ".join(EASES), author_place())
     return EASES.index(name)

@@ -1,7 +1,7 @@
 """A class for every shape of the field library, ``Sphere`` to ``Hexagon``.
 
-Input: the library's rows. Output: a class for each, called with the shape's
-numbers. ``shapes.pyi`` beside this file, made by ``tools/gen_shapes_stub.py``, tells editors.
+Input: the library's primitives. Output: a class for each, called with the shape's numbers.
+``tools/gen_shapes_stub.py`` writes ``shapes.pyi``, which editors read.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
 
 
-def _make(row: Primitive) -> type[Field]:
-    """The class of one row."""
-    base: type[Field] = Shape2D if row.flat else Shape
+def _make(primitive: Primitive) -> type[Field]:
+    """The class of one primitive."""
+    base: type[Field] = Shape2D if primitive.flat else Shape
 
     def initialise(self: Field, *args: Any, **kwargs: Any) -> None:
         place = author_place()
-        numbers, constants = bound(row, args, kwargs, place)
-        Field.__init__(self, Node(row, row.flat, (), numbers, constants, place))
+        numbers, constants = bound(primitive, args, kwargs, place)
+        Field.__init__(self, Node(primitive, primitive.flat, (), numbers, constants, place))
 
-    python = inspect.signature(row.distance.python_function)
+    python = inspect.signature(primitive.distance.python_function)
     own = [p for name, p in python.parameters.items() if name not in ("p", "cell")]
     body = {
         "__init__": initialise,
-        "__doc__": row.distance.__doc__,
+        "__doc__": primitive.distance.__doc__,
         "__module__": __name__,
         "__signature__": inspect.Signature(own),
-        "row": row,
+        "row": primitive,
     }
-    return type(row.name, (base,), body)
+    return type(primitive.name, (base,), body)
 
 
-CLASSES = {name: _make(row) for name, row in PRIMITIVES.items()}
+CLASSES = {name: _make(primitive) for name, primitive in PRIMITIVES.items()}
 globals().update(CLASSES)
 __all__ = [*CLASSES]

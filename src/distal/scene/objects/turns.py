@@ -1,4 +1,4 @@
-"""Angles that look like degrees: told, because they are radians.
+"""A warning of angles in radians that look like degrees.
 
 Input: the angles that an author turns a shape by. Output: a warning at that line.
 """

@@ -1,8 +1,8 @@
-"""Python's call of a shape, light or material becomes values for a scene function's parameters.
+"""Python arguments of a shape, light or material to values for a scene function's parameters.
 
-Input: the functions of a row (``fields``, ``render``, or the author's own), positional and
-keyword arguments, limits. Output: checked ``Number``s, choices, textures and buffers by
-name. Every mistake is told at the author's line, with what mends it. Knows no row's meaning.
+Input: scene functions (of ``fields``, ``render`` or the author), positional and keyword arguments,
+limits. Output: checked ``Number``s, choices, textures and buffers by name. Every mistake is
+reported at the author's line with a hint. Does not depend on what the functions mean.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ from distal.scene.tree.errors import refuse, refuse_kind
 
 # What a parameter is given; an object of another kind where the caller accepts some (a pattern).
 Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
-# Takes a value and the type wanted: what stands for it, or None to go on as with any number.
+# Takes a value and the type wanted: what represents it, or None to treat it as a number.
 Accept: TypeAlias = Callable[[Any, Asked], Any]
 
-# The names of ``fields.claims`` that are no numbers of a shape.
+# Parameter names with a meaning of their own (``fields.guarantees``): no numbers of a shape.
 RESERVED: Final = BOUNDS_OF_CHILDREN | {"p", "d", "a", "b", "field", "cell", "copies"}
 # Those that a shape of its own keeps from its numbers: it has no distances to join.
 RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d", "copies"}
-# One number stands for all components of these.
+# One number sets all components of these.
 _SPLATTED: Final = frozenset(
     ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")
 )
@@ -62,7 +62,7 @@ class FunctionParameter:
 
     @property
     def is_vector(self) -> bool:
-        """Whether scalars in a row may stand for it."""
+        """Whether several scalars may be given for it."""
         return isinstance(self.type, Vector) and self.type.kind is Kind.FLOAT
 
     @property
@@ -113,7 +113,7 @@ def arguments(
 ) -> dict[str, Given]:
     """The values of functions' parameters, by name, in the order of the parameters.
 
-    Several functions are asked as one: a parameter of the same name is the same.
+    Parameters of the same name in several functions are one parameter.
 
     Args:
         functions: Scene functions.
@@ -122,8 +122,8 @@ def arguments(
             one parameter is a vector.
         what: What is being made, for messages: "Sphere".
         limits: What each number must be.
-        requires: Tells why numbers do not go together. Asked with plain values by name; where a
-            slider stands, with its default; not asked where one that it names is computed.
+        requires: Returns why numbers do not go together. Called with plain values by name, with
+            the default of a slider; not called if a number that it names is computed.
         place: The author's line.
         reserved: Parameters that are no numbers.
         colors: Parameters that understand "#rrggbb"; ``color`` and ``…_color`` always do.
@@ -272,7 +272,7 @@ class _ArgumentBinding:
             self._wrong(message, hint)
 
     def _gathered(self, slot: FunctionParameter, left: Sequence[Any]) -> int:
-        """How many scalars in a row stand for a vector: its size, or 0 where it is given whole."""
+        """How many scalars give a vector: its size, or 0 where it is given whole."""
         size = _size(slot)
         scalars = 0
         while scalars < min(size, len(left)) and is_scalar(left[scalars]):

@@ -1,4 +1,4 @@
-"""A scene function together with what it is given: patterns, materials, lights, cameras are such.
+"""A scene function together with its arguments: patterns, materials, lights, cameras.
 
 Input: a function and checked values, which may be such calls themselves (a material whose
 colour is a pattern). Output: on request, the call as an expression of the IR. Knows nothing
@@ -44,7 +44,7 @@ class FunctionCall(Unchanging):
 
     Attributes:
         what: What messages call it, and the stem of its numbers' names in emitted text.
-        func: The function. What it asks for beside the values, the site gives.
+        func: The function. Its other parameters come from the place where it is evaluated.
         values: By parameter: numbers, choices, textures, buffers, or something that emits.
         place: Where the author made it.
     """
@@ -75,10 +75,10 @@ class FunctionCall(Unchanging):
         made = composer.assembly.made
         key = (FunctionCall, id(value))
         if key not in made:
-            wish = f"{_identifier(self.what)}_{name}"
+            stem = f"{_identifier(self.what)}_{name}"
             made[key] = (
                 value,
-                expression_of(composer.assembly, value, wish),
+                expression_of(composer.assembly, value, stem),
             )  # alive, so the id stays
         found: Expr = made[key][1]
         return found
@@ -114,13 +114,13 @@ def result_of(func: Func) -> Type | None:
         return None
 
 
-def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, wish: str) -> Expr:
+def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, stem: str) -> Expr:
     """A value in a program: a uniform of its own, the author's expression, a resource."""
     if not isinstance(value, Number):
-        return assembly.resource(value, wish)
+        return assembly.resource(value, stem)
     if isinstance(value.value, Expression):
         return assembly.expression(value.value)
-    return assembly.number(wish, value.type, value.value)
+    return assembly.number(stem, value.type, value.value)
 
 
 def _identifier(what: str) -> str:

@@ -1,6 +1,6 @@
-"""Mistakes in how a scene object is made, told at the author's own line.
+"""Errors in how a scene object is made, at the author's own line.
 
-Input: what is wrong, what mends it, and where (by default the innermost call outside this
+Input: what is wrong, a hint, and where (by default the innermost call outside this
 package). Output: an exception that prints as every other mistake in a scene does, and that
 ``except ValueError`` or ``except TypeError`` catches as Python's own.
 """

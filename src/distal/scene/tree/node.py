@@ -1,7 +1,8 @@
-"""The tree behind a shape: what it is made of, without a way to ask it anything.
+"""The tree behind a shape: primitives and operators with their numbers.
 
-Input: rows of the field library, checked numbers, other nodes. Output: immutable
-nodes that ``compose`` turns into functions. A node knows where the author wrote it.
+Input: primitives and operators of the field library, checked numbers, other nodes. Output:
+immutable nodes that ``scene.lowering`` turns into functions. A node records where the author wrote
+it.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ class Node:
     """One shape in a tree.
 
     Attributes:
-        rule: The row of the field library that it is.
+        rule: Its primitive or operator.
         flat: Whether it lies in the plane.
         children: What an operator works on.
         numbers: Values of the rule's floats and vectors, by name.
@@ -32,8 +33,7 @@ class Node:
         material: What paints it and everything in it, or None.
         cut_material: What the faces show that it cuts into other shapes, or None.
         label: What the author calls it, or "".
-        parts: How many shapes of the library are asked for one distance; one that is asked twice
-            counts twice.
+        parts: Number of primitives that one distance evaluates; one evaluated twice counts twice.
     """
 
     rule: Rule
@@ -53,12 +53,12 @@ class Node:
 
     @property
     def name(self) -> str:
-        """What people call it: the author's name, else the rule's."""
+        """The author's name for it, else the rule's."""
         return self.label or self.rule.name
 
     @property
     def claims(self) -> frozenset[Guarantee]:
-        """What it promises besides its slope."""
+        """Its guarantees besides the bound on its slope."""
         rule = self.rule
         if isinstance(rule, Primitive):
             return rule.claims

@@ -1,4 +1,4 @@
-"""Where in the author's source a scene object is being made.
+"""The place in the author's source where a scene object is made.
 
 Input: the running frames. Output: a ``Span`` of the innermost call outside this
 package (examples are outside). Called for every shape, light and material, so that a mistake found

@@ -26,13 +26,13 @@ class FunctionBody:
     statements: list[Stmt] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
 
-    def let(self, wish: str, value: Expr) -> Expr:
+    def let(self, stem: str, value: Expr) -> Expr:
         """Name a value."""
         if isinstance(value, Read):
             return value
-        name, n = wish, 2
+        name, n = stem, 2
         while name in self.taken:
-            name, n = f"{wish}_{n}", n + 1
+            name, n = f"{stem}_{n}", n + 1
         self.taken.add(name)
         self.statements.append(Let(name, value))
         return Read(name, value.type)
