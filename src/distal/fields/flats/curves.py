@@ -10,7 +10,7 @@ from typing import Final
 
 from distal.fields.flats.edges import LEFT, RIGHT, TINY, from_segment, nearer
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, primitive
-from distal.lang import Buffer, abs, clamp, dot, func, length, max, min, select, size, vec2
+from distal.lang import Buffer, Vectors, abs, clamp, dot, func, length, max, min, select, size, vec2
 
 LOWER_LEFT: Final = vec2(-0.5, -0.3)
 LOWER_RIGHT: Final = vec2(0.5, -0.3)
@@ -70,7 +70,7 @@ def bezier_step(t: float, third: float, second: float, first: float, zeroth: flo
 
 
 @func
-def from_bezier(p: vec2, start: vec2, control: vec2, end: vec2) -> vec2:
+def from_bezier(p: Vectors, start: Vectors, control: Vectors, end: Vectors) -> Vectors:
     """The vector from the nearest point of a quadratic Bézier curve.
 
     Along the curve the square of the distance has at most two lows, at the outer roots of a cubic.

@@ -1,4 +1,4 @@
-"""Parts that several flat shapes are made of: edges, folds of the plane, boxes of points.
+"""Parts of several flat shapes: edges (in space too), folds of the plane, boxes of points.
 
 Input: a point of the plane and the numbers of an edge or a fold. Output: the vector
 from the nearest point of the edge, or the point folded. Declares no shapes.
@@ -14,6 +14,7 @@ from typing import Final
 from distal.fields.guarantees import Bounds2
 from distal.lang import (
     Buffer,
+    Vectors,
     abs,
     atan2,
     clamp,
@@ -40,7 +41,7 @@ TINY: Final = 1e-12
 
 
 @func
-def nearer(a: vec2, b: vec2) -> vec2:
+def nearer(a: Vectors, b: Vectors) -> Vectors:
     """The shorter of two vectors."""
     return select(dot(b, b) < dot(a, a), b, a)
 
@@ -52,7 +53,7 @@ def turned_from(a: vec2, b: vec2) -> float:
 
 
 @func
-def from_segment(p: vec2, start: vec2, end: vec2) -> vec2:
+def from_segment(p: Vectors, start: Vectors, end: Vectors) -> Vectors:
     """The vector from the nearest point of a straight edge to ``p``."""
     along = end - start
     from_start = p - start

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.flats.curves import BEZIER_STEPS, bezier_step
+from distal.fields.flats.curves import from_bezier
+from distal.fields.flats.edges import from_segment, nearer
 from distal.fields.guarantees import EXACT_OUTSIDE, Bounds, Limit, primitive
 from distal.fields.solids.axes import TINY
 from distal.fields.solids.cones import round_cone_between
-from distal.lang import Buffer, abs, clamp, dot, func, length, max, min, select, size, vec3, vec4
+from distal.lang import Buffer, abs, clamp, func, length, max, min, select, size, vec3, vec4
 
 START: Final = vec3(-0.5, -0.3, 0.0)
 CONTROL: Final = vec3(0.0, 0.8, 0.4)
@@ -21,21 +22,6 @@ LEAVING: Final = vec3(-0.3, 0.7, 0.3)
 ARRIVING: Final = vec3(0.3, -0.7, 0.3)
 END: Final = vec3(0.5, -0.3, 0.0)
 PIECES: Final = 16
-
-
-@func
-def nearer(a: vec3, b: vec3) -> vec3:
-    """The shorter of two vectors."""
-    return select(dot(b, b) < dot(a, a), b, a)
-
-
-@func
-def from_segment(p: vec3, start: vec3, end: vec3) -> vec3:
-    """The vector from the nearest point of a straight line between two points."""
-    along = end - start
-    from_start = p - start
-    t = clamp(dot(from_start, along) / max(dot(along, along), TINY * TINY), 0.0, 1.0)
-    return from_start - along * t
 
 
 @func
@@ -116,31 +102,6 @@ def tapered_polyline_tube(p: vec3, points: Buffer[vec4]) -> float:
         d = min(d, round_cone_between(p, start.xyz, end.xyz, start.w, end.w))
         start = end
     return d
-
-
-@func
-def from_bezier(p: vec3, start: vec3, control: vec3, end: vec3) -> vec3:
-    """The vector from the nearest point of a quadratic Bézier curve.
-
-    As in the plane (``flats_curves``): the two lows of the square of the distance are found from
-    either end of the curve.
-    """
-    velocity = control - start
-    bend = end - control - velocity
-    offset = start - p
-    third = dot(bend, bend)
-    second = 3.0 * dot(velocity, bend)
-    first = 2.0 * dot(velocity, velocity) + dot(offset, bend)
-    zeroth = dot(offset, velocity)
-    low = 0.0
-    high = 1.0
-    for _ in range(BEZIER_STEPS):
-        low = bezier_step(low, third, second, first, zeroth)
-        high = bezier_step(high, third, second, first, zeroth)
-    return nearer(
-        offset + (2.0 * velocity + bend * low) * low,
-        offset + (2.0 * velocity + bend * high) * high,
-    )
 
 
 @func
