@@ -1,4 +1,4 @@
-"""Shapes and their methods: placing, repeating, deforming, thickening.
+"""Solid and flat shapes, and the methods that only one of the two has.
 
 Input: the author's numbers. Output: new shapes; none changes. Every method applies an operator of
 the field library.
@@ -9,25 +9,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Self, cast
 
-from distal.fields import library  # first: shapes and operators are declared in its order
 from distal.fields.combine import blends, joins, transitions
-from distal.fields.deform import folds, offsets
+from distal.fields.deform import folds
 from distal.fields.deform import solid as deform
 from distal.fields.ease import EASES
 from distal.fields.guarantees import Operator
 from distal.fields.lift import extrude, path
 from distal.fields.lift import round as lift
 from distal.fields.place import flat as flat_placing
-from distal.fields.place import mirrors
 from distal.fields.place import solid as placing
-from distal.fields.repeat import along, grid, polar
+from distal.fields.repeat import along, grid
 from distal.fields.solids import heightfield
-from distal.frontend.problems import did_you_mean
 from distal.ir.types import VEC2, VEC3
 from distal.scene.objects.field import PLAIN, Field
-from distal.scene.objects.in_plane import IN_PLANE
+from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
-from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
 
@@ -36,148 +32,9 @@ _ROTATIONS: Final[Mapping[str, Operator]] = {
     "y": placing.ROTATE_Y,
     "z": placing.ROTATE_Z,
 }
-_SHELLS: Final[Mapping[str, Operator]] = {
-    "inner": offsets.SHELL_INNER,
-    "centre": offsets.SHELL_CENTRE,
-    "outer": offsets.SHELL_OUTER,
-}
 
 
-class _Placed(Field):
-    """The methods that solid and flat shapes share."""
-
-    def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
-        """This shape under an operator, or under its counterpart in the plane."""
-        if self.flat:
-            operator = IN_PLANE.get(operator, operator)
-        made: Self = self._under(operator, args, kwargs, author_place())
-        return made
-
-    def _joined(self, operator: Operator, other: Any, **numbers: Any) -> Self:
-        place = author_place()
-        if not isinstance(other, Field) or other.flat != self.flat:
-            kind = "flat" if self.flat else "solid"
-            refuse(f"'{operator.name}' takes another {kind} shape, not {other!r:.60}", None, place)
-        made: Self = self._under(operator, (), numbers, place, others=(other,))
-        return made
-
-    def apply(self, operator: str, *args: Any, others: Sequence[Field] = (), **kwargs: Any) -> Any:
-        """Apply an operator of the library by its name in the catalogue.
-
-        Args:
-            operator: The name: "twist", "flat repeat".
-            args: Its numbers by position.
-            others: The shapes that it combines this one with.
-            kwargs: Its numbers by name.
-
-        Raises:
-            SceneValueError: There is no such operator, or it does not work on this shape.
-        """
-        place = author_place()
-        known = library.OPERATORS
-        if operator not in known:
-            refuse(f"there is no operator '{operator}'", did_you_mean(operator, known), place)
-        return self._under(known[operator], args, kwargs, place, others=tuple(others))
-
-    def translate(self, *offset: Any, **parts: Any) -> Self:
-        """Move: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
-        return self._with(placing.TRANSLATE, *offset, **parts)
-
-    def scale(self, *factors: Any, **parts: Any) -> Self:
-        """Scale by one factor, or by one factor for each axis (no longer exact then)."""
-        if len(factors) == 1 and not parts and is_scalar(factors[0]):
-            return self._with(placing.SCALE, *factors)
-        return self._with(placing.STRETCH, *factors, **parts)
-
-    def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
-        """Mirror in a plane: the half that ``normal`` points to replaces the other half.
-
-        Args:
-            normal: Length 1.
-            offset: How far the plane lies along the normal from the origin.
-        """
-        return self._with(mirrors.MIRROR, normal, offset)
-
-    def symmetry(self, axes: str) -> Self:
-        """Mirror the positive side of the named axes to the negative side: ``symmetry("xz")``."""
-        known = "xy" if self.flat else "xyz"
-        if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
-            refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
-        return self._with(mirrors.SYMMETRY, **{axis: axis in axes for axis in known})
-
-    def kaleidoscope(self, count: int) -> Self:
-        """Repeat a wedge ``count`` times about the y axis, every other one mirrored."""
-        return self._with(mirrors.KALEIDOSCOPE, count)
-
-    def repeat(
-        self,
-        *spacing: Any,
-        count: Sequence[int] | None = None,
-        neighbours: int = 0,
-        mirrored: bool = False,
-    ) -> Self:
-        """Repeat on a grid, around the shape itself.
-
-        Args:
-            spacing: From cell to cell along each axis, in scene units; 0 for an axis along which it
-                is not repeated. One number counts for all axes.
-            count: Number of copies along each axis, two or three whole numbers; None repeats
-                without end. Cells are then counted from 0, at the lower corner.
-            neighbours: How many cells around the nearest are evaluated too: 0 for a shape that
-                stays within its cell, 1 or 2 for one that reaches into others.
-            mirrored: Whether every other cell is mirrored, so that adjacent copies touch.
-
-        Raises:
-            SceneValueError: ``count`` is not one whole number for each axis, or the shape does not
-                fit its cell.
-        """
-        if mirrored:
-            return self._with(grid.REPEAT_MIRRORED, *spacing)
-        if count is None:
-            if neighbours:
-                return self._with(grid.REPEAT_NEIGHBOURS, *spacing, neighbours=neighbours)
-            return self._with(grid.REPEAT, *spacing)
-        axes = "xy" if self.flat else "xyz"
-        try:
-            counts = {f"count_{axis}": n for axis, n in zip(axes, count, strict=True)}
-        except (TypeError, ValueError):
-            refuse(
-                f"count is {len(axes)} whole numbers, not {count!r:.40}",
-                "count=(3, 2)" if self.flat else "count=(3, 1, 3)",
-                author_place(),
-            )
-        if neighbours:
-            counts["neighbours"] = neighbours
-            return self._with(grid.REPEAT_LIMITED_NEIGHBOURS, *spacing, **counts)
-        return self._with(grid.REPEAT_LIMITED, *spacing, **counts)
-
-    def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
-        """Repeat ``count`` times about the y axis (flat: about the origin)."""
-        if neighbours:
-            return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=neighbours)
-        return self._with(polar.REPEAT_POLAR, count=count)
-
-    def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
-        """Cut by a plane into two shapes: the part below, and the part above."""
-        below = self._with(offsets.SPLIT_BELOW, normal, offset)
-        return below, self._with(offsets.SPLIT_ABOVE, normal, offset)
-
-    def round(self, radius: Any) -> Self:
-        """Grow by ``radius``, with round edges."""
-        return self._with(offsets.ROUND, radius)
-
-    def offset(self, distance: Any) -> Self:
-        """Grow by a distance, or shrink by a negative one."""
-        return self._with(offsets.OFFSET, distance)
-
-    def shell(self, thickness: Any, where: str = "centre") -> Self:
-        """Make a hollow shape whose wall lies "inner", "centre" or "outer" of the surface."""
-        if where not in _SHELLS:
-            refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
-        return self._with(_SHELLS[where], thickness)
-
-
-class Shape(_Placed):
+class Shape(Placed):
     """A solid: a signed distance in space. Shapes never change; methods return new ones."""
 
     flat = False
@@ -441,7 +298,7 @@ class Shape(_Placed):
         return self._flat(lift.PROJECT, count=count)
 
 
-class Shape2D(_Placed):
+class Shape2D(Placed):
     """A flat shape: a signed distance in the plane."""
 
     flat = True
