@@ -15,6 +15,7 @@ import pytest
 import distal
 from distal.ir.types import FLOAT, VEC3
 from distal.lang.runtime_hook import executor
+from distal.render.material import Surface
 from distal.scene.objects.cameras import TurnedCamera
 from tests.scene.constructor_cases import (
     ALL_NUMBERS,
@@ -98,7 +99,7 @@ MODULES = ("lights", "cameras", "materials", "patterns", "backgrounds")
 
 
 def test_every_object_has_a_case_that_changes_each_argument():
-    named_in = {f"distal.scene.{module}" for module in MODULES}
+    named_in = {f"distal.scene.objects.{module}" for module in MODULES}
     names = {n for n, maker in MAKERS.items() if getattr(maker, "__module__", "") in named_in}
     assert names - ELSEWHERE == {case.name for case in CASES}
     for name in {case.name for case in CASES}:
@@ -109,6 +110,18 @@ def test_every_object_has_a_case_that_changes_each_argument():
         assert set(parameters) - changed <= ELSEWHERE_ARGUMENTS.get(name, set()), name
         for case in own:
             assert list(case.arguments) == [n for n in parameters if n in case.arguments], name
+
+
+def test_a_material_has_the_defaults_of_a_surface():
+    parameters = inspect.signature(distal.Material).parameters
+    defaults = {name: parameter.default for name, parameter in parameters.items()}
+    for name, parameter in inspect.signature(Surface).parameters.items():
+        np.testing.assert_array_equal(defaults.pop(name), tuple_of(parameter.default), name)
+    assert not defaults
+
+
+def tuple_of(value: Any) -> Any:
+    return tuple(value) if hasattr(value, "__iter__") else value
 
 
 def test_a_camera_by_yaw_pitch_and_roll_is_a_turned_one():

@@ -7,6 +7,7 @@ diffuse surface shows, unoccluded. Point lights and the like are in ``lights``.
 from __future__ import annotations
 
 from distal.lang import Buffer, acos, clamp, dot, func, max, normalize, sqrt, vec3
+from distal.render.declarations import light
 
 PI = 3.14159265358979
 WHITE = vec3(1.0)
@@ -18,12 +19,24 @@ HORIZON = vec3(0.8, 0.85, 0.9)
 GROUND = vec3(0.25, 0.22, 0.2)
 
 
+@light("AmbientLight")
 @func
 def ambient_light(n: vec3, intensity: float = 0.1, color: vec3 = WHITE) -> vec3:
-    """The same from everywhere."""
+    """The same light from everywhere.
+
+    Args:
+        n: Unit normal; has no effect.
+        intensity: How bright; a white matte surface shows this much.
+        color: Its colour.
+    """
     return color * intensity
 
 
+def _has_an_upper_half(up: tuple[float, ...]) -> str | None:
+    return None if any(up) else "up is a vector of zeros, which points nowhere"
+
+
+@light("HemisphereLight", requires=_has_an_upper_half)
 @func
 def hemisphere_light(
     n: vec3,
@@ -32,14 +45,14 @@ def hemisphere_light(
     intensity: float = 0.5,
     up: vec3 = UP,
 ) -> vec3:
-    """One colour from the upper half of space and one from the lower, exactly.
+    """Light of one colour from the upper half of space, of another from the lower.
 
     Args:
         n: Unit normal.
         sky: Colour of the upper half.
         ground: Colour of the lower half.
-        intensity: Brightness.
-        up: Where the upper half is, of any length but 0.
+        intensity: A factor on both.
+        up: Where the upper half is, of any length.
     """
     share = 0.5 + 0.5 * dot(n, normalize(up))
     return (ground + (sky - ground) * share) * intensity

@@ -7,6 +7,8 @@ that is not turned looks along -z. ``mirror`` swaps left and right, as in left-h
 
 from __future__ import annotations
 
+import math
+
 from distal.lang import (
     abs,
     atan2,
@@ -26,11 +28,20 @@ from distal.lang import (
     vec2,
     vec3,
 )
+from distal.render.declarations import ExtraParameter, camera
 
 PI = 3.14159265358979
 ORIGIN = vec3(0.0)
 UP = vec3(0.0, 1.0, 0.0)
 START = vec3(0.0, 0.0, 5.0)
+AHEAD = vec3(0.0, 0.0, -1.0)
+HALF_TURN = math.pi
+OPENING = 40.0 * (math.pi / 180.0)
+# Two directions closer than this (the sine between them) span no plane in 32 bits.
+PARALLEL = 1e-5
+IN_DEGREES = ExtraParameter(
+    "fov_deg", None, "Number | None", "The same in degrees.", keyword_only=True
+)
 
 
 @struct
@@ -81,24 +92,43 @@ def through_screen(uv: vec2, position: vec3, basis: Basis, focal: float) -> Ray:
     return Ray(position, normalize(direction))
 
 
+def _has_a_view(
+    position: tuple[float, ...], target: tuple[float, ...], up: tuple[float, ...]
+) -> str | None:
+    """Why a view has no direction, or its picture no up."""
+    ahead = [t - p for t, p in zip(target, position, strict=True)]
+    length = math.hypot(*ahead)
+    if length == 0.0:
+        return "position and target are the same place"
+    if math.hypot(*up) == 0.0:
+        return "up is a vector of zeros, which has no direction"
+    (ax, ay, az), (ux, uy, uz) = ahead, up
+    across = math.hypot(ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux)
+    if across <= PARALLEL * length * math.hypot(*up):
+        return "up points along the view; for a view straight down, give up=(0, 0, -1)"
+    return None
+
+
+@camera("Camera", requires=_has_a_view, extras=(IN_DEGREES,))
 @func
 def look_at(
     uv: vec2,
     position: vec3 = START,
     target: vec3 = ORIGIN,
     up: vec3 = UP,
-    fov: float = 0.7,
+    fov: float = OPENING,
     mirror: bool = False,
 ) -> Ray:
-    """Perspective, from one place at another.
+    """A camera that looks from one place at another, with perspective.
 
     Args:
         uv: Place in the picture.
-        position: Where the camera is.
-        target: What it looks at; not the position.
-        up: Which way is up in the picture; not along the view.
-        fov: Angle from the bottom to the top of the picture, below pi.
-        mirror: Swap left and right.
+        position: Where it is.
+        target: What it looks at.
+        up: Which way is up in the picture.
+        fov: The angle from the picture's bottom to its top, in radians; below pi
+            (default: 40 degrees).
+        mirror: Left and right swapped, as left-handed systems see it.
     """
     focal = 1.0 / tan(0.5 * fov)
     return through_screen(mirrored(uv, mirror), position, basis_ahead(target - position, up), focal)
@@ -131,6 +161,7 @@ def turned(
     return through_screen(mirrored(uv, mirror), position, basis_turned(yaw, pitch, roll), focal)
 
 
+@camera("OrbitCamera", extras=(IN_DEGREES,))
 @func
 def orbit(
     uv: vec2,
@@ -138,25 +169,27 @@ def orbit(
     azimuth: float = 0.0,
     elevation: float = 0.0,
     target: vec3 = ORIGIN,
-    fov: float = 0.7,
+    fov: float = OPENING,
     mirror: bool = False,
 ) -> Ray:
-    """Perspective, on a ball around a target.
+    """A camera on a sphere around what it looks at.
 
     Args:
         uv: Place in the picture.
         distance: From the target.
-        azimuth: Around the upright axis; 0 stands on +z, a quarter turn on +x.
-        elevation: Above the horizon; straight above is allowed.
+        azimuth: Around the y axis, in radians; 0 is on the side of +z, pi/2 on that of +x.
+        elevation: Up, in radians; pi/2 is straight above.
         target: What it looks at.
-        fov: Angle from the bottom to the top of the picture, below pi.
-        mirror: Swap left and right.
+        fov: The angle from the picture's bottom to its top, in radians; below pi
+            (default: 40 degrees).
+        mirror: Left and right swapped, as left-handed systems see it.
     """
     basis = basis_turned(azimuth, -elevation, 0.0)
     focal = 1.0 / tan(0.5 * fov)
     return through_screen(mirrored(uv, mirror), target - basis.ahead * distance, basis, focal)
 
 
+@camera("OrthographicCamera", requires=_has_a_view)
 @func
 def orthographic(
     uv: vec2,
@@ -166,39 +199,43 @@ def orthographic(
     height: float = 4.0,
     mirror: bool = False,
 ) -> Ray:
-    """All rays side by side: no perspective.
+    """A camera without perspective: what is far is as large as what is near.
 
     Args:
         uv: Place in the picture.
-        position: Middle of the plane that the rays start on.
+        position: The middle of the picture; what lies behind it is not seen.
         target: What it looks at.
         up: Which way is up in the picture.
-        height: How much of space the picture shows from bottom to top.
-        mirror: Swap left and right.
+        height: What the picture shows from bottom to top, in scene units.
+        mirror: Left and right swapped, as left-handed systems see it.
     """
     basis = basis_ahead(target - position, up)
     place = mirrored(uv, mirror) * (0.5 * height)
     return Ray(position + basis.right * place.x + basis.up * place.y, basis.ahead)
 
 
+@camera("FisheyeCamera", requires=_has_a_view, extras=(IN_DEGREES,), widest=2.0 * math.pi)
 @func
 def fisheye(
     uv: vec2,
     position: vec3 = START,
     target: vec3 = ORIGIN,
     up: vec3 = UP,
-    fov: float = PI,
+    fov: float = HALF_TURN,
     mirror: bool = False,
 ) -> Ray:
-    """Equidistant fisheye: the angle from the view grows evenly from the middle outwards.
+    """A camera that sees half of the world around, or more, in a circle.
+
+    The angle from the view grows evenly from the middle of the picture (equidistant).
 
     Args:
         uv: Place in the picture.
-        position: Where the camera is.
+        position: Where it is.
         target: What it looks at.
         up: Which way is up in the picture.
-        fov: Angle from the bottom to the top of the picture, up to a full turn.
-        mirror: Swap left and right.
+        fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
+            (default: 180 degrees).
+        mirror: Left and right swapped, as left-handed systems see it.
     """
     basis = basis_ahead(target - position, up)
     place = mirrored(uv, mirror)
@@ -208,22 +245,25 @@ def fisheye(
     return Ray(position, normalize(basis.ahead * cos(angle) + sideways * sin(angle)))
 
 
+@camera("PanoramaCamera", requires=_has_a_view)
 @func
 def panorama(
     uv: vec2,
-    position: vec3 = START,
-    target: vec3 = ORIGIN,
+    position: vec3 = ORIGIN,
+    target: vec3 = AHEAD,
     up: vec3 = UP,
     mirror: bool = False,
 ) -> Ray:
-    """The whole surroundings, equirectangular: a picture twice as wide as high shows all.
+    """A camera that sees all around: longitude to the right, latitude up (equirectangular).
+
+    A picture twice as wide as high shows everything.
 
     Args:
         uv: Place in the picture.
-        position: Where the camera is.
-        target: What the middle of the picture looks at.
+        position: Where it is.
+        target: What is in the middle of the picture.
         up: Which way is up in the picture.
-        mirror: Swap left and right.
+        mirror: Left and right swapped, as left-handed systems see it.
     """
     basis = basis_ahead(target - position, up)
     angles = mirrored(uv, mirror) * (0.5 * PI)

@@ -7,13 +7,16 @@ is, so that a point light of intensity 1 at distance 1 shows 1.
 
 from __future__ import annotations
 
+import math
+
 from distal.lang import clamp, cos, dot, func, inversesqrt, max, normalize, struct, tan, vec3
+from distal.render.declarations import light
 
 FAR_AWAY = 1e9  # how far light from everywhere the same is taken to come
 WHITE = vec3(1.0)
 ORIGIN = vec3(0.0)
-OVERHEAD = vec3(0.0, 3.0, 0.0)
-DIAGONAL = vec3(1.0, 1.0, 1.0)
+FROM_ABOVE = vec3(1.0, 2.0, 1.0)
+EIGHTH_TURN = math.pi / 4
 
 
 @struct
@@ -39,42 +42,56 @@ def no_light() -> LightSample:
     return LightSample(vec3(0.0, 1.0, 0.0), FAR_AWAY, vec3(0.0), 0.0)
 
 
+def _shines_somewhere(direction: tuple[float, ...]) -> str | None:
+    return None if any(direction) else "direction is a vector of zeros, which points nowhere"
+
+
+def _has_a_cone(position: tuple[float, ...], target: tuple[float, ...], angle: float) -> str | None:
+    if position == target:
+        return "position and target are the same place"
+    if angle < math.pi:
+        return None
+    return "angle is the cone's opening in radians, below pi; np.radians makes it of degrees"
+
+
+@light("DistantLight", requires=_shines_somewhere)
 @func
 def distant_light(
     p: vec3,
-    direction: vec3 = DIAGONAL,
+    direction: vec3 = FROM_ABOVE,
     intensity: float = 1.0,
     color: vec3 = WHITE,
     angle: float = 0.0,
 ) -> LightSample:
-    """Light from far away, the same everywhere.
+    """Light from one side, equally bright everywhere: the sun.
 
     Args:
-        p: Point; counts for nothing.
-        direction: To the light, of any length but 0.
-        intensity: Brightness.
-        color: Linear colour.
-        angle: How wide it looks (the sun: 0.0093).
+        p: Point; has no effect.
+        direction: Towards the light, of any length.
+        intensity: How bright a white matte surface shows that faces it.
+        color: Its colour.
+        angle: How wide it looks, in radians: what softens its shadows (the sun: 0.0093).
     """
     return LightSample(normalize(direction), FAR_AWAY, color * intensity, tan(0.5 * angle))
 
 
+@light("PointLight")
 @func
 def point_light(
     p: vec3,
-    position: vec3 = OVERHEAD,
+    position: vec3,
     intensity: float = 1.0,
     color: vec3 = WHITE,
     radius: float = 0.0,
 ) -> LightSample:
-    """Light from one point (or a small ball), weaker by the square of the distance.
+    """Light from one point, fading with the square of the distance.
 
     Args:
         p: Point.
-        position: Where the light is.
-        intensity: Brightness at distance 1.
-        color: Linear colour.
-        radius: Of the ball, for soft shadows and the size of highlights.
+        position: Where it is.
+        intensity: How bright a white matte surface shows that faces it at distance 1.
+        color: Its colour.
+        radius: How large it is: what softens its shadows.
     """
     offset = position - p
     # A point on the light itself: as if a thousandth away.
@@ -84,14 +101,15 @@ def point_light(
     return LightSample(offset * inverse, squared * inverse, radiance, radius * inverse)
 
 
+@light("SpotLight", requires=_has_a_cone)
 @func
 def spot_light(
     p: vec3,
-    position: vec3 = OVERHEAD,
+    position: vec3,
     target: vec3 = ORIGIN,
     intensity: float = 1.0,
     color: vec3 = WHITE,
-    angle: float = 0.7,
+    angle: float = EIGHTH_TURN,
     softness: float = 0.2,
     radius: float = 0.0,
 ) -> LightSample:
@@ -99,13 +117,13 @@ def spot_light(
 
     Args:
         p: Point.
-        position: Where the light is.
+        position: Where it is.
         target: What it points at.
-        intensity: Brightness in the middle, at distance 1.
-        color: Linear colour.
-        angle: Of the whole cone, below pi.
-        softness: Share of the half angle over which the rim fades: 0 sharp, 1 from the middle on.
-        radius: Of the lamp, for soft shadows.
+        intensity: As for a point light.
+        color: Its colour.
+        angle: The whole cone's opening, in radians; below pi.
+        softness: Share of half the angle over which the rim fades: 0 sharp, 1 from the axis on.
+        radius: How large it is: what softens its shadows.
     """
     light = point_light(p, position, intensity, color, radius)
     along = dot(light.direction, normalize(position - target))

@@ -6,7 +6,9 @@ shares of light that a ray splits into. Knows no geometry and no lights.
 
 from __future__ import annotations
 
+from distal.fields.guarantees import Limit
 from distal.lang import clamp, dot, func, max, min, mix, sqrt, struct, vec3
+from distal.render.declarations import material
 
 BLACK = vec3(0.0)
 WHITE = vec3(1.0)
@@ -44,31 +46,57 @@ class Surface:
     fresnel: float = 0.0
 
 
+@material("matte")
 @func
 def matte(color: vec3 = WHITE) -> Surface:
-    """Paper, chalk: all light is scattered evenly."""
+    """A material that scatters light evenly to all sides: plaster, paper.
+
+    Args:
+        color: What it scatters.
+    """
     return Surface(color=color)
 
 
+@material("glossy", reflects=True)
 @func
 def glossy(
     color: vec3 = WHITE, diffuse: float = 0.5, specular: float = 0.5, roughness: float = 0.0
 ) -> Surface:
-    """Scatters one share of the light and mirrors another, the same from every side."""
+    """A material that scatters a part of the light and mirrors a part, alike from all sides.
+
+    The shares add up to at most 1.
+
+    Args:
+        color: What it scatters.
+        diffuse: Share of light scattered.
+        specular: Share of light mirrored.
+        roughness: 0 mirrors sharply, 1 hardly at all.
+    """
     return Surface(color=color, diffuse=diffuse, specular=specular, roughness=roughness)
 
 
+@material("metal", reflects=True)
 @func
 def metal(color: vec3 = SILVER, roughness: float = 0.2) -> Surface:
-    """Bare metal: mirrors, tinted by its colour, white at the rim."""
+    """A metal: it mirrors in its own colour, white at the rim.
+
+    Args:
+        color: What it mirrors, seen straight on.
+        roughness: 0 mirrors sharply, 1 hardly at all.
+    """
     return Surface(
         color=color, diffuse=0.0, specular=1.0, roughness=roughness, metal=1.0, fresnel=1.0
     )
 
 
+@material("mirror", reflects=True)
 @func
 def mirror(color: vec3 = WHITE) -> Surface:
-    """A perfect mirror, tinted by its colour from every side."""
+    """A perfect mirror.
+
+    Args:
+        color: What it mirrors.
+    """
     return Surface(color=color, diffuse=0.0, specular=1.0, metal=1.0)
 
 
@@ -83,15 +111,29 @@ def glass(ior: float = 1.5, absorption: vec3 = BLACK) -> Surface:
     return Surface(diffuse=0.0, transmission=1.0, ior=ior, absorption=absorption, fresnel=1.0)
 
 
+@material("plastic", reflects=True)
 @func
 def plastic(color: vec3 = WHITE, roughness: float = 0.2, ior: float = 1.5) -> Surface:
-    """A matte colour under a clear coat that mirrors as Fresnel says."""
+    """A scattering material under a clear coat: it mirrors more the flatter light comes.
+
+    Args:
+        color: What it scatters.
+        roughness: Of the coat; 0 mirrors sharply.
+        ior: Index of refraction of the coat.
+    """
     return Surface(color=color, ior=ior, roughness=roughness, fresnel=1.0)
 
 
+# What shines may be brighter than white.
+@material("emissive", limits={"strength": Limit.NOT_NEGATIVE})
 @func
 def emissive(color: vec3 = WHITE, strength: float = 1.0) -> Surface:
-    """Glows by itself and reflects nothing."""
+    """A material that shines by itself and shows nothing else.
+
+    Args:
+        color: What it gives off.
+        strength: A factor on it; beyond 1 too.
+    """
     return Surface(color=BLACK, diffuse=0.0, emission=color * strength)
 
 

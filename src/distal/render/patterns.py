@@ -29,6 +29,7 @@ from distal.lang import (
     vec2,
     vec3,
 )
+from distal.render.declarations import ExtraParameter, pattern
 
 PI = 3.14159265358979
 CENTER = vec3(0.0)
@@ -43,13 +44,33 @@ ONCE = vec3(1.0)
 THIRDS = vec3(0.0, 0.33, 0.67)
 
 
+def _sides(
+    first: str = "A colour, a pattern, or a material.", second: str = "The other."
+) -> tuple[ExtraParameter, ExtraParameter]:
+    """The colours or materials of a pattern that gives the share of the second."""
+    annotation = "Color | Varying | Material"
+    return (
+        ExtraParameter("a", "#fff", annotation, first),
+        ExtraParameter("b", "#222", annotation, second),
+    )
+
+
+def _has_layers(direction: tuple[float, ...]) -> str | None:
+    return None if any(direction) else "direction is a vector of zeros, which points nowhere"
+
+
+def _has_a_way(start: tuple[float, ...], end: tuple[float, ...]) -> str | None:
+    return "start and end are the same place" if start == end else None
+
+
+@pattern("checker", extras=_sides())
 @func
 def checker(p: vec3, size: float = 1.0) -> float:
-    """Cubes in turn; on a flat floor, squares.
+    """Cubes of two colours or materials in turn; on a flat floor, squares.
 
     Args:
         p: Point.
-        size: Edge of one cube.
+        size: The edge of one cube.
     """
     cube = floor(p / size + OFF_THE_BORDER)
     return (cube.x + cube.y + cube.z) % 2.0
@@ -67,21 +88,29 @@ def checker2(p: vec3, size: float = 1.0) -> float:
     return (square.x + square.y) % 2.0
 
 
+@pattern("stripes", extras=_sides(), requires=_has_layers)
 @func
 def stripes(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
-    """Layers in turn.
+    """Layers of two colours or materials in turn.
 
     Args:
         p: Point.
         size: How thick one layer is.
-        direction: Across the layers, of any length but 0.
+        direction: Across the layers.
     """
     return floor(dot(p, normalize(direction)) / size) % 2.0
 
 
+@pattern(
+    "gradient",
+    extras=_sides(
+        "A colour, a pattern, or a material: up to ``start``.", "The other: from ``end`` on."
+    ),
+    requires=_has_a_way,
+)
 @func
 def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
-    """0 up to ``start``, 1 from ``end`` on, evenly between.
+    """One colour or material that becomes another along a line.
 
     Args:
         p: Point.
@@ -92,14 +121,20 @@ def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
     return clamp(dot(p - start, way) / max(dot(way, way), 1e-12), 0.0, 1.0)
 
 
+@pattern(
+    "radial_gradient",
+    extras=_sides(
+        "A colour, a pattern, or a material: at the centre.", "The other: from ``radius`` on."
+    ),
+)
 @func
 def radial_gradient(p: vec3, center: vec3 = CENTER, radius: float = 1.0) -> float:
-    """0 at the centre, 1 from ``radius`` on, evenly between.
+    """One colour or material that becomes another with the distance from a point.
 
     Args:
         p: Point.
-        center: Where the change begins.
-        radius: Where it is complete.
+        center: Where it begins.
+        radius: Where the change is complete.
     """
     return clamp(length(p - center) / radius, 0.0, 1.0)
 
@@ -111,18 +146,21 @@ def cell_number(cell: vec3, seed: float, salt: int) -> float:
     return fraction(lattice_hash(place, int(floor(16.0 * seed)) + salt))
 
 
+@pattern("noise", extras=_sides())
 @func
 def clouds(p: vec3, size: float = 1.0, octaves: int = 4) -> float:
-    """Noise in layers, each half as large and half as strong as the one before.
+    """Clouds of two colours or materials.
 
     Args:
         p: Point.
         size: How large the largest clouds are.
-        octaves: How many layers.
+        octaves: How many layers of clouds, each half as large and half as strong as the one before;
+            fixed when compiled.
     """
     return 0.5 + 0.5 * fbm(p / size, octaves)
 
 
+@pattern("palette")
 @func
 def palette(
     t: float,
@@ -134,7 +172,7 @@ def palette(
     """Colours along a number: ``base + amplitude * cos(2 pi (frequency * t + phase))``.
 
     Args:
-        t: Number.
+        t: A pattern that gives a number, or a number.
         base: The colour in the middle.
         amplitude: How far each part swings.
         frequency: How often each part swings as t goes from 0 to 1.
@@ -145,9 +183,12 @@ def palette(
     return max(base + amplitude * cos(2.0 * PI * (frequency * t + phase)), vec3(0.0))
 
 
+@pattern("by_cell")
 @func
 def by_cell(cell: vec3, seed: float = 0.0) -> vec3:
-    """A colour of its own for each repetition: any hue, neither pale nor dark.
+    """A colour of its own for each repetition of a shape that is painted, then repeated.
+
+    It has any hue, and is neither pale nor dark.
 
     Args:
         cell: Index of the repetition.
@@ -242,13 +283,14 @@ def cube_map(p: vec3, image: TextureCube) -> vec3:
     return sample(image, p).rgb
 
 
+@pattern("waves", extras=_sides(), requires=_has_layers)
 @func
 def waves(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
-    """As stripes, but going smoothly from one to the other and back.
+    """Two colours or materials going smoothly from one to the other and back.
 
     Args:
         p: Point.
         size: From one crest to the next.
-        direction: Across the waves, of any length but 0.
+        direction: Across the waves.
     """
     return 0.5 + 0.5 * sin(2.0 * PI * dot(p, normalize(direction)) / size)

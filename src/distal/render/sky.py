@@ -8,7 +8,8 @@ sky's parts as lights are here too: its sun, as a ``LightSample``; its diffuse l
 from __future__ import annotations
 
 from distal.lang import clamp, cos, dot, func, max, mix, normalize, smoothstep, vec3
-from distal.render.ambient import GROUND, HORIZON, ZENITH
+from distal.render.ambient import GROUND, HORIZON, ZENITH, sky_ambient
+from distal.render.declarations import ExtraParameter, background
 from distal.render.lights import LightSample, distant_light
 
 SUN_COLOR = vec3(1.0, 0.9, 0.75)
@@ -24,16 +25,45 @@ def plain_background(direction: vec3, color: vec3 = BLACK) -> vec3:
     return color
 
 
+@background("GradientBackground")
 @func
 def gradient_background(
     direction: vec3,
     bottom: vec3 = PALE,
     top: vec3 = BLUE,
 ) -> vec3:
-    """One colour straight down, another straight up, evenly between by height."""
+    """One colour straight down, another straight up, evenly between by height.
+
+    Args:
+        direction: Unit direction.
+        bottom: Colour straight down.
+        top: Colour straight up.
+    """
     return mix(bottom, top, 0.5 + 0.5 * direction.y)
 
 
+@func
+def sky_sun(
+    p: vec3, sun: vec3, sun_color: vec3, sun_intensity: float, sun_angle: float
+) -> LightSample:
+    """The sky's sun as a light."""
+    return distant_light(p, sun, sun_intensity, sun_color, sun_angle)
+
+
+def _has_a_sun(sun: tuple[float, ...]) -> str | None:
+    return None if any(sun) else "sun is a vector of zeros, which points nowhere"
+
+
+LIGHT = ExtraParameter(
+    "light",
+    False,
+    "bool",
+    "Whether it lights the scene whose background it is. Among a scene's lights it always does.",
+    keyword_only=True,
+)
+
+
+@background("Sky", requires=_has_a_sun, extras=(LIGHT,), sample=sky_sun, ambient=sky_ambient)
 @func
 def sky(
     direction: vec3,
@@ -46,14 +76,14 @@ def sky(
     ground: vec3 = GROUND,
     intensity: float = 1.0,
 ) -> vec3:
-    """A gradient by height, the ground below, and the sun's disc with a glow around it.
+    """A clear sky with a sun, and ground below the horizon.
 
     Args:
         direction: Unit direction.
-        sun: To the sun, of any length but 0.
-        sun_color: Linear colour of the sun.
-        sun_intensity: What the sun gives a white surface, square on.
-        sun_angle: How wide the sun looks.
+        sun: To the sun; of any length.
+        sun_color: The sun's colour.
+        sun_intensity: How bright a white matte surface shows that faces the sun.
+        sun_angle: How wide the sun looks, in radians.
         zenith: Colour overhead.
         horizon: Colour along the horizon.
         ground: Colour below.
@@ -68,15 +98,3 @@ def sky(
     glow = max(along, 0.0) ** 64 * 0.25 + max(along, 0.0) ** 512 * 0.5
     # The disc is shown far dimmer than it is, or every tone map would burn it out.
     return base + sun_color * (sun_intensity * (4.0 * disc + glow))
-
-
-@func
-def sky_sun(
-    p: vec3,
-    sun: vec3 = DIAGONAL,
-    sun_color: vec3 = SUN_COLOR,
-    sun_intensity: float = 1.0,
-    sun_angle: float = 0.05,
-) -> LightSample:
-    """The sky's sun as a light."""
-    return distant_light(p, sun, sun_intensity, sun_color, sun_angle)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from distal.fields.guarantees import Limit
 from distal.frontend import Assembly
@@ -37,6 +37,14 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.steering import Steering
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Color, Number, Varying
+    from distal.scene.objects.backgrounds import Background, Surroundings
+    from distal.scene.objects.cameras import BaseCamera
+    from distal.scene.objects.lights import Light
+    from distal.scene.objects.materials import Material
+    from distal.scene.objects.shape import Shape
 
 
 class Scene(Composed, Presentable):
@@ -75,26 +83,26 @@ class Scene(Composed, Presentable):
 
     def __init__(
         self,
-        shape: Any,
-        lights: Any = None,
-        camera: Any = None,
-        background: Any = None,
+        shape: Shape | Iterable[Shape],
+        lights: Light | Iterable[Light] | None = None,
+        camera: BaseCamera | None = None,
+        background: Background | Surroundings | Color | Func | None = None,
         *,
-        exposure: Any = 1.0,
+        exposure: Number = 1.0,
         tone_map: str = "none",
-        default_material: Any = (0.8, 0.8, 0.8),
-        fog: Any = (0.0, 0.0, 0.0),
-        fog_density: Any = 0.0,
+        default_material: Material | Color | Varying = (0.8, 0.8, 0.8),
+        fog: Color = (0.0, 0.0, 0.0),
+        fog_density: Number = 0.0,
         shadows: bool = True,
-        ambient_occlusion: Any = 0.4,
+        ambient_occlusion: Number = 0.4,
         bounces: int = 6,
         normals: str = "exact",
         march: str = "sphere",
-        stride: Any = 0.03,
-        stride_growth: Any = 1.05,
+        stride: Number = 0.03,
+        stride_growth: Number = 1.05,
         steps: int = 160,
-        near: Any = 0.001,
-        far: Any = 200.0,
+        near: Number = 0.001,
+        far: Number = 200.0,
         name: str = "scene",
     ) -> None:
         place = self.place = author_place()

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from distal import Camera, DistantLight, HemisphereLight
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, INT, VEC3
 from distal.lang import func, vec3
-from distal.scene.objects.cameras import BaseCamera, Camera
+from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import Field
-from distal.scene.objects.lights import DistantLight, HemisphereLight, Light
+from distal.scene.objects.lights import Light
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.conversion import Asked, choice, number
 from distal.scene.tree.errors import refuse, refuse_kind

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
-from distal.fields.guarantees import Limit, Requirement
 from distal.ir.nodes import Expr
 from distal.ir.types import VEC3
 from distal.lang import Buffer, func, vec3
@@ -25,20 +24,22 @@ from distal.lang.unchanging import Unchanging
 from distal.render import ambient as ambient_library
 from distal.render import environment as environment_library
 from distal.render import sky as library
+from distal.render.declarations import BACKGROUNDS, Declaration
+from distal.scene.objects.declared import (
+    declared_call,
+    declared_class,
+    given_arguments,
+    scene_call,
+)
 from distal.scene.objects.lights import Light
-from distal.scene.tree.arguments import arguments, slots_of
+from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import Composer, FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
-_SITE: Final = frozenset(("direction", "p", "n"))
-_COLORS: Final = ("bottom", "top", "zenith", "horizon", "ground")
-_LIMITS: Final = {
-    "intensity": Limit.NOT_NEGATIVE,
-    "sun_intensity": Limit.NOT_NEGATIVE,
-    "sun_angle": Limit.POSITIVE,
-}
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Color, Image, Number
 
 
 class Background(Unchanging):
@@ -62,13 +63,12 @@ class Background(Unchanging):
     call: FunctionCall
     light: Light | None
 
-    def __init__(self, what: Any, **numbers: Any) -> None:
+    def __init__(self, what: Color | Func, **numbers: Any) -> None:
         place = author_place()
         if isinstance(what, Func):
             self._show(_own(what, numbers, place))
-            return
-        given = {"color": what, **numbers}
-        self._show(_call("Background", library.plain_background, given, place))
+        else:
+            self._show(_plain({"color": what, **numbers}, place))
 
     def _show(self, call: FunctionCall, light: Light | None = None) -> None:
         object.__setattr__(self, "call", call)
@@ -96,19 +96,17 @@ class Background(Unchanging):
         return self.call.functions()
 
 
-class GradientBackground(Background):
-    """One colour straight down, another straight up, evenly between by height.
-
-    Args:
-        bottom: Colour straight down.
-        top: Colour straight up.
-    """
+class DeclaredBackground(Background):
+    """A background of a declared scene function."""
 
     __slots__ = ()
 
-    def __init__(self, bottom: Any = (0.9, 0.9, 0.9), top: Any = (0.35, 0.5, 0.75)) -> None:
-        given = {"bottom": bottom, "top": top}
-        self._show(_call(type(self).__name__, library.gradient_background, given, author_place()))
+    declaration: ClassVar[Declaration]
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        place, what = author_place(), type(self).__name__
+        given = given_arguments(self.declaration, args, kwargs, what, place)
+        self._show(declared_call(self.declaration, given, place, what=what))
 
 
 class Surroundings(Light):
@@ -116,7 +114,7 @@ class Surroundings(Light):
 
     Attributes:
         background: ``(direction) -> vec3``, what rays show that meet nothing.
-        light: Whether it is a light where it stands as a background.
+        light: Whether it is a light of the scene whose background it is.
     """
 
     __slots__ = ("background", "light")
@@ -129,58 +127,17 @@ class Surroundings(Light):
         object.__setattr__(self, "light", light)
 
 
-class Sky(Surroundings):
-    """A clear sky with a sun, and ground below the horizon.
-
-    Args:
-        sun: To the sun; of any length.
-        sun_color: The sun's colour.
-        sun_intensity: How bright a white matte surface shows that faces the sun.
-        sun_angle: How wide the sun looks, in radians.
-        zenith: Colour overhead.
-        horizon: Colour along the horizon.
-        ground: Colour below.
-        intensity: Brightness of all but the sun.
-        light: Whether it lights the scene where it is its background. Among a scene's lights it
-            always does.
-
-    Raises:
-        ValueError: A number is out of its range, or the sun is nowhere.
-        TypeError: Something is of another kind.
-    """
+class DeclaredSurroundings(Surroundings):
+    """Surroundings of a declared scene function, and of functions for its parts as a light."""
 
     __slots__ = ()
 
-    def __init__(
-        self,
-        sun: Any = (1.0, 1.0, 1.0),
-        sun_color: Any = (1.0, 0.9, 0.75),
-        sun_intensity: Any = 1.0,
-        sun_angle: Any = 0.05,
-        zenith: Any = (0.2, 0.4, 0.8),
-        horizon: Any = (0.8, 0.85, 0.9),
-        ground: Any = (0.25, 0.22, 0.2),
-        intensity: Any = 1.0,
-        *,
-        light: bool = False,
-    ) -> None:
-        given = {
-            "sun": sun,
-            "sun_color": sun_color,
-            "sun_intensity": sun_intensity,
-            "sun_angle": sun_angle,
-            "zenith": zenith,
-            "horizon": horizon,
-            "ground": ground,
-            "intensity": intensity,
-        }
-        place = author_place()
-        whole = _call("Sky", library.sky, given, place, _sun)
-        self._surround(whole, light=bool(light))
-        self._shine(
-            sample=_part(whole, library.sky_sun),
-            ambient=_part(whole, ambient_library.sky_ambient),
-        )
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        place, declaration = author_place(), self.declaration
+        given = given_arguments(declaration, args, kwargs, declaration.name, place)
+        whole = declared_call(declaration, given, place)
+        self._surround(whole, light=bool(given.get("light", False)))
+        self._shine(_part(whole, declaration.sample), _part(whole, declaration.ambient))
 
 
 class Environment(Surroundings):
@@ -205,12 +162,13 @@ class Environment(Surroundings):
     _texture: Texture2D
 
     def __init__(
-        self, image: Any, intensity: Any = 1.0, turn: Any = 0.0, *, light: bool = False
+        self, image: Image, intensity: Number = 1.0, turn: Number = 0.0, *, light: bool = False
     ) -> None:
         place = author_place()
         texture = _images().light_texture(image, "Environment", place)
         given = {"image": texture, "intensity": intensity, "turn": turn}
-        whole = _call("Environment", environment_library.environment, given, place)
+        environment = environment_library.environment
+        whole = scene_call(BACKGROUNDS, environment, given, "Environment", place)
         self._surround(whole, light=bool(light))
         object.__setattr__(self, "sample", None)
         object.__setattr__(self, "_texture", texture)
@@ -228,6 +186,13 @@ class Environment(Surroundings):
             object.__setattr__(self, "_ambient", call)
         assert self._ambient is not None
         return self._ambient
+
+
+CLASSES: Final = {
+    name: declared_class(found, DeclaredSurroundings if found.sample else DeclaredBackground)
+    for name, found in BACKGROUNDS.members.items()
+}
+globals().update(CLASSES)
 
 
 @func
@@ -256,7 +221,7 @@ def as_background(
     place = place or author_place()
     if value is None:
         skies = (light for light in lights if isinstance(light, Surroundings))
-        value = next(skies, None) or GradientBackground()
+        value = next(skies, None) or CLASSES["GradientBackground"]()
     if isinstance(value, Background):
         return value
     if isinstance(value, Surroundings):
@@ -269,12 +234,16 @@ def as_background(
             'write "#rrggbb", Sky(), Environment(image) or a @func of the direction',
             place,
         )
-    return Background.of(_call("Background", library.plain_background, {"color": value}, place))
+    return Background.of(_plain({"color": value}, place))
+
+
+def _plain(given: Mapping[str, Any], place: Span | None) -> FunctionCall:
+    return scene_call(BACKGROUNDS, library.plain_background, given, "Background", place)
 
 
 def _own(function: Func, numbers: Mapping[str, Any], place: Span | None) -> FunctionCall:
     """An author's function of a direction."""
-    call = _call(function.name, function, numbers, place)
+    call = scene_call(BACKGROUNDS, function, numbers, function.name, place)
     asks = {slot.name for slot in slots_of(function)}
     if "direction" not in asks or call.result is not VEC3:
         refuse_kind(
@@ -285,36 +254,13 @@ def _own(function: Func, numbers: Mapping[str, Any], place: Span | None) -> Func
     return call
 
 
-def _part(whole: FunctionCall, function: Func) -> FunctionCall:
+def _part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
     """A function of some of another call's values."""
-    asks = {slot.name for slot in slots_of(function)}
-    values = {name: value for name, value in whole.values.items() if name in asks}
+    if function is None:
+        return None
+    taken = {slot.name for slot in slots_of(function)}
+    values = {name: value for name, value in whole.values.items() if name in taken}
     return FunctionCall(whole.what, function, values, whole.place)
-
-
-def _call(
-    what: str,
-    function: Func,
-    given: Mapping[str, Any],
-    place: Span | None,
-    requires: Requirement | None = None,
-) -> FunctionCall:
-    values = arguments(
-        function,
-        (),
-        given,
-        what=what,
-        limits=_LIMITS,
-        requires=requires,
-        place=place,
-        reserved=_SITE,
-        colors=_COLORS,
-    )
-    return FunctionCall(what, function, values, place)
-
-
-def _sun(sun: tuple[float, ...]) -> str | None:
-    return None if any(sun) else "sun is a vector of zeros, which points nowhere"
 
 
 def _images() -> Any:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import FunctionType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
@@ -22,25 +22,18 @@ from distal.lang.functions import Func
 from distal.lang.unchanging import Unchanging
 from distal.lang.values import VectorValue
 from distal.render import material as library
+from distal.render.declarations import MATERIALS, Declaration
+from distal.scene.objects.declared import declared_function, scene_call
 from distal.scene.tree.arguments import arguments
-from distal.scene.tree.calls import PLACE_NAMES, Composer, FunctionCall, Pattern
-from distal.scene.tree.conversion import Asked, Number, number, unwrapped
+from distal.scene.tree.calls import Composer, FunctionCall, Pattern
+from distal.scene.tree.conversion import Asked, number, unwrapped
+from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
 
-_LIMITS: Final = {
-    "color": Limit.FRACTION,
-    "diffuse": Limit.FRACTION,
-    "specular": Limit.FRACTION,
-    "transmission": Limit.FRACTION,
-    "ior": Limit.POSITIVE,
-    "roughness": Limit.FRACTION,
-    "metal": Limit.FRACTION,
-    "fresnel": Limit.FRACTION,
-    "amount": Limit.FRACTION,
-    "absorption": Limit.NOT_NEGATIVE,
-}
-_COLORS: Final = ("color", "emission", "absorption")
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Color, Number, Varying
+
 _WEIGHTS: Final = ("diffuse", "specular", "transmission")
 # Weights like 0.85, 0.05 and 0.1 add up to a little more than 1 in floats.
 _SLACK: Final = 1e-6
@@ -85,17 +78,17 @@ class Material(Unchanging):
 
     def __init__(
         self,
-        color: Any = (1.0, 1.0, 1.0),
-        diffuse: Any = 1.0,
-        specular: Any = 0.0,
-        transmission: Any = 0.0,
-        ior: Any = 1.5,
-        roughness: Any = 0.0,
-        metal: Any = 0.0,
-        emission: Any = (0.0, 0.0, 0.0),
-        absorption: Any = (0.0, 0.0, 0.0),
+        color: Color | Varying = (1.0, 1.0, 1.0),
+        diffuse: Number | Varying = 1.0,
+        specular: Number | Varying = 0.0,
+        transmission: Number | Varying = 0.0,
+        ior: Number | Varying = 1.5,
+        roughness: Number | Varying = 0.0,
+        metal: Number | Varying = 0.0,
+        emission: Color | Varying = (0.0, 0.0, 0.0),
+        absorption: Color | Varying = (0.0, 0.0, 0.0),
         *,
-        fresnel: Any = False,
+        fresnel: Number | Varying = False,
     ) -> None:
         given = {
             "color": color,
@@ -145,7 +138,11 @@ class Material(Unchanging):
         """The functions that it calls."""
         return self.call.functions()
 
-    def mix(self, other: Any, t: Any = 0.5) -> Material:
+    def mix(
+        self,
+        other: Material | Color | Varying,
+        t: Number | Varying = 0.5,
+    ) -> Material:
         """This where ``t`` is 0, another material where it is 1, every number mixed between.
 
         Args:
@@ -270,66 +267,30 @@ def as_material(value: Any, place: Span | None = None) -> Material:
             hint,
             place,
         )
-    return _made("matte", library.matte, {"color": value}, place)
+    return _declared(MATERIALS.members["matte"], {"color": value}, place)
 
 
 # The kinds of materials
 
 
-def matte(color: Any = (1.0, 1.0, 1.0)) -> Material:
-    """A material that scatters light evenly to all sides: plaster, paper.
-
-    Args:
-        color: What it scatters.
-    """
-    given = {"color": color}
-    return _made("matte", library.matte, given)
+def _declared(declaration: Declaration, given: Mapping[str, Any], place: Span | None) -> Material:
+    call = _call(declaration.name, declaration.function, given, place, limits=declaration.limits)
+    return Material.of(call, reflects=declaration.reflects, refracts=declaration.refracts)
 
 
-def glossy(
-    color: Any = (1.0, 1.0, 1.0),
-    diffuse: Any = 0.5,
-    specular: Any = 0.5,
-    roughness: Any = 0.0,
+FUNCTIONS: Final = {
+    name: declared_function(found, _declared, __name__, "Material")
+    for name, found in MATERIALS.members.items()
+}
+globals().update(FUNCTIONS)
+
+
+def glass(
+    ior: Number | Varying = 1.5,
+    color: Color | None = None,
+    *,
+    absorption: Color | Varying | None = None,
 ) -> Material:
-    """A material that scatters a part of the light and mirrors a part, alike from all sides.
-
-    Args:
-        color: What it scatters.
-        diffuse: Share of light scattered.
-        specular: Share of light mirrored.
-        roughness: 0 mirrors sharply, 1 hardly at all.
-
-    Raises:
-        ValueError: The shares add up to more than 1, or a number is out of its range.
-        TypeError: Something is of another kind.
-    """
-    given = {"color": color, "diffuse": diffuse, "specular": specular, "roughness": roughness}
-    return _made("glossy", library.glossy, given, reflects=True)
-
-
-def metal(color: Any = (0.91, 0.92, 0.92), roughness: Any = 0.2) -> Material:
-    """A metal: it mirrors in its own colour.
-
-    Args:
-        color: What it mirrors, seen straight on.
-        roughness: 0 mirrors sharply, 1 hardly at all.
-    """
-    given = {"color": color, "roughness": roughness}
-    return _made("metal", library.metal, given, reflects=True)
-
-
-def mirror(color: Any = (1.0, 1.0, 1.0)) -> Material:
-    """A perfect mirror.
-
-    Args:
-        color: What it mirrors.
-    """
-    given = {"color": color}
-    return _made("mirror", library.mirror, given, reflects=True)
-
-
-def glass(ior: Any = 1.5, color: Any = None, *, absorption: Any = None) -> Material:
     """Glass, water, ice: light goes in, and is mirrored more the flatter it comes.
 
     Args:
@@ -344,12 +305,13 @@ def glass(ior: Any = 1.5, color: Any = None, *, absorption: Any = None) -> Mater
     place = author_place()
     if color is not None and absorption is not None:
         refuse_kind("glass takes color or absorption, not both", "each tells the other", place)
-    given = {"ior": ior}
+    given: dict[str, Any] = {"ior": ior}
     if color is not None:
         given["absorption"] = _absorption(color, place)
     elif absorption is not None:
         given["absorption"] = absorption
-    return _made("glass", library.glass, given, place, reflects=True, refracts=True)
+    call = _call("glass", library.glass, given, place)
+    return Material.of(call, reflects=True, refracts=True)
 
 
 def _absorption(color: Any, place: Span | None) -> Any:
@@ -361,77 +323,28 @@ def _absorption(color: Any, place: Span | None) -> Any:
     return -log(max(left, _DARKEST))
 
 
-def plastic(color: Any = (1.0, 1.0, 1.0), roughness: Any = 0.2, ior: Any = 1.5) -> Material:
-    """A scattering material under a clear coat: it mirrors more the flatter light comes.
-
-    Args:
-        color: What it scatters.
-        ior: Index of refraction of the coat.
-        roughness: Of the coat; 0 mirrors sharply.
-    """
-    given = {"color": color, "ior": ior, "roughness": roughness}
-    return _made("plastic", library.plastic, given, reflects=True)
-
-
-def emissive(color: Any = (1.0, 1.0, 1.0), strength: Any = 1.0) -> Material:
-    """A material that shines by itself and shows nothing else.
-
-    Args:
-        color: What it gives off.
-        strength: A factor on it; beyond 1 too.
-    """
-    place = author_place()
-    given = {"color": color, "strength": strength}
-    # What shines may be brighter than white.
-    call = _call(
-        "emissive", library.emissive, given, place, limits={"strength": Limit.NOT_NEGATIVE}
-    )
-    return Material.of(call, reflects=False, refracts=False)
-
-
-def _made(
-    what: str,
-    function: Func,
-    given: Mapping[str, Any],
-    place: Span | None = None,
-    *,
-    reflects: bool = False,
-    refracts: bool = False,
-) -> Material:
-    call = _call(what, function, given, place or author_place())
-    return Material.of(call, reflects=reflects, refracts=refracts)
-
-
 def _call(
     what: str,
     function: Func,
     given: Mapping[str, Any],
     place: Span | None,
     args: tuple[Any, ...] = (),
-    limits: Mapping[str, Limit] = _LIMITS,
+    limits: Mapping[str, Limit] | None = None,
 ) -> FunctionCall:
-    values = arguments(
-        function,
-        args,
-        given,
-        what=what,
-        limits=limits,
-        place=place,
-        reserved=PLACE_NAMES,
-        colors=_COLORS,
-        accept=accept,
+    call = scene_call(
+        MATERIALS, function, given, what, place, args=args, limits=limits, accept=accept
     )
-    _check_weights(what, values, place)
-    return FunctionCall(what, function, values, place)
+    _check_weights(what, call.values, place)
+    return call
 
 
 def _may_be(value: Any) -> bool:
     """Whether a weight is, or may become, more than nothing."""
-    return not isinstance(value, Number) or value.may_exceed(0.0)
+    return not isinstance(value, CheckedNumber) or value.may_exceed(0.0)
 
 
 def _check_weights(what: str, values: Mapping[str, Any], place: Span | None) -> None:
-    known = {n: values[n].plain for n in _WEIGHTS if isinstance(values.get(n), Number)}
+    known = {n: values[n].plain for n in _WEIGHTS if isinstance(values.get(n), CheckedNumber)}
     total = sum(weight for weight in known.values() if weight is not None)
     if total > 1.0 + _SLACK:
         listed = " + ".join(f"{name} {known[name]:g}" for name in known if known[name])

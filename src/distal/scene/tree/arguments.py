@@ -46,7 +46,7 @@ RESERVED: Final = BOUNDS_OF_CHILDREN | {"p", "d", "a", "b", "field", "cell", "co
 # Those that a shape of its own keeps from its numbers: it has no distances to join.
 RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d", "copies"}
 # One number sets all components of these.
-_SPLATTED: Final = frozenset(
+SPLATTED: Final = frozenset(
     ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")
 )
 _LETTERS: Final = "xyzw"
@@ -143,13 +143,18 @@ def arguments(
             what,
             _known_type(slot, what, place),
             (limits or {}).get(slot.name, Limit.ANY),
-            slot.name in colors or slot.name == "color" or slot.name.endswith("_color"),
-            slot.name in _SPLATTED,
+            takes_color(slot.name, colors),
+            slot.name in SPLATTED,
             place,
         )
         values[slot.name] = _value(binding.value_of(slot), asked, accept)
     _check_together(requires, values, what, place)
     return values
+
+
+def takes_color(name: str, colors: Collection[str]) -> bool:
+    """Whether a parameter takes "#rrggbb": it is named so, or among ``colors``."""
+    return name in colors or name == "color" or name.endswith("_color")
 
 
 def _number_slots(
@@ -266,7 +271,7 @@ class _ArgumentBinding:
             last = self.slots[-1]
             message = f"{self.what} takes nothing after '{last.name}'"
             hint = f"it takes {self._listed()}"
-            if last.is_vector and last.name in _SPLATTED and is_scalar(left[0]):
+            if last.is_vector and last.name in SPLATTED and is_scalar(left[0]):
                 letters = ", ".join(_LETTERS[: _size(last)])
                 hint = f"'{last.name}' is one number for all, or {letters}"
             self._wrong(message, hint)
@@ -279,7 +284,7 @@ class _ArgumentBinding:
             scalars += 1
         if scalars == size:
             return size
-        if scalars == 0 or slot.name in _SPLATTED or (scalars == 1 and len(left) > 1):
+        if scalars == 0 or slot.name in SPLATTED or (scalars == 1 and len(left) > 1):
             return 0
         if "color" in slot.name:  # one number is a grey
             return 0
@@ -354,4 +359,5 @@ __all__ = [
     "arguments",
     "number",
     "slots_of",
+    "takes_color",
 ]

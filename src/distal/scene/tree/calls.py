@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, Protocol
+from typing import Any, Protocol
 
 from distal.diagnostics import Span
 from distal.frontend import Assembly
@@ -21,12 +21,9 @@ from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.lang.unchanging import Unchanging
+from distal.render.declarations import PLACE_NAMES
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import Number
-
-# What a function of a place on a surface may ask for: the point and the normal in the painted
-# shape's own space, and the index of the repetition the point lies in.
-PLACE_NAMES: Final = frozenset(("p", "n", "cell"))
 
 
 class Composer(Protocol):

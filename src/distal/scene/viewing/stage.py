@@ -10,14 +10,11 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
+from distal import Camera, DistantLight, GradientBackground, HemisphereLight, Plane
 from distal.lang.chosen_values import checked_values
 from distal.loading import hand_on
-from distal.scene.objects.backgrounds import GradientBackground
-from distal.scene.objects.cameras import Camera
 from distal.scene.objects.field import Field
-from distal.scene.objects.lights import DistantLight, HemisphereLight
 from distal.scene.objects.shape import Shape2D
-from distal.scene.objects.shapes import Plane
 from distal.scene.scene import Scene
 
 # How far a shape without end is shown along an axis.

@@ -1,0 +1,186 @@
+"""Declares scene functions as the lights, cameras, materials, patterns and backgrounds of the API.
+
+Input: ``@func`` functions; what their parameters must be. Output: a ``Declaration`` for each, kept
+by its family in the order of declaration. Does not depend on the object model, which makes the
+public classes and functions from the declarations.
+
+The public object has the parameters of its scene function, in their order and with their defaults,
+except those that the scene passes for each ray or point (``Family.site``). The scene function's
+docstring is the object's docstring.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, TypeVar
+
+from distal.fields.guarantees import Limit, Requirement
+from distal.lang.functions import Func
+
+F = TypeVar("F", bound=Func)
+
+
+@dataclass(frozen=True, slots=True)
+class ExtraParameter:
+    """A parameter of the public object that its scene function does not have.
+
+    Attributes:
+        name: Its name.
+        default: Its default.
+        annotation: Its type, in terms of ``scene.objects.argument_types``.
+        doc: Its line in the docstring.
+        keyword_only: Whether it is passed by name only, after the function's own parameters; else
+            it comes before them.
+    """
+
+    name: str
+    default: Any
+    annotation: str
+    doc: str
+    keyword_only: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Declaration:
+    """A public class or function, made from a scene function.
+
+    Attributes:
+        name: The public name: "PointLight".
+        function: The scene function.
+        family: The family it belongs to.
+        limits: What each number must be; a number not named is any finite one.
+        requires: Returns why numbers do not go together, or None.
+        extras: Parameters besides those of the function.
+        widest: Of a camera: ``fov`` is below this angle, or at most this if it is a full turn.
+        reflects: Of a material: whether rays may bounce off it.
+        refracts: Of a material: whether rays may go into it.
+        sample: Of a background that is a light too: ``(p, …) -> LightSample``.
+        ambient: Of a background that is a light too: ``(n, …) -> vec3``.
+    """
+
+    name: str
+    function: Func
+    family: Family
+    limits: Mapping[str, Limit]
+    requires: Requirement | None = None
+    extras: tuple[ExtraParameter, ...] = ()
+    widest: float = math.pi
+    reflects: bool = False
+    refracts: bool = False
+    sample: Func | None = None
+    ambient: Func | None = None
+
+
+class Family:
+    """Objects of one kind.
+
+    Attributes:
+        site: The parameters that the scene passes, not the author.
+        limits: What a number of this name must be.
+        colors: Parameters that take "#rrggbb"; ``color`` and ``…_color`` always do.
+        keyword_only: Parameters that are passed by name only.
+        optional: Parameters that may be None, for their default.
+        varies: Whether arguments may be patterns.
+        members: The declarations by name.
+    """
+
+    def __init__(
+        self,
+        site: Collection[str],
+        limits: Mapping[str, Limit],
+        *,
+        colors: Collection[str] = (),
+        keyword_only: Collection[str] = (),
+        optional: Collection[str] = (),
+        varies: bool = False,
+    ) -> None:
+        self.site: Final = frozenset(site)
+        self.limits: Final = limits
+        self.colors: Final = colors
+        self.keyword_only: Final = keyword_only
+        self.optional: Final = optional
+        self.varies: Final = varies
+        self.members: Final[dict[str, Declaration]] = {}
+
+    def declare(
+        self, name: str, *, limits: Mapping[str, Limit] | None = None, **declared: Any
+    ) -> Callable[[F], F]:
+        """Declare the ``@func`` below; see ``Declaration``.
+
+        Args:
+            name: The public name.
+            limits: Instead of the family's limits.
+            declared: The other attributes of the ``Declaration``.
+        """
+
+        def keep(function: F) -> F:
+            assert name not in self.members, f"two objects are called {name}"
+            own = self.limits if limits is None else limits
+            self.members[name] = Declaration(name, function, self, own, **declared)
+            return function
+
+        return keep
+
+
+# What a function of a place on a surface may use: the point and the normal in the painted shape's
+# own space, and the index of the repetition that the point lies in.
+PLACE_NAMES: Final = frozenset(("p", "n", "cell"))
+
+LIGHTS: Final = Family(
+    ("p", "n"),
+    {
+        "intensity": Limit.NOT_NEGATIVE,
+        "radius": Limit.NOT_NEGATIVE,
+        "angle": Limit.NOT_NEGATIVE,
+        "softness": Limit.FRACTION,
+    },
+    colors=("sky", "ground"),
+)
+BACKGROUNDS: Final = Family(
+    ("direction", "p", "n"),
+    {
+        "intensity": Limit.NOT_NEGATIVE,
+        "sun_intensity": Limit.NOT_NEGATIVE,
+        "sun_angle": Limit.POSITIVE,
+    },
+    colors=("bottom", "top", "zenith", "horizon", "ground"),
+)
+CAMERAS: Final = Family(
+    ("uv", "resolution"),
+    dict.fromkeys(
+        ("fov", "distance", "height", "screen_height", "screen_distance"), Limit.POSITIVE
+    ),
+    keyword_only=("mirror",),
+    optional=("fov",),
+)
+MATERIALS: Final = Family(
+    PLACE_NAMES,
+    {
+        "color": Limit.FRACTION,
+        "diffuse": Limit.FRACTION,
+        "specular": Limit.FRACTION,
+        "transmission": Limit.FRACTION,
+        "ior": Limit.POSITIVE,
+        "roughness": Limit.FRACTION,
+        "metal": Limit.FRACTION,
+        "fresnel": Limit.FRACTION,
+        "amount": Limit.FRACTION,
+        "absorption": Limit.NOT_NEGATIVE,
+    },
+    colors=("emission", "absorption"),
+    varies=True,
+)
+PATTERNS: Final = Family(
+    PLACE_NAMES,
+    {"size": Limit.POSITIVE, "octaves": Limit.POSITIVE, "radius": Limit.POSITIVE},
+    colors=("a", "b"),
+    varies=True,
+)
+
+light: Final = LIGHTS.declare
+background: Final = BACKGROUNDS.declare
+camera: Final = CAMERAS.declare
+material: Final = MATERIALS.declare
+pattern: Final = PATTERNS.declare

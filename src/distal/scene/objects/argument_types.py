@@ -1,0 +1,42 @@
+"""The types of what authors pass to scene objects, for signatures, editors and type checkers.
+
+Input: nothing. Output: type aliases. Each means what ``scene.tree.conversion`` accepts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+from distal.lang import vec2, vec3, vec4
+from distal.lang.expressions import Expression
+from distal.lang.functions import Func
+from distal.lang.parameters import Parameter
+from distal.lang.resources import Buffer, TextureCube, TextureValue
+from distal.scene.tree.calls import Pattern
+
+if TYPE_CHECKING:
+    from distal.images.picture import Picture
+
+
+class Array(Protocol):
+    """NumPy's numbers and arrays, and what converts to Python's numbers in the same way."""
+
+    def tolist(self) -> Any:
+        """Numbers, or lists of them."""
+
+
+# A number: plain, a parameter, or an expression of parameters and time.
+Number: TypeAlias = "float | Parameter | Expression | Array"
+# Two or three numbers.
+Vector: TypeAlias = "Sequence[Number] | vec2 | vec3 | vec4 | Parameter | Expression | Array"
+# "#rrggbb", linear red, green and blue, or one number for a grey.
+Color: TypeAlias = "str | Vector | Number"
+# A list of points or of numbers.
+Points: TypeAlias = "Sequence[Vector] | Sequence[float] | Buffer | Array"
+# A picture: its file, an array, or a texture.
+Image: TypeAlias = "str | PathLike[str] | Array | Picture | TextureValue"
+Images: TypeAlias = "Iterable[Image] | TextureCube"
+# What differs from place to place on a surface: a pattern, or a @func of a place.
+Varying: TypeAlias = "Pattern | Func"

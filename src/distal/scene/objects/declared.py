@@ -1,0 +1,261 @@
+"""Classes and functions of the API, made from declarations beside their scene functions.
+
+Input: declarations of ``render``. Output: signatures and docstrings; calls of scene functions with
+checked arguments; classes and functions that authors call. Does not depend on what any of the
+functions computes.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Any, Final, TypeVar
+
+from distal.diagnostics import Span
+from distal.fields.guarantees import Limit, Requirement
+from distal.frontend.problems import did_you_mean
+from distal.frontend.signatures.signatures import MISSING
+from distal.ir.types import BOOL, FLOAT, INT, Texture, Type
+from distal.ir.types import Buffer as BufferType
+from distal.lang.functions import Func
+from distal.render.declarations import Declaration, ExtraParameter, Family
+from distal.scene.tree.arguments import Accept, Slot, arguments, slots_of, takes_color
+from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.conversion import unwrapped
+from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.source_places import author_place
+
+C = TypeVar("C")
+
+_BY_POSITION: Final = inspect.Parameter.POSITIONAL_OR_KEYWORD
+_BY_NAME: Final = inspect.Parameter.KEYWORD_ONLY
+
+
+# What help() and editors show
+
+
+@cache
+def signature_of(declaration: Declaration) -> inspect.Signature:
+    """The parameters that authors pass, with defaults and types."""
+    family = declaration.family
+    before = [e for e in declaration.extras if not e.keyword_only]
+    after = [e for e in declaration.extras if e.keyword_only]
+    own = [s for s in slots_of(declaration.function) if s.name not in family.site]
+    by_position = [s for s in own if s.name not in family.keyword_only]
+    by_name = [s for s in own if s.name in family.keyword_only]
+    return inspect.Signature(
+        [
+            *map(_extra, before),
+            *(_parameter(slot, family) for slot in by_position),
+            *map(_extra, after),
+            *(_parameter(slot, family) for slot in by_name),
+        ]
+    )
+
+
+def _extra(extra: ExtraParameter) -> inspect.Parameter:
+    kind = _BY_NAME if extra.keyword_only else _BY_POSITION
+    return inspect.Parameter(extra.name, kind, default=extra.default, annotation=extra.annotation)
+
+
+def _parameter(slot: Slot, family: Family) -> inspect.Parameter:
+    kind = _BY_NAME if slot.name in family.keyword_only else _BY_POSITION
+    annotation = annotation_of(slot.type, is_color=takes_color(slot.name, family.colors))
+    if family.varies and annotation in ("Number", "Vector", "Color"):
+        annotation += " | Varying"
+    default = inspect.Parameter.empty if slot.default is MISSING else unwrapped(slot.default)
+    if slot.name in family.optional:
+        annotation, default = f"{annotation} | None", None
+    return inspect.Parameter(slot.name, kind, default=default, annotation=annotation)
+
+
+def annotation_of(type: Type | None, *, is_color: bool = False) -> str:
+    """The type alias of what authors may pass for a scene function's parameter."""
+    if isinstance(type, BufferType):
+        return "Points"
+    if isinstance(type, Texture):
+        return "Image"
+    if type in (INT, BOOL):
+        return "int" if type is INT else "bool"
+    if type is FLOAT:
+        return "Number"
+    return "Color" if is_color else "Vector"
+
+
+def documentation_of(declaration: Declaration) -> str:
+    """The scene function's docstring, with the arguments that authors pass."""
+    text = inspect.getdoc(declaration.function) or ""
+    described = {e.name: _wrapped(f"{e.name}: {e.doc}") for e in declaration.extras}
+    head, found, rest = text.partition("Args:\n")
+    entries, separator, rest = rest.partition("\n\n")
+    for entry in re.split(r"\n(?=    \S)", entries) if found else ():
+        described[entry.strip().partition(":")[0]] = entry
+    listed = [described[name] for name in signature_of(declaration).parameters]
+    together = ", or numbers do not go together" if declaration.requires else ""
+    raises = (
+        f"    ValueError: A number is out of its range{together}.",
+        "    TypeError: An argument is of another kind.",
+    )
+    parts = [head.rstrip(), "", "Args:", *listed, "", "Raises:", *raises]
+    return "\n".join(parts) + separator + rest
+
+
+def _wrapped(entry: str) -> str:
+    return textwrap.fill(entry, 96, initial_indent=" " * 4, subsequent_indent=" " * 8)
+
+
+# Calls
+
+
+def given_arguments(
+    declaration: Declaration,
+    args: Sequence[Any],
+    kwargs: Mapping[str, Any],
+    what: str,
+    place: Span | None,
+) -> dict[str, Any]:
+    """What an author passed, by name; None for an optional parameter counts as not passed.
+
+    Args:
+        declaration: What is called.
+        args: Arguments by position.
+        kwargs: Arguments by name.
+        what: What messages call it.
+        place: The author's line.
+
+    Raises:
+        SceneTypeError: An argument is unknown, missing, passed twice or one too many.
+    """
+    signature = signature_of(declaration)
+    takes = f"it takes {', '.join(signature.parameters)}"
+    unknown = next((name for name in kwargs if name not in signature.parameters), None)
+    if unknown is not None:
+        hint = did_you_mean(unknown, signature.parameters) or takes
+        refuse_kind(f"{what} has no '{unknown}'", hint, place)
+    try:
+        bound = signature.bind(*args, **kwargs).arguments
+    except TypeError as error:
+        message = f"{what}: {error}"
+        refuse_kind(message, takes, place)
+    optional = declaration.family.optional
+    return {n: v for n, v in bound.items() if not (v is None and n in optional)}
+
+
+def scene_call(
+    family: Family,
+    function: Func,
+    given: Mapping[str, Any],
+    what: str,
+    place: Span | None,
+    *,
+    args: Sequence[Any] = (),
+    limits: Mapping[str, Limit] | None = None,
+    requires: Requirement | None = None,
+    accept: Accept | None = None,
+) -> FunctionCall:
+    """A scene function with checked values.
+
+    Args:
+        family: What the scene passes, and what numbers must be.
+        function: The scene function.
+        given: Arguments by name.
+        what: What messages call it.
+        place: The author's line.
+        args: Arguments by position.
+        limits: Instead of the family's.
+        requires: Returns why numbers do not go together, or None.
+        accept: Takes other objects than numbers.
+
+    Raises:
+        SceneTypeError: Something is of another kind.
+        SceneValueError: A number is out of its range, or does not go with the others.
+    """
+    values = arguments(
+        function,
+        args,
+        given,
+        what=what,
+        limits=family.limits if limits is None else limits,
+        requires=requires,
+        place=place,
+        reserved=family.site,
+        colors=family.colors,
+        accept=accept,
+    )
+    return FunctionCall(what, function, values, place)
+
+
+def declared_call(
+    declaration: Declaration,
+    given: Mapping[str, Any],
+    place: Span | None,
+    *,
+    what: str | None = None,
+    accept: Accept | None = None,
+) -> FunctionCall:
+    """A declared scene function with checked values; ``given`` may hold extra parameters too.
+
+    Args:
+        declaration: What is called.
+        given: Arguments by name.
+        place: The author's line.
+        what: What messages call it, if not by its own name.
+        accept: Takes other objects than numbers.
+    """
+    extras = {extra.name for extra in declaration.extras}
+    return scene_call(
+        declaration.family,
+        declaration.function,
+        {name: value for name, value in given.items() if name not in extras},
+        what or declaration.name,
+        place,
+        limits=declaration.limits,
+        requires=declaration.requires,
+        accept=accept,
+    )
+
+
+# Classes and functions
+
+
+def declared_class(declaration: Declaration, base: type[C]) -> type[C]:
+    """The class of a declaration; ``base`` makes its objects by ``cls.declaration``."""
+    body: dict[str, Any] = {
+        "__slots__": (),
+        "__doc__": documentation_of(declaration),
+        "__module__": base.__module__,
+        "__signature__": signature_of(declaration),
+        "declaration": declaration,
+    }
+    return type(declaration.name, (base,), body)
+
+
+def declared_function(
+    declaration: Declaration,
+    make: Callable[[Declaration, dict[str, Any], Span | None], C],
+    module: str,
+    returns: str,
+) -> Callable[..., C]:
+    """The function of a declaration.
+
+    Args:
+        declaration: What it makes.
+        make: Makes the object of the arguments by name, and the author's line.
+        module: The module that authors import it from.
+        returns: The type of what it makes.
+    """
+
+    def made(*args: Any, **kwargs: Any) -> C:
+        place = author_place()
+        given = given_arguments(declaration, args, kwargs, declaration.name, place)
+        return make(declaration, given, place)
+
+    made.__name__ = made.__qualname__ = declaration.name
+    made.__module__ = module
+    made.__doc__ = documentation_of(declaration)
+    signature = signature_of(declaration).replace(return_annotation=returns)
+    made.__dict__["__signature__"] = signature
+    return made
