@@ -9,22 +9,20 @@ no light counts twice.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
-from distal.ir.nodes import Expr
 from distal.ir.types import VEC3
 from distal.lang import Buffer, func, vec3
 from distal.lang.expressions import Symbolic
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer as BufferData
 from distal.lang.resources import Texture2D
-from distal.lang.unchanging import Unchanging
 from distal.render import ambient as ambient_library
 from distal.render import environment as environment_library
 from distal.render import sky as library
-from distal.render.declarations import BACKGROUNDS, Declaration
+from distal.render.declarations import BACKGROUNDS
 from distal.scene.objects.declared import (
     declared_call,
     declared_class,
@@ -32,8 +30,9 @@ from distal.scene.objects.declared import (
     scene_call,
 )
 from distal.scene.objects.lights import Light
+from distal.scene.objects.scene_object import CalledObject
 from distal.scene.tree.arguments import slots_of
-from distal.scene.tree.calls import Composer, FunctionCall
+from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Image, Number
 
 
-class Background(Unchanging):
+class Background(CalledObject):
     """What rays show that meet nothing. It never changes once it is made.
 
     Args:
@@ -58,42 +57,25 @@ class Background(Unchanging):
         light: The light that it is besides, or None.
     """
 
-    __slots__ = ("__weakref__", "call", "light")
+    __slots__ = ("light",)
 
-    call: FunctionCall
+    noun: ClassVar[str] = "background"
     light: Light | None
 
     def __init__(self, what: Color | Func, **numbers: Any) -> None:
         place = author_place()
         if isinstance(what, Func):
-            self._show(_own(what, numbers, place))
+            call = _own(what, numbers, place)
         else:
-            self._show(_plain({"color": what, **numbers}, place))
-
-    def _show(self, call: FunctionCall, light: Light | None = None) -> None:
-        object.__setattr__(self, "call", call)
-        object.__setattr__(self, "light", light)
+            call = _plain({"color": what, **numbers}, place)
+        self._keep(call=call, light=None)
 
     @classmethod
     def of(cls, call: FunctionCall, light: Light | None = None) -> Background:
         """A background of a scene function of a direction."""
         made = Background.__new__(Background)
-        made._show(call, light)
+        made._keep(call=call, light=light)
         return made
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError("a background does not change; make another")
-
-    def __repr__(self) -> str:
-        return f"<background {self.call.what}>"
-
-    def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
-        """The light from ``site["direction"]``."""
-        return self.call.emit(composer, site)
-
-    def functions(self) -> Iterator[Func]:
-        """The functions that it calls."""
-        return self.call.functions()
 
 
 class DeclaredBackground(Background):
@@ -101,12 +83,11 @@ class DeclaredBackground(Background):
 
     __slots__ = ()
 
-    declaration: ClassVar[Declaration]
-
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         place, what = author_place(), type(self).__name__
         given = given_arguments(self.declaration, args, kwargs, what, place)
-        self._show(declared_call(self.declaration, given, place, what=what))
+        call = declared_call(self.declaration, given, place, what=what)
+        self._keep(call=call, light=None)
 
 
 class Surroundings(Light):
@@ -122,10 +103,6 @@ class Surroundings(Light):
     background: FunctionCall
     light: bool
 
-    def _surround(self, background: FunctionCall, *, light: bool) -> None:
-        object.__setattr__(self, "background", background)
-        object.__setattr__(self, "light", light)
-
 
 class DeclaredSurroundings(Surroundings):
     """Surroundings of a declared scene function, and of functions for its parts as a light."""
@@ -136,8 +113,12 @@ class DeclaredSurroundings(Surroundings):
         place, declaration = author_place(), self.declaration
         given = given_arguments(declaration, args, kwargs, declaration.name, place)
         whole = declared_call(declaration, given, place)
-        self._surround(whole, light=bool(given.get("light", False)))
-        self._shine(_part(whole, declaration.sample), _part(whole, declaration.ambient))
+        self._keep(
+            background=whole,
+            light=bool(given.get("light", False)),
+            sample=_part(whole, declaration.sample),
+            ambient=_part(whole, declaration.ambient),
+        )
 
 
 class Environment(Surroundings):
@@ -169,10 +150,9 @@ class Environment(Surroundings):
         given = {"image": texture, "intensity": intensity, "turn": turn}
         environment = environment_library.environment
         whole = scene_call(BACKGROUNDS, environment, given, "Environment", place)
-        self._surround(whole, light=bool(light))
-        object.__setattr__(self, "sample", None)
-        object.__setattr__(self, "_texture", texture)
-        object.__setattr__(self, "_ambient", None)
+        self._keep(
+            background=whole, light=bool(light), sample=None, _texture=texture, _ambient=None
+        )
 
     @property
     def ambient(self) -> FunctionCall:  # type: ignore[override]  # computed when it is first asked
@@ -183,7 +163,7 @@ class Environment(Surroundings):
             harmonics = BufferData(environment_library.harmonics(pixels))
             values = {**whole.values, "harmonics": harmonics}
             call = FunctionCall(whole.what, environment_light, values, whole.place)
-            object.__setattr__(self, "_ambient", call)
+            self._keep(_ambient=call)
         assert self._ambient is not None
         return self._ambient
 

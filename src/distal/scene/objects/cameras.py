@@ -8,7 +8,6 @@ right-handed with y up; a camera looks along -z unless told otherwise.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
@@ -17,17 +16,16 @@ from distal.ir.nodes import Expr, Uniform
 from distal.ir.types import FLOAT
 from distal.lang import tan
 from distal.lang.expressions import Expression
-from distal.lang.functions import Func
-from distal.lang.unchanging import Unchanging
 from distal.render import camera as library
-from distal.render.declarations import CAMERAS, Declaration
+from distal.render.declarations import CAMERAS
 from distal.scene.objects.declared import (
     declared_call,
     declared_class,
     given_arguments,
     scene_call,
 )
-from distal.scene.tree.calls import Composer, FunctionCall
+from distal.scene.objects.scene_object import CalledObject
+from distal.scene.tree.calls import Composer
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -39,7 +37,7 @@ if TYPE_CHECKING:
 _DEGREE: Final = math.pi / 180.0
 
 
-class BaseCamera(Unchanging):
+class BaseCamera(CalledObject):
     """What all cameras share.
 
     Attributes:
@@ -47,11 +45,9 @@ class BaseCamera(Unchanging):
             also ask for ``resolution``, the pixels of the picture.
     """
 
-    __slots__ = ("__weakref__", "call")
+    __slots__ = ()
 
-    call: FunctionCall
-
-    declaration: ClassVar[Declaration]
+    noun: ClassVar[str] = "camera"
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         place, what, declaration = author_place(), type(self).__name__, self.declaration
@@ -59,25 +55,14 @@ class BaseCamera(Unchanging):
         angle = _angle(what, given.get("fov"), given.get("fov_deg"), place, declaration.widest)
         if angle is not None:
             given["fov"] = angle
-        object.__setattr__(self, "call", declared_call(declaration, given, place, what=what))
+        self._keep(call=declared_call(declaration, given, place, what=what))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
 
-    def __repr__(self) -> str:
-        return f"<camera {type(self).__name__}>"
-
-    def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
-        """The ray of the point ``site["uv"]`` of the picture."""
-        return self.call.emit(composer, site)
-
     def number(self, composer: Composer, name: str) -> Expr | None:
         """One of its values, such as its target; None for a camera that has no such."""
         return self.call.value(composer, name) if name in self.call.values else None
-
-    def functions(self) -> Iterator[Func]:
-        """The functions that it calls."""
-        return self.call.functions()
 
 
 class TurnedCamera(BaseCamera):
@@ -137,8 +122,7 @@ class TurnedCamera(BaseCamera):
             "screen_distance": distance,
             "mirror": mirror,
         }
-        call = scene_call(CAMERAS, library.turned, given, "TurnedCamera", place)
-        object.__setattr__(self, "call", call)
+        self._keep(call=scene_call(CAMERAS, library.turned, given, "TurnedCamera", place))
 
 
 class PlacedCamera(BaseCamera):

@@ -14,17 +14,17 @@ from typing import Any, ClassVar, Final
 from distal.diagnostics import Span
 from distal.ir.types import VEC3
 from distal.lang.functions import Func
-from distal.lang.unchanging import Unchanging
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
 from distal.render import lights as _lights  # noqa: F401 (declares lights)
-from distal.render.declarations import LIGHTS, Declaration
+from distal.render.declarations import LIGHTS
 from distal.scene.objects.declared import declared_call, declared_class, given_arguments
+from distal.scene.objects.scene_object import SceneObject
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
 
-class Light(Unchanging):
+class Light(SceneObject):
     """What all lights share. A light never changes once it is made.
 
     Attributes:
@@ -32,9 +32,9 @@ class Light(Unchanging):
         ambient: ``(n) -> vec3``, what a surface facing n gets from everywhere; else None.
     """
 
-    __slots__ = ("__weakref__", "ambient", "sample")
+    __slots__ = ("ambient", "sample")
 
-    declaration: ClassVar[Declaration]
+    noun: ClassVar[str] = "light"
     sample: FunctionCall | None
     ambient: FunctionCall | None
 
@@ -42,22 +42,8 @@ class Light(Unchanging):
         place, what = author_place(), type(self).__name__
         given = given_arguments(self.declaration, args, kwargs, what, place)
         call = declared_call(self.declaration, given, place, what=what)
-        if call.result is VEC3:
-            self._shine(ambient=call)
-        else:
-            self._shine(sample=call)
-
-    def _shine(
-        self, sample: FunctionCall | None = None, ambient: FunctionCall | None = None
-    ) -> None:
-        object.__setattr__(self, "sample", sample)
-        object.__setattr__(self, "ambient", ambient)
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError("a light does not change; make another")
-
-    def __repr__(self) -> str:
-        return f"<light {type(self).__name__}>"
+        everywhere = call.result is VEC3
+        self._keep(sample=None if everywhere else call, ambient=call if everywhere else None)
 
     def functions(self) -> Iterator[Func]:
         """The functions that it calls."""

@@ -8,24 +8,23 @@ scene must know of a material to choose its renderer: whether rays bounce off it
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
-from distal.ir.nodes import Expr
 from distal.ir.types import FLOAT, VEC3, Struct
 from distal.lang import func, log, max, vec3
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.functions import Func
-from distal.lang.unchanging import Unchanging
 from distal.lang.values import VectorValue
 from distal.render import material as library
 from distal.render.declarations import MATERIALS, Declaration
 from distal.scene.objects.declared import declared_function, scene_call
+from distal.scene.objects.scene_object import CalledObject
 from distal.scene.tree.arguments import arguments
-from distal.scene.tree.calls import Composer, FunctionCall, Pattern
+from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import Asked, number, unwrapped
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -41,7 +40,7 @@ _SLACK: Final = 1e-6
 _DARKEST: Final = 1e-4
 
 
-class Material(Unchanging):
+class Material(CalledObject):
     """What a shape looks like. It never changes once it is made.
 
     ``diffuse``, ``specular`` and ``transmission`` share out the light that arrives, and add up to
@@ -70,9 +69,9 @@ class Material(Unchanging):
         refracts: Whether a ray may go in.
     """
 
-    __slots__ = ("__weakref__", "call", "reflects", "refracts")
+    __slots__ = ("reflects", "refracts")
 
-    call: FunctionCall
+    noun: ClassVar[str] = "material"
     reflects: bool
     refracts: bool
 
@@ -105,38 +104,20 @@ class Material(Unchanging):
         place = author_place()
         call = _call("Material", surface, given, place)
         reflects = _may_be(call.values["specular"]) or _may_be(call.values["fresnel"])
-        self._be(call, reflects, _may_be(call.values["transmission"]))
-
-    def _be(self, call: FunctionCall, reflects: bool, refracts: bool) -> None:
-        object.__setattr__(self, "call", call)
-        object.__setattr__(self, "reflects", reflects)
-        object.__setattr__(self, "refracts", refracts)
+        refracts = _may_be(call.values["transmission"])
+        self._keep(call=call, reflects=reflects, refracts=refracts)
 
     @classmethod
     def of(cls, call: FunctionCall, *, reflects: bool, refracts: bool) -> Material:
         """A material of a scene function that gives a ``Surface``."""
         made = cls.__new__(cls)
-        made._be(call, reflects, refracts)
+        made._keep(call=call, reflects=reflects, refracts=refracts)
         return made
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError("a material does not change; make another")
-
-    def __repr__(self) -> str:
-        return f"<material {self.call.what}>"
 
     @property
     def uses(self) -> frozenset[str]:
         """Which of "p", "n", "cell" it needs."""
         return self.call.uses
-
-    def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
-        """Its ``Surface`` at a place; ``site`` has what it uses."""
-        return self.call.emit(composer, site)
-
-    def functions(self) -> Iterator[Func]:
-        """The functions that it calls."""
-        return self.call.functions()
 
     def mix(
         self,

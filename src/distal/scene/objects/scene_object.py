@@ -1,0 +1,64 @@
+"""What lights, cameras, materials and backgrounds share.
+
+Input: the calls of scene functions that they hold. Output: the base classes of their classes.
+Does not depend on how the calls are made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+from distal.ir.nodes import Expr
+from distal.lang.functions import Func
+from distal.lang.unchanging import Unchanging
+from distal.render.declarations import Declaration
+from distal.scene.tree.calls import Composer, FunctionCall
+
+
+class SceneObject(Unchanging):
+    """An object that never changes once it is made.
+
+    Attributes:
+        noun: What messages call objects of its kind.
+        declaration: What its class was made from; only classes made from declarations have it.
+    """
+
+    __slots__ = ("__weakref__",)
+
+    noun: ClassVar[str]
+    declaration: ClassVar[Declaration]
+
+    def _keep(self, **attributes: Any) -> None:
+        """Set attributes, once."""
+        for name, value in attributes.items():
+            object.__setattr__(self, name, value)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a {self.noun} does not change; make another")
+
+    def __repr__(self) -> str:
+        return f"<{self.noun} {type(self).__name__}>"
+
+
+class CalledObject(SceneObject):
+    """An object that is one call of a scene function.
+
+    Attributes:
+        call: The scene function and its values.
+    """
+
+    __slots__ = ("call",)
+
+    call: FunctionCall
+
+    def __repr__(self) -> str:
+        return f"<{self.noun} {self.call.what}>"
+
+    def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
+        """What the function gives; ``site`` has what it takes besides its values."""
+        return self.call.emit(composer, site)
+
+    def functions(self) -> Iterator[Func]:
+        """The functions that it calls."""
+        return self.call.functions()
