@@ -1,6 +1,6 @@
 """Write ``docs/reference/builtins.md`` from the table of built-ins and the forms of the language.
 
-Input: ``INTRINSICS`` (its visible rows) and ``FORMS``. Output: the page, grouped by
+Input: ``INTRINSICS`` (the visible ones) and ``FORMS``. Output: the page, grouped by
 what the built-ins are for. It knows no target but by the table's columns. ``--check`` writes
 nothing and fails when the page is stale.
 """
@@ -22,7 +22,7 @@ from distal.lang.names import FORMS
 
 PAGE: Final = Path(__file__).parents[1] / "docs/reference/builtins.md"
 
-# The first row of each group, in the table's order.
+# The first intrinsic of each group, in the table's order.
 GROUPS: Final = {
     "abs": "Numbers, component by component",
     "sqrt": "Roots, powers, angles",
@@ -38,15 +38,16 @@ HEAD: Final = """\
 
 Import them from `distal.lang`. Each takes numbers and vectors in scene code, and numbers, vectors
 and arrays when called from Python. Angles are radians. In the lists of types, `T` is the same type
-wherever it stands in a signature.
+everywhere in a signature.
 
 - **Edges**: what it gives where mathematics has no answer, or none that a float holds. Everywhere
-  else too, finite arguments up to 2^60 in magnitude give a finite number, unless a row says less.
+  else too, finite arguments up to 2^60 in magnitude give a finite number, unless an entry says
+  less.
 - **Domain**: where tests compare the targets, argument by argument (for whole numbers more).
 - **Difference**: how far any two targets may be apart, as tests allow: a share of the value, plus
   an amount. Measured with Mesa's drivers, which are the loosest.
-- **Spelling**: what stands in the target's text. *prelude* means that distal's own definition,
-  written in scene code, stands there; *own* means that the CPU's code is made for it directly. In
+- **Spelling**: the target's own text for it. *prelude* means that distal's own definition,
+  written in scene code, is used; *own* means that the CPU's code is made for it directly. In
   64 bits the CPU takes the elementary functions from the machine's mathematics library.
 - **Gradient**: *exact* by a rule of its own; *0* for steps; *none* where the result is no float.
 
@@ -59,27 +60,32 @@ function.
 def make_page() -> str:
     """Make the text of the page."""
     parts = [HEAD]
-    for name, row in INTRINSICS.items():
+    for name, intrinsic in INTRINSICS.items():
         if name in GROUPS:
             parts.append(f"\n## {GROUPS[name]}\n")
-        if not row.hidden:
-            parts.append(_row(row))
+        if not intrinsic.hidden:
+            parts.append(_entry(intrinsic))
     parts.append("\n## Forms\n\nCalls with rules of their own; scene code only.\n\n")
     parts.append("| call | meaning |\n|---|---|\n")
     parts += [f"| `{form.signature}` | {_cell(form.doc)} |\n" for form in FORMS]
     return "".join(parts)
 
 
-def _row(row: Intrinsic) -> str:
-    lines = [f"\n### `{row.name}({', '.join(row.args)})`\n", row.doc.replace("``", "`"), ""]
-    if row.edges:
-        lines += [f"- Edges: {row.edges}"]
-    if row.reach != ORDINARY:
-        lines += [f"- Finite for arguments up to 2^{math.log2(row.reach):.0f}."]
-    lines += [f"- Types: {'; '.join(_signature(row, s) for s in row.signatures)}"]
-    lines += [f"- Domain: {_domain(row)}. Difference: {_difference(row)}. Gradient: {_slope(row)}."]
-    spellings = "; ".join(f"{_TITLES[f]} {_spelling(row, f)}" for f in FAMILIES)
-    if row.guarded:
+def _entry(intrinsic: Intrinsic) -> str:
+    lines = [
+        f"\n### `{intrinsic.name}({', '.join(intrinsic.args)})`\n",
+        intrinsic.doc.replace("``", "`"),
+        "",
+    ]
+    if intrinsic.edges:
+        lines += [f"- Edges: {intrinsic.edges}"]
+    if intrinsic.reach != ORDINARY:
+        lines += [f"- Finite for arguments up to 2^{math.log2(intrinsic.reach):.0f}."]
+    lines += [f"- Types: {'; '.join(_signature(intrinsic, s) for s in intrinsic.signatures)}"]
+    compared = f"Domain: {_domain(intrinsic)}. Difference: {_difference(intrinsic)}."
+    lines += [f"- {compared} Gradient: {_slope(intrinsic)}."]
+    spellings = "; ".join(f"{_TITLES[f]} {_spelling(intrinsic, f)}" for f in FAMILIES)
+    if intrinsic.guarded:
         spellings += "; the prelude's where arguments are not seen to have an answer"
     return "\n".join([*lines, f"- Spelling: {spellings}."]) + "\n"
 
@@ -89,14 +95,14 @@ _BITS: Final = ({Kind.FLOAT, Kind.INT}, {Kind.FLOAT, Kind.UINT})
 _TITLES: Final = {"llvm": "CPU", "glsl": "GLSL", "glsl100": "ES 1.00", "wgsl": "WGSL"}
 
 
-def _signature(row: Intrinsic, signature: Signature) -> str:
+def _signature(intrinsic: Intrinsic, signature: Signature) -> str:
     """Such as ``(T, T) -> float``, T one of vec2, vec3, vec4; plain types where T has one value."""
     if len(signature.over) == 1:
         params, result = next(iter(signature.instances()))
         return f"`({', '.join(map(str, params))}) -> {result}`"
     written = f"({', '.join(map(_pattern, signature.params))}) -> {_pattern(signature.result)}"
     note = ""
-    if row.name in ("min", "max"):
+    if intrinsic.name in ("min", "max"):
         note = ", two or more arguments"
     return f"`{written}`, T: {_listed(signature.over)}{note}"
 
@@ -123,41 +129,43 @@ def _listed(types: Iterable[Type]) -> str:
     return ", ".join(f"`{name}`" for name in found)
 
 
-def _domain(row: Intrinsic) -> str:
+def _domain(intrinsic: Intrinsic) -> str:
     return ", ".join(
         f"{name} from {low:g} to {high:g}"
-        for name, (low, high) in zip(row.args, row.domain, strict=True)
+        for name, (low, high) in zip(intrinsic.args, intrinsic.domain, strict=True)
     )
 
 
-def _difference(row: Intrinsic) -> str:
-    if not row.rtol and not row.atol:
+def _difference(intrinsic: Intrinsic) -> str:
+    if not intrinsic.rtol and not intrinsic.atol:
         return "none, equal bits"
-    parts = [f"{row.rtol:g} of the value"] if row.rtol else []
-    return " + ".join(parts + ([f"{row.atol:g}"] if row.atol else []))
+    parts = [f"{intrinsic.rtol:g} of the value"] if intrinsic.rtol else []
+    return " + ".join(parts + ([f"{intrinsic.atol:g}"] if intrinsic.atol else []))
 
 
-def _slope(row: Intrinsic) -> str:
-    if row.derivative is None:
+def _slope(intrinsic: Intrinsic) -> str:
+    if intrinsic.derivative is None:
         return "none"
-    return "0" if row.derivative.__name__ == "constant" else "exact"
+    return "0" if intrinsic.derivative.__name__ == "constant" else "exact"
 
 
-def _spelling(row: Intrinsic, family: str) -> str:
-    if family == "glsl100" and _is_refused(row):
+def _spelling(intrinsic: Intrinsic, family: str) -> str:
+    if family == "glsl100" and _is_refused(intrinsic):
         return "*refused*"
-    found = row.spelling(family)
+    found = intrinsic.spelling(family)
     if found is None:
-        return "*own*" if family == "llvm" else f"`{row.name}`"
+        return "*own*" if family == "llvm" else f"`{intrinsic.name}`"
     if found.startswith("@"):
         return "*prelude*"
-    named = re.sub(r"{(\d)}", lambda mark: row.args[int(mark[1])], found)
+    named = re.sub(r"{(\d)}", lambda mark: intrinsic.args[int(mark[1])], found)
     return f"`{named.replace('{result}', 'type')}`"
 
 
-def _is_refused(row: Intrinsic) -> bool:
+def _is_refused(intrinsic: Intrinsic) -> bool:
     """ES 1.00 has neither unsigned integers nor the bits of a float."""
-    instances = [(*params, result) for s in row.signatures for params, result in s.instances()]
+    instances = [
+        (*params, result) for s in intrinsic.signatures for params, result in s.instances()
+    ]
     moves_bits = all({kind_of(t) for t in types} in _BITS for types in instances)
     return moves_bits or all(any(kind_of(t) is Kind.UINT for t in types) for types in instances)
 

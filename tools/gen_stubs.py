@@ -94,9 +94,9 @@ def _imports() -> Iterator[str]:
 
 
 def _declared() -> Iterator[Any]:
-    """The declared classes and functions."""
+    """The declared classes and functions; by name, since their order depends on imports."""
     for found in DECLARED.values():
-        yield from found.values()
+        yield from (found[name] for name in sorted(found))
 
 
 def _entry(made: Any) -> str:

@@ -34,13 +34,13 @@ _HAND_WRITTEN = {
     "distal.scene.scene": ("Scene",),
     "distal.scene.steering": ("Steering",),
 }
-_HOMES = {
+_MODULE_OF = {
     **{name: module for module, names in _HAND_WRITTEN.items() for name in names},
     **{name: module for module, names in DECLARED_NAMES.items() for name in names.split()},
 }
 
 # ``from distal import *`` leaves Python's own ``compile`` alone.
-__all__ = ["__version__", *(name for name in _HOMES if name != "compile")]
+__all__ = ["__version__", *(name for name in _MODULE_OF if name != "compile")]
 
 
 def _executor() -> Any:
@@ -67,17 +67,17 @@ set_presenter_loader(_presenter)
 
 def _unknown(name: str) -> str:
     message = f"module 'distal' has no attribute '{name}'"
-    near = importlib.import_module("difflib").get_close_matches(name, _HOMES, 1)
+    near = importlib.import_module("difflib").get_close_matches(name, _MODULE_OF, 1)
     return f"{message}; did you mean '{near[0]}'?" if near and name[0] != "_" else message
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
+    if name not in _MODULE_OF:
         raise AttributeError(_unknown(name))
-    value = getattr(importlib.import_module(_HOMES[name]), name)
+    value = getattr(importlib.import_module(_MODULE_OF[name]), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOMES})
+    return sorted({*globals(), *_MODULE_OF})

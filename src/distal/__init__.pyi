@@ -108,6 +108,36 @@ class Camera(_PlacedCamera):
         mirror: bool = False,
     ) -> None: ...
 
+class FisheyeCamera(_BaseCamera):
+    """A camera that sees half of the world around, or more, in a circle.
+
+    The angle from the view grows evenly from the middle of the picture (equidistant).
+
+    Args:
+        position: Where it is.
+        target: What it looks at.
+        up: Which way is up in the picture.
+        fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
+            (default: 180 degrees).
+        fov_deg: The same in degrees.
+        mirror: Left and right swapped, as left-handed systems see it.
+
+    Raises:
+        ValueError: A number is out of its range, or numbers do not go together.
+        TypeError: An argument is of another kind.
+    """
+
+    def __init__(
+        self,
+        position: Vector = ...,
+        target: Vector = ...,
+        up: Vector = ...,
+        fov: Number | None = None,
+        *,
+        fov_deg: Number | None = None,
+        mirror: bool = False,
+    ) -> None: ...
+
 class OrbitCamera(_BaseCamera):
     """A camera on a sphere around what it looks at.
 
@@ -163,36 +193,6 @@ class OrthographicCamera(_BaseCamera):
         mirror: bool = False,
     ) -> None: ...
 
-class FisheyeCamera(_BaseCamera):
-    """A camera that sees half of the world around, or more, in a circle.
-
-    The angle from the view grows evenly from the middle of the picture (equidistant).
-
-    Args:
-        position: Where it is.
-        target: What it looks at.
-        up: Which way is up in the picture.
-        fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
-            (default: 180 degrees).
-        fov_deg: The same in degrees.
-        mirror: Left and right swapped, as left-handed systems see it.
-
-    Raises:
-        ValueError: A number is out of its range, or numbers do not go together.
-        TypeError: An argument is of another kind.
-    """
-
-    def __init__(
-        self,
-        position: Vector = ...,
-        target: Vector = ...,
-        up: Vector = ...,
-        fov: Number | None = None,
-        *,
-        fov_deg: Number | None = None,
-        mirror: bool = False,
-    ) -> None: ...
-
 class PanoramaCamera(_BaseCamera):
     """A camera that sees all around: longitude to the right, latitude up (equirectangular).
 
@@ -232,28 +232,6 @@ class AmbientLight(_Light):
 
     def __init__(self, intensity: Number = 0.1, color: Color = ...) -> None: ...
 
-class HemisphereLight(_Light):
-    """Light of one colour from the upper half of space, of another from the lower.
-
-    Args:
-        sky: Colour of the upper half.
-        ground: Colour of the lower half.
-        intensity: A factor on both.
-        up: Where the upper half is, of any length.
-
-    Raises:
-        ValueError: A number is out of its range, or numbers do not go together.
-        TypeError: An argument is of another kind.
-    """
-
-    def __init__(
-        self,
-        sky: Color = ...,
-        ground: Color = ...,
-        intensity: Number = 0.5,
-        up: Vector = ...,
-    ) -> None: ...
-
 class DistantLight(_Light):
     """Light from one side, equally bright everywhere: the sun.
 
@@ -274,6 +252,28 @@ class DistantLight(_Light):
         intensity: Number = 1.0,
         color: Color = ...,
         angle: Number = 0.0,
+    ) -> None: ...
+
+class HemisphereLight(_Light):
+    """Light of one colour from the upper half of space, of another from the lower.
+
+    Args:
+        sky: Colour of the upper half.
+        ground: Colour of the lower half.
+        intensity: A factor on both.
+        up: Where the upper half is, of any length.
+
+    Raises:
+        ValueError: A number is out of its range, or numbers do not go together.
+        TypeError: An argument is of another kind.
+    """
+
+    def __init__(
+        self,
+        sky: Color = ...,
+        ground: Color = ...,
+        intensity: Number = 0.5,
+        up: Vector = ...,
     ) -> None: ...
 
 class PointLight(_Light):
@@ -326,11 +326,12 @@ class SpotLight(_Light):
         radius: Number = 0.0,
     ) -> None: ...
 
-def matte(color: Color | Varying = ...) -> Material:
-    """A material that scatters light evenly to all sides: plaster, paper.
+def emissive(color: Color | Varying = ..., strength: Number | Varying = 1.0) -> Material:
+    """A material that shines by itself and shows nothing else.
 
     Args:
-        color: What it scatters.
+        color: What it gives off.
+        strength: A factor on it; beyond 1 too.
 
     Raises:
         ValueError: A number is out of its range.
@@ -352,6 +353,17 @@ def glossy(
         diffuse: Share of light scattered.
         specular: Share of light mirrored.
         roughness: 0 mirrors sharply, 1 hardly at all.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
+
+def matte(color: Color | Varying = ...) -> Material:
+    """A material that scatters light evenly to all sides: plaster, paper.
+
+    Args:
+        color: What it scatters.
 
     Raises:
         ValueError: A number is out of its range.
@@ -398,12 +410,13 @@ def plastic(
         TypeError: An argument is of another kind.
     """
 
-def emissive(color: Color | Varying = ..., strength: Number | Varying = 1.0) -> Material:
-    """A material that shines by itself and shows nothing else.
+def by_cell(seed: Number | Varying = 0.0) -> Pattern:
+    """A colour of its own for each repetition of a shape that is painted, then repeated.
+
+    It has any hue, and is neither pale nor dark.
 
     Args:
-        color: What it gives off.
-        strength: A factor on it; beyond 1 too.
+        seed: Any number; another gives other colours.
 
     Raises:
         ValueError: A number is out of its range.
@@ -435,33 +448,6 @@ def checker(
     """
 
 @overload
-def stripes(
-    a: Color | Varying = "#fff",
-    b: Color | Varying = "#222",
-    size: Number | Varying = 1.0,
-    direction: Vector | Varying = ...,
-) -> Pattern: ...
-@overload
-def stripes(
-    a: Color | Varying | Material = "#fff",
-    b: Color | Varying | Material = "#222",
-    size: Number | Varying = 1.0,
-    direction: Vector | Varying = ...,
-) -> Material:
-    """Layers of two colours or materials in turn.
-
-    Args:
-        a: A colour, a pattern, or a material.
-        b: The other.
-        size: How thick one layer is.
-        direction: Across the layers.
-
-    Raises:
-        ValueError: A number is out of its range, or numbers do not go together.
-        TypeError: An argument is of another kind.
-    """
-
-@overload
 def gradient(
     a: Color | Varying = "#fff",
     b: Color | Varying = "#222",
@@ -485,33 +471,6 @@ def gradient(
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
-        TypeError: An argument is of another kind.
-    """
-
-@overload
-def radial_gradient(
-    a: Color | Varying = "#fff",
-    b: Color | Varying = "#222",
-    center: Vector | Varying = ...,
-    radius: Number | Varying = 1.0,
-) -> Pattern: ...
-@overload
-def radial_gradient(
-    a: Color | Varying | Material = "#fff",
-    b: Color | Varying | Material = "#222",
-    center: Vector | Varying = ...,
-    radius: Number | Varying = 1.0,
-) -> Material:
-    """One colour or material that becomes another with the distance from a point.
-
-    Args:
-        a: A colour, a pattern, or a material: at the centre.
-        b: The other: from ``radius`` on.
-        center: Where it begins.
-        radius: Where the change is complete.
-
-    Raises:
-        ValueError: A number is out of its range.
         TypeError: An argument is of another kind.
     """
 
@@ -566,16 +525,57 @@ def palette(
     Source: Inigo Quilez, "Procedural color palette" (https://iquilezles.org/articles/palettes/).
     """
 
-def by_cell(seed: Number | Varying = 0.0) -> Pattern:
-    """A colour of its own for each repetition of a shape that is painted, then repeated.
-
-    It has any hue, and is neither pale nor dark.
+@overload
+def radial_gradient(
+    a: Color | Varying = "#fff",
+    b: Color | Varying = "#222",
+    center: Vector | Varying = ...,
+    radius: Number | Varying = 1.0,
+) -> Pattern: ...
+@overload
+def radial_gradient(
+    a: Color | Varying | Material = "#fff",
+    b: Color | Varying | Material = "#222",
+    center: Vector | Varying = ...,
+    radius: Number | Varying = 1.0,
+) -> Material:
+    """One colour or material that becomes another with the distance from a point.
 
     Args:
-        seed: Any number; another gives other colours.
+        a: A colour, a pattern, or a material: at the centre.
+        b: The other: from ``radius`` on.
+        center: Where it begins.
+        radius: Where the change is complete.
 
     Raises:
         ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
+
+@overload
+def stripes(
+    a: Color | Varying = "#fff",
+    b: Color | Varying = "#222",
+    size: Number | Varying = 1.0,
+    direction: Vector | Varying = ...,
+) -> Pattern: ...
+@overload
+def stripes(
+    a: Color | Varying | Material = "#fff",
+    b: Color | Varying | Material = "#222",
+    size: Number | Varying = 1.0,
+    direction: Vector | Varying = ...,
+) -> Material:
+    """Layers of two colours or materials in turn.
+
+    Args:
+        a: A colour, a pattern, or a material.
+        b: The other.
+        size: How thick one layer is.
+        direction: Across the layers.
+
+    Raises:
+        ValueError: A number is out of its range, or numbers do not go together.
         TypeError: An argument is of another kind.
     """
 
@@ -606,289 +606,10 @@ def waves(
         TypeError: An argument is of another kind.
     """
 
-class HalfPlane(Shape2D):
-    """All that lies behind a straight line."""
-
-    @overload
-    def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
-    @overload
-    def __init__(self, normal_x: Number, normal_y: Number, /, offset: Number = 0.0) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ..., offset: Number = 0.0) -> None: ...
-
-class Rectangle(Shape2D):
-    """Rectangle with sides along the axes."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ...) -> None: ...
-    @overload
-    def __init__(self, size_x: Number, size_y: Number, /) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
-
-class RoundedRectangle(Shape2D):
-    """Rectangle whose corners are rounded, each by its own radius."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ..., radii: Vector | Number = ...) -> None: ...
-    @overload
-    def __init__(
-        self,
-        size_x: Number,
-        size_y: Number,
-        radii_x: Number,
-        radii_y: Number,
-        radii_z: Number,
-        radii_w: Number,
-        /,
-    ) -> None: ...
-
-class ChamferedRectangle(Shape2D):
-    """Rectangle whose corners are cut off at 45 degrees."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.2) -> None: ...
-    @overload
-    def __init__(self, size_x: Number, size_y: Number, /, chamfer: Number = 0.2) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ..., chamfer: Number = 0.2) -> None: ...
-
-class OrientedRectangle(Shape2D):
-    """A bar with square ends between two points."""
-
-    @overload
-    def __init__(
-        self,
-        start: Vector = ...,
-        end: Vector = ...,
-        thickness: Number = 0.25,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        end_x: Number,
-        end_y: Number,
-        /,
-        thickness: Number = 0.25,
-    ) -> None: ...
-
-class Cross(Shape2D):
-    """Two equal bars across each other."""
-
-    def __init__(self, span: Number = 1.0, thickness: Number = 0.3) -> None: ...
-
-class Tunnel(Shape2D):
-    """Half a disc on top of two walls; the disc's centre is the origin."""
-
-    def __init__(self, width: Number = 1.0, height: Number = 0.5) -> None: ...
-
-class Stairs(Shape2D):
-    """A flight of stairs that climbs to the right, with what is below it; starts at the origin."""
-
-    @overload
-    def __init__(self, step: Vector = ..., count: int = 4) -> None: ...
-    @overload
-    def __init__(self, step_x: Number, step_y: Number, /, count: int = 4) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ..., count: int = 4) -> None: ...
-
-class Parabola(Shape2D):
-    """All that lies above the parabola y = curvature x^2."""
-
-    def __init__(self, curvature: Number = 1.0) -> None: ...
-
-class ParabolaSegment(Shape2D):
-    """What a parabola cuts off above the x axis."""
-
-    def __init__(self, width: Number = 1.0, height: Number = 0.8) -> None: ...
-
-class QuadraticCircle(Shape2D):
-    """Nearly a circle, of four parabolas: each joins two axes and leaves them at right angles."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class BlobbyCross(Shape2D):
-    """Four points on the axes, joined by parabolas that are drawn in toward the middle."""
-
-    def __init__(self, radius: Number = 0.6, depth: Number = 0.15) -> None: ...
-
-class Ellipse(Shape2D):
-    """Ellipse with its axes along x and y."""
-
-    @overload
-    def __init__(self, radii: Vector | Number = ...) -> None: ...
-    @overload
-    def __init__(self, radii_x: Number, radii_y: Number, /) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
-
-class Hyperbola(Shape2D):
-    """All that lies beyond the two branches of a hyperbola, to the left and to the right."""
-
-    def __init__(self, radius: Number = 0.4, steepness: Number = 1.0) -> None: ...
-
-class Vesica(Shape2D):
-    """What two equal discs have in common: a lens with its tips on the y axis."""
-
-    def __init__(self, width: Number = 0.6, height: Number = 1.0) -> None: ...
-
-class OrientedVesica(Shape2D):
-    """A lens between two points."""
-
-    @overload
-    def __init__(self, start: Vector = ..., end: Vector = ..., width: Number = 0.5) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        end_x: Number,
-        end_y: Number,
-        /,
-        width: Number = 0.5,
-    ) -> None: ...
-
-class Moon(Shape2D):
-    """A disc around the origin less a second disc to its right."""
-
-    def __init__(
-        self,
-        radius: Number = 0.7,
-        cut_radius: Number = 0.6,
-        offset: Number = 0.4,
-    ) -> None: ...
-
-class CircleCross(Shape2D):
-    """A star of four points with sides of circles, hollow between the points."""
-
-    def __init__(self, width: Number = 1.0, height: Number = 0.8) -> None: ...
-
-class Heart(Shape2D):
-    """A square on its corner with half a disc on each upper side."""
-
-    def __init__(self, height: Number = 1.0) -> None: ...
-
-class UnevenCapsule(Shape2D):
-    """Two discs, one above the other, and all between their common tangents."""
-
-    def __init__(self, bottom: Number = 0.4, top: Number = 0.2, height: Number = 0.6) -> None: ...
-
-class Egg(Shape2D):
-    """Two discs, one above the other, and bulging sides that go smoothly over into both."""
-
-    def __init__(
-        self,
-        bottom: Number = 0.4,
-        top: Number = 0.2,
-        height: Number = 0.4,
-        bulge: Number = 0.6,
-    ) -> None: ...
-
-class RoundedX(Shape2D):
-    """Two bars with round ends along the diagonals."""
-
-    def __init__(self, span: Number = 1.2, thickness: Number = 0.25) -> None: ...
-
-class Segment(Shape2D):
-    """A straight line with round ends."""
-
-    @overload
-    def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.05) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        end_x: Number,
-        end_y: Number,
-        /,
-        radius: Number = 0.05,
-    ) -> None: ...
-
-class QuadraticBezier(Shape2D):
-    """A line along a quadratic Bézier curve."""
-
-    @overload
-    def __init__(
-        self,
-        start: Vector = ...,
-        control: Vector = ...,
-        end: Vector = ...,
-        radius: Number = 0.05,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        control_x: Number,
-        control_y: Number,
-        end_x: Number,
-        end_y: Number,
-        /,
-        radius: Number = 0.05,
-    ) -> None: ...
-
-class CubicBezier(Shape2D):
-    """A line along a cubic Bézier curve, followed by pairs of parabolas."""
-
-    @overload
-    def __init__(
-        self,
-        start: Vector = ...,
-        leaving: Vector = ...,
-        arriving: Vector = ...,
-        end: Vector = ...,
-        radius: Number = 0.05,
-        pieces: int = 4,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        leaving_x: Number,
-        leaving_y: Number,
-        arriving_x: Number,
-        arriving_y: Number,
-        end_x: Number,
-        end_y: Number,
-        /,
-        radius: Number = 0.05,
-        pieces: int = 4,
-    ) -> None: ...
-
-class SplinePath(Shape2D):
-    """A smooth line through points, made of two parabolas between each two."""
-
-    def __init__(
-        self,
-        points: Points = ...,
-        radius: Number = 0.05,
-        closed: bool = False,
-    ) -> None: ...
-
-class Circle(Shape2D):
-    """Disc around the origin."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
 class Annulus(Shape2D):
     """Ring all around."""
 
     def __init__(self, radius: Number = 0.75, thickness: Number = 0.25) -> None: ...
-
-class Pie(Shape2D):
-    """Sector of a disc around the y axis."""
-
-    def __init__(self, radius: Number = 1.0, angle: Number = 0.7) -> None: ...
-
-class CutDisk(Shape2D):
-    """What a level line leaves of a disc, above it."""
-
-    def __init__(self, radius: Number = 1.0, height: Number = -0.3) -> None: ...
 
 class Arc(Shape2D):
     """Part of a ring with round ends, around the y axis."""
@@ -899,181 +620,6 @@ class Arc(Shape2D):
         angle: Number = 1.6,
         thickness: Number = 0.2,
     ) -> None: ...
-
-class Ring(Shape2D):
-    """Part of a ring with straight ends, around the y axis."""
-
-    def __init__(
-        self,
-        radius: Number = 0.75,
-        angle: Number = 1.6,
-        thickness: Number = 0.25,
-    ) -> None: ...
-
-class Horseshoe(Shape2D):
-    """Part of a ring around the y axis, prolonged straight at both ends."""
-
-    def __init__(
-        self,
-        radius: Number = 0.5,
-        angle: Number = 1.9,
-        legs: Number = 0.4,
-        thickness: Number = 0.25,
-    ) -> None: ...
-
-class CircleWave(Shape2D):
-    """A wave of arcs along the x axis without end, a crest at x = 0."""
-
-    def __init__(
-        self,
-        radius: Number = 0.25,
-        angle: Number = 1.8,
-        thickness: Number = 0.05,
-    ) -> None: ...
-
-class CoolS(Shape2D):
-    """The S of 14 straight lines."""
-
-    def __init__(self, height: Number = 1.0, thickness: Number = 0.03) -> None: ...
-
-class ArchimedeanSpiral(Shape2D):
-    """A line that winds outwards by the same amount each turn, counterclockwise from the x axis."""
-
-    def __init__(
-        self,
-        inner: Number = 0.1,
-        outer: Number = 1.0,
-        turns: int = 3,
-        radius: Number = 0.04,
-    ) -> None: ...
-
-class LogarithmicSpiral(Shape2D):
-    """A line that winds outwards by the same factor each turn, counterclockwise from the x axis."""
-
-    def __init__(
-        self,
-        inner: Number = 0.05,
-        outer: Number = 1.0,
-        turns: int = 3,
-        radius: Number = 0.02,
-    ) -> None: ...
-
-class Polygon(Shape2D):
-    """Any polygon; where it crosses itself, inside is what it goes around an odd number of times."""
-
-    def __init__(self, points: Points = ...) -> None: ...
-
-class RoundedPolygon(Shape2D):
-    """A polygon grown by a radius, so that its outer corners are round."""
-
-    def __init__(self, points: Points = ..., radius: Number = 0.1) -> None: ...
-
-class Polyline(Shape2D):
-    """A line through points, as wide as a disc drawn along it."""
-
-    def __init__(
-        self,
-        points: Points = ...,
-        radius: Number = 0.05,
-        closed: bool = False,
-    ) -> None: ...
-
-class Rhombus2(Shape2D):
-    """Rhombus with its diagonals along the axes."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ...) -> None: ...
-    @overload
-    def __init__(self, size_x: Number, size_y: Number, /) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
-
-class IsoscelesTrapezoid(Shape2D):
-    """Trapezoid whose slanted sides mirror each other; halfway up at y = 0."""
-
-    def __init__(self, bottom: Number = 1.0, top: Number = 0.6, height: Number = 0.7) -> None: ...
-
-class Parallelogram(Shape2D):
-    """Parallelogram with two sides along x."""
-
-    def __init__(self, width: Number = 0.8, height: Number = 0.6, skew: Number = 0.3) -> None: ...
-
-class EquilateralTriangle(Shape2D):
-    """Triangle with equal sides, a corner up, its middle at the origin."""
-
-    def __init__(self, size: Number = 1.0) -> None: ...
-
-class IsoscelesTriangle(Shape2D):
-    """Triangle with its tip up, halfway up at y = 0."""
-
-    def __init__(self, width: Number = 0.8, height: Number = 1.0) -> None: ...
-
-class Triangle2(Shape2D):
-    """Triangle between three points of the plane."""
-
-    @overload
-    def __init__(self, first: Vector = ..., second: Vector = ..., third: Vector = ...) -> None: ...
-    @overload
-    def __init__(
-        self,
-        first_x: Number,
-        first_y: Number,
-        second_x: Number,
-        second_y: Number,
-        third_x: Number,
-        third_y: Number,
-        /,
-    ) -> None: ...
-
-class Pentagon(Shape2D):
-    """Regular polygon with five corners, one of them up."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class Hexagon(Shape2D):
-    """Regular polygon with six corners, one of them up."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class Octagon(Shape2D):
-    """Regular polygon with eight corners, one of them up."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class RegularPolygon(Shape2D):
-    """Polygon with equal sides and angles, a corner up."""
-
-    def __init__(self, radius: Number = 0.5, count: int = 7) -> None: ...
-
-class Hexagram(Shape2D):
-    """Star of two triangles, six points, one of them up."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class Pentagram(Shape2D):
-    """Star drawn by the diagonals of a pentagon, five points, one of them up."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class RegularStar(Shape2D):
-    """Star with equal points, one of them up."""
-
-    def __init__(self, radius: Number = 0.5, inner: Number = 0.25, count: int = 7) -> None: ...
-
-class GearProfile(Shape2D):
-    """A gear with involute teeth, one of them up; gears of one tooth size mesh."""
-
-    def __init__(
-        self,
-        radius: Number = 0.5,
-        pressure_angle: Number = 0.3490658503988659,
-        count: int = 12,
-    ) -> None: ...
-
-class TangentCam(Shape2D):
-    """A cam with straight flanks that turns about the origin, its nose up."""
-
-    def __init__(self, base: Number = 0.4, nose: Number = 0.15, lift: Number = 0.3) -> None: ...
 
 class ArcCam(Shape2D):
     """A cam with round flanks that turns about the origin, its nose up."""
@@ -1086,112 +632,58 @@ class ArcCam(Shape2D):
         bulge: Number = 0.4,
     ) -> None: ...
 
-class ImageField(Shape2D):
-    """A shape whose distances are the texels of an image, in their first channel."""
+class ArchimedeanSpiral(Shape2D):
+    """A line that winds outwards by the same amount each turn, counterclockwise from the x axis."""
+
+    def __init__(
+        self,
+        inner: Number = 0.1,
+        outer: Number = 1.0,
+        turns: int = 3,
+        radius: Number = 0.04,
+    ) -> None: ...
+
+class BccLattice(Shape):
+    """Struts from the corners of cubes to their middles (body-centred cubic)."""
+
+    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
+
+class BezierTube(Shape):
+    """A round tube along a quadratic Bézier curve."""
 
     @overload
     def __init__(
         self,
-        image: Image = ...,
-        size: Vector | Number = ...,
-        scale: Number = 1.0,
+        start: Vector = ...,
+        control: Vector = ...,
+        end: Vector = ...,
+        radius: Number = 0.1,
     ) -> None: ...
     @overload
     def __init__(
         self,
-        image: Image,
-        size_x: Number,
-        size_y: Number,
+        start_x: Number,
+        start_y: Number,
+        start_z: Number,
+        control_x: Number,
+        control_y: Number,
+        control_z: Number,
+        end_x: Number,
+        end_y: Number,
+        end_z: Number,
         /,
-        scale: Number = 1.0,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        image: Image = ...,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        scale: Number = 1.0,
+        radius: Number = 0.1,
     ) -> None: ...
 
-class ValueNoiseSolid(Shape):
-    """Lumps of value noise, in line with the axes."""
+class Blob(Shape):
+    """Ball with twelve round bumps, towards the vertices of an icosahedron."""
 
-    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+    def __init__(self, radius: Number = 0.75, height: Number = 0.2) -> None: ...
 
-class GradientNoiseSolid(Shape):
-    """Lumps of Perlin's noise."""
+class BlobbyCross(Shape2D):
+    """Four points on the axes, joined by parabolas that are drawn in toward the middle."""
 
-    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
-
-class SimplexNoiseSolid(Shape):
-    """Lumps of simplex noise, rounder and smaller than those of Perlin's."""
-
-    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
-
-class FbmSolid(Shape):
-    """Rugged lumps: noise at several scales."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        level: Number = 0.0,
-        octaves: int = 4,
-        lacunarity: Number = 2.0,
-        gain: Number = 0.5,
-        seed: int = 0,
-    ) -> None: ...
-
-class VoronoiWalls(Shape):
-    """The walls between the cells of scattered points: a closed foam, without end."""
-
-    def __init__(
-        self,
-        cell_size: Number = 0.5,
-        thickness: Number = 0.08,
-        jitter: Number = 0.8,
-        seed: int = 0,
-    ) -> None: ...
-
-class VoronoiCells(Shape):
-    """The cells of scattered points, a gap between them: rubble, packed grains, without end."""
-
-    def __init__(
-        self,
-        cell_size: Number = 0.5,
-        gap: Number = 0.08,
-        jitter: Number = 0.8,
-        seed: int = 0,
-    ) -> None: ...
-
-class VoronoiLines(Shape2D):
-    """The borders between the cells of points scattered in the plane, without end."""
-
-    def __init__(
-        self,
-        cell_size: Number = 0.5,
-        thickness: Number = 0.08,
-        jitter: Number = 0.8,
-        seed: int = 0,
-    ) -> None: ...
-
-class ScatteredBalls(Shape):
-    """Balls around scattered points, or all that is not in them: gravel, a sponge, without end."""
-
-    def __init__(
-        self,
-        cell_size: Number = 0.5,
-        radius: Number = 0.2,
-        jitter: Number = 0.8,
-        seed: int = 0,
-        holes: bool = False,
-    ) -> None: ...
-
-class Corner(Shape):
-    """The eighth of space where x, y and z are all negative."""
-
-    def __init__(self) -> None: ...
+    def __init__(self, radius: Number = 0.6, depth: Number = 0.15) -> None: ...
 
 class Box(Shape):
     """Box."""
@@ -1212,54 +704,6 @@ class BoxCheap(Shape):
     def __init__(self, size_x: Number, size_y: Number, size_z: Number, /) -> None: ...
     @overload
     def __init__(self, *, x: Number = ..., y: Number = ..., z: Number = ...) -> None: ...
-
-class RoundBox(Shape):
-    """Box whose edges are rounded inward: the full size stays."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ..., rounding: Number = 0.1) -> None: ...
-    @overload
-    def __init__(
-        self,
-        size_x: Number,
-        size_y: Number,
-        size_z: Number,
-        /,
-        rounding: Number = 0.1,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        z: Number = ...,
-        rounding: Number = 0.1,
-    ) -> None: ...
-
-class ChamferBox(Shape):
-    """Box with every edge cut off at 45 degrees; outside a lower bound."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.1) -> None: ...
-    @overload
-    def __init__(
-        self,
-        size_x: Number,
-        size_y: Number,
-        size_z: Number,
-        /,
-        chamfer: Number = 0.1,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        z: Number = ...,
-        chamfer: Number = 0.1,
-    ) -> None: ...
 
 class BoxFrame(Shape):
     """The twelve edges of a box as square beams."""
@@ -1284,51 +728,6 @@ class BoxFrame(Shape):
         z: Number = ...,
         thickness: Number = 0.1,
     ) -> None: ...
-
-class RoundFrame(Shape):
-    """The twelve edges of a box as round bars with balls at the corners."""
-
-    @overload
-    def __init__(self, size: Vector | Number = ..., thickness: Number = 0.1) -> None: ...
-    @overload
-    def __init__(
-        self,
-        size_x: Number,
-        size_y: Number,
-        size_z: Number,
-        /,
-        thickness: Number = 0.1,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        z: Number = ...,
-        thickness: Number = 0.1,
-    ) -> None: ...
-
-class Helix(Shape):
-    """A tube that winds around the y axis without end, through the x axis, rising toward z."""
-
-    def __init__(self, major: Number = 0.5, minor: Number = 0.1, pitch: Number = 0.4) -> None: ...
-
-class Spring(Shape):
-    """A coil spring around the y axis, its ends ground flat."""
-
-    def __init__(
-        self,
-        major: Number = 0.4,
-        minor: Number = 0.07,
-        pitch: Number = 0.25,
-        height: Number = 1.0,
-    ) -> None: ...
-
-class InfiniteCone(Shape):
-    """Cone without end, downward from its tip at the origin."""
-
-    def __init__(self, angle: Number = 0.5) -> None: ...
 
 class CappedCone(Shape):
     """Upright cone with its tip cut off."""
@@ -1360,154 +759,10 @@ class CappedConeBetween(Shape):
         end_radius: Number = 0.3,
     ) -> None: ...
 
-class Cone(Shape):
-    """Upright cone, its tip on top."""
+class CappedTorus(Shape):
+    """Part of a ring around the y axis, with round ends, symmetric about the x axis."""
 
-    def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
-
-class ConeCheap(Shape):
-    """Upright cone by its side and its base alone; beyond tip and rim less than the distance."""
-
-    def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
-
-class ConeBetween(Shape):
-    """Cone from the centre of its base to its tip."""
-
-    @overload
-    def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.5) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        start_z: Number,
-        end_x: Number,
-        end_y: Number,
-        end_z: Number,
-        /,
-        radius: Number = 0.5,
-    ) -> None: ...
-
-class RoundCone(Shape):
-    """Two balls, one above the other, and the cone that touches both."""
-
-    def __init__(self, bottom: Number = 0.5, top: Number = 0.25, height: Number = 1.0) -> None: ...
-
-class RoundConeBetween(Shape):
-    """Two balls around two points, and the cone that touches both."""
-
-    @overload
-    def __init__(
-        self,
-        start: Vector = ...,
-        end: Vector = ...,
-        start_radius: Number = 0.5,
-        end_radius: Number = 0.25,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        start_z: Number,
-        end_x: Number,
-        end_y: Number,
-        end_z: Number,
-        /,
-        start_radius: Number = 0.5,
-        end_radius: Number = 0.25,
-    ) -> None: ...
-
-class CutSphere(Shape):
-    """What a level plane leaves of a ball: the part above."""
-
-    def __init__(self, radius: Number = 1.0, height: Number = 0.25) -> None: ...
-
-class CutHollowSphere(Shape):
-    """Bowl: what lies below a level plane of a ball's wall, with a round rim."""
-
-    def __init__(
-        self,
-        radius: Number = 0.9,
-        height: Number = 0.25,
-        thickness: Number = 0.1,
-    ) -> None: ...
-
-class DeathStar(Shape):
-    """Ball with a hollow that another ball above it leaves."""
-
-    def __init__(
-        self,
-        radius: Number = 1.0,
-        cut_radius: Number = 0.75,
-        distance: Number = 1.25,
-    ) -> None: ...
-
-class SolidAngle(Shape):
-    """The part of a ball that lies within an angle of the y axis, its tip at the origin."""
-
-    def __init__(self, angle: Number = 0.6, radius: Number = 1.0) -> None: ...
-
-class VesicaSolid(Shape):
-    """Upright body between two arcs, with a tip at either end, like a grain of rice."""
-
-    def __init__(self, height: Number = 1.5, width: Number = 0.75) -> None: ...
-
-class VesicaBetween(Shape):
-    """Body between two arcs that meet in two given points."""
-
-    @overload
-    def __init__(self, start: Vector = ..., end: Vector = ..., width: Number = 0.5) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        start_z: Number,
-        end_x: Number,
-        end_y: Number,
-        end_z: Number,
-        /,
-        width: Number = 0.5,
-    ) -> None: ...
-
-class InfiniteCylinder(Shape):
-    """Round bar along the y axis, without end."""
-
-    def __init__(self, radius: Number = 0.5) -> None: ...
-
-class Cylinder(Shape):
-    """Upright cylinder."""
-
-    def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
-
-class CylinderBetween(Shape):
-    """Cylinder whose ends are centred at two points."""
-
-    @overload
-    def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.5) -> None: ...
-    @overload
-    def __init__(
-        self,
-        start_x: Number,
-        start_y: Number,
-        start_z: Number,
-        end_x: Number,
-        end_y: Number,
-        end_z: Number,
-        /,
-        radius: Number = 0.5,
-    ) -> None: ...
-
-class RoundedCylinder(Shape):
-    """Upright cylinder whose edges are rounded inward: the full size stays."""
-
-    def __init__(
-        self,
-        radius: Number = 0.5,
-        height: Number = 1.0,
-        rounding: Number = 0.1,
-    ) -> None: ...
+    def __init__(self, angle: Number = 2.0, major: Number = 0.75, minor: Number = 0.25) -> None: ...
 
 class Capsule(Shape):
     """Upright round bar with half balls at its ends."""
@@ -1532,30 +787,19 @@ class CapsuleBetween(Shape):
         radius: Number = 0.4,
     ) -> None: ...
 
-class MengerSponge(Shape):
-    """Menger's sponge: a cube without its middle cross, and so on for the 20 cubes that are left."""
-
-    def __init__(self, size: Number = 1.0, iterations: int = 4) -> None: ...
-
-class Mandelbulb(Shape):
-    """The Mandelbulb, around the y axis: points whose powers stay, in polar coordinates."""
-
-    def __init__(self, power: int = 8, iterations: int = 8) -> None: ...
-
-class QuaternionJulia(Shape):
-    """A Julia set of quaternions, where their last part is 0."""
+class ChamferBox(Shape):
+    """Box with every edge cut off at 45 degrees; outside a lower bound."""
 
     @overload
-    def __init__(self, c: Vector = ..., iterations: int = 10) -> None: ...
+    def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.1) -> None: ...
     @overload
     def __init__(
         self,
-        c_x: Number,
-        c_y: Number,
-        c_z: Number,
-        c_w: Number,
+        size_x: Number,
+        size_y: Number,
+        size_z: Number,
         /,
-        iterations: int = 10,
+        chamfer: Number = 0.1,
     ) -> None: ...
     @overload
     def __init__(
@@ -1564,111 +808,71 @@ class QuaternionJulia(Shape):
         x: Number = ...,
         y: Number = ...,
         z: Number = ...,
-        w: Number = ...,
-        iterations: int = 10,
+        chamfer: Number = 0.1,
     ) -> None: ...
 
-class Mandelbox(Shape):
-    """The Mandelbox: points whose foldings at a cube and a ball stay."""
+class ChamferedRectangle(Shape2D):
+    """Rectangle whose corners are cut off at 45 degrees."""
 
-    def __init__(self, size: Number = 1.5, scale: Number = 2.0, iterations: int = 8) -> None: ...
+    @overload
+    def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.2) -> None: ...
+    @overload
+    def __init__(self, size_x: Number, size_y: Number, /, chamfer: Number = 0.2) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ..., chamfer: Number = 0.2) -> None: ...
 
-class Heightfield(Shape):
-    """Terrain from an image of heights, in its first channel; its edges go on without end."""
+class Circle(Shape2D):
+    """Disc around the origin."""
 
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class CircleCross(Shape2D):
+    """A star of four points with sides of circles, hollow between the points."""
+
+    def __init__(self, width: Number = 1.0, height: Number = 0.8) -> None: ...
+
+class CircleLine(Shape):
+    """A circle without thickness around the y axis."""
+
+    def __init__(self, radius: Number = 0.75) -> None: ...
+
+class CircleWave(Shape2D):
+    """A wave of arcs along the x axis without end, a crest at x = 0."""
+
+    def __init__(
+        self,
+        radius: Number = 0.25,
+        angle: Number = 1.8,
+        thickness: Number = 0.05,
+    ) -> None: ...
+
+class Cone(Shape):
+    """Upright cone, its tip on top."""
+
+    def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
+
+class ConeBetween(Shape):
+    """Cone from the centre of its base to its tip."""
+
+    @overload
+    def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.5) -> None: ...
     @overload
     def __init__(
         self,
-        image: Image = ...,
-        size: Vector | Number = ...,
-        height: Number = 1.0,
-        steepness: Number = 1.0,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        image: Image,
-        size_x: Number,
-        size_y: Number,
+        start_x: Number,
+        start_y: Number,
+        start_z: Number,
+        end_x: Number,
+        end_y: Number,
+        end_z: Number,
         /,
-        height: Number = 1.0,
-        steepness: Number = 1.0,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        image: Image = ...,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        height: Number = 1.0,
-        steepness: Number = 1.0,
+        radius: Number = 0.5,
     ) -> None: ...
 
-class CubicLattice(Shape):
-    """Struts along the edges of cubes, a node at the origin."""
+class ConeCheap(Shape):
+    """Upright cone by its side and its base alone; beyond tip and rim less than the distance."""
 
-    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.06) -> None: ...
-
-class BccLattice(Shape):
-    """Struts from the corners of cubes to their middles (body-centred cubic)."""
-
-    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
-
-class FccLattice(Shape):
-    """Struts from the corners of cubes to the middles of their faces (face-centred cubic)."""
-
-    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
-
-class OctetLattice(Shape):
-    """The octet truss: the edges of octahedra and tetrahedra that fill space."""
-
-    def __init__(self, cell_size: Number = 0.75, radius: Number = 0.05) -> None: ...
-
-class Metaballs(Shape):
-    """Balls that melt into each other; their order does not matter."""
-
-    def __init__(self, balls: Points = ..., softness: Number = 0.1) -> None: ...
-
-class OctahedronCheap(Shape):
-    """Octahedron by its faces alone; beyond edges less than the distance."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class Dodecahedron(Shape):
-    """Regular body of twelve pentagons; beyond edges less than the distance."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class Icosahedron(Shape):
-    """Regular body of twenty triangles; beyond edges less than the distance."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class TruncatedOctahedron(Shape):
-    """Body of eight hexagons and six squares with equal edges; it fills space."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class TruncatedIcosahedron(Shape):
-    """Football: twenty hexagons and twelve pentagons with equal edges."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class Octahedron(Shape):
-    """Regular octahedron."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class Tetrahedron(Shape):
-    """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class Pyramid(Shape):
-    """Upright pyramid over a square."""
-
-    def __init__(self, size: Number = 1.0, height: Number = 1.0) -> None: ...
+    def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class ConvexPolyhedron(Shape):
     """What planes leave of a box; beyond edges less than the distance."""
@@ -1694,361 +898,48 @@ class ConvexPolyhedron(Shape):
         z: Number = ...,
     ) -> None: ...
 
-class TriPrism(Shape):
-    """Upright prism over an equilateral triangle; one side looks along z."""
+class CoolS(Shape2D):
+    """The S of 14 straight lines."""
 
-    def __init__(self, apothem: Number = 0.4, height: Number = 1.0) -> None: ...
+    def __init__(self, height: Number = 1.0, thickness: Number = 0.03) -> None: ...
 
-class HexPrism(Shape):
-    """Upright prism over a regular hexagon; one side looks along z."""
+class Corner(Shape):
+    """The eighth of space where x, y and z are all negative."""
 
-    def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+    def __init__(self) -> None: ...
 
-class OctagonPrism(Shape):
-    """Upright prism over a regular octagon; sides look along x and z."""
+class Cross(Shape2D):
+    """Two equal bars across each other."""
 
-    def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+    def __init__(self, span: Number = 1.0, thickness: Number = 0.3) -> None: ...
 
-class Prism(Shape):
-    """Upright prism over a regular polygon; one side looks along z."""
-
-    def __init__(self, count: int = 5, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
-
-class Rhombus(Shape):
-    """Upright prism over a rhombus with rounded upright edges."""
-
-    @overload
-    def __init__(
-        self,
-        diagonals: Vector = ...,
-        height: Number = 1.0,
-        rounding: Number = 0.05,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        diagonals_x: Number,
-        diagonals_y: Number,
-        /,
-        height: Number = 1.0,
-        rounding: Number = 0.05,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        height: Number = 1.0,
-        rounding: Number = 0.05,
-    ) -> None: ...
-
-class CircleLine(Shape):
-    """A circle without thickness around the y axis."""
-
-    def __init__(self, radius: Number = 0.75) -> None: ...
-
-class Disc(Shape):
-    """A round plate without thickness around the y axis."""
-
-    def __init__(self, radius: Number = 0.75) -> None: ...
-
-class Torus(Shape):
-    """Ring around the y axis."""
-
-    def __init__(self, major: Number = 0.75, minor: Number = 0.25) -> None: ...
-
-class CappedTorus(Shape):
-    """Part of a ring around the y axis, with round ends, symmetric about the x axis."""
-
-    def __init__(self, angle: Number = 2.0, major: Number = 0.75, minor: Number = 0.25) -> None: ...
-
-class Link(Shape):
-    """Link of a chain, upright, seen as a ring along the z axis."""
-
-    def __init__(self, height: Number = 0.5, major: Number = 0.4, minor: Number = 0.15) -> None: ...
-
-class Sphere(Shape):
-    """Ball."""
-
-    def __init__(self, radius: Number = 1.0) -> None: ...
-
-class Ellipsoid(Shape):
-    """Ellipsoid; outside a lower bound, close to the distance near the surface."""
-
-    @overload
-    def __init__(self, radii: Vector | Number = ...) -> None: ...
-    @overload
-    def __init__(self, radii_x: Number, radii_y: Number, radii_z: Number, /) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ..., z: Number = ...) -> None: ...
-
-class Superellipsoid(Shape):
-    """Between a diamond, a ball and a box, by two exponents; a bound with slope 1."""
-
-    @overload
-    def __init__(
-        self,
-        radii: Vector | Number = ...,
-        across: Number = 4.0,
-        upward: Number = 4.0,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        radii_x: Number,
-        radii_y: Number,
-        radii_z: Number,
-        /,
-        across: Number = 4.0,
-        upward: Number = 4.0,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        z: Number = ...,
-        across: Number = 4.0,
-        upward: Number = 4.0,
-    ) -> None: ...
-
-class Blob(Shape):
-    """Ball with twelve round bumps, towards the vertices of an icosahedron."""
-
-    def __init__(self, radius: Number = 0.75, height: Number = 0.2) -> None: ...
-
-class SmoothOctahedron(Shape):
-    """Between a ball and an octahedron; a bound with slope 1."""
-
-    def __init__(self, radius: Number = 0.6, exponent: Number = 12.0) -> None: ...
-
-class SmoothDodecahedron(Shape):
-    """Between a ball and a dodecahedron; a bound with slope 1."""
-
-    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
-
-class SmoothIcosahedron(Shape):
-    """Between a ball and an icosahedron; a bound with slope 1."""
-
-    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
-
-class SmoothTruncatedOctahedron(Shape):
-    """Between a ball and a truncated octahedron; a bound with slope 1."""
-
-    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
-
-class SmoothTruncatedIcosahedron(Shape):
-    """Between a ball and a football; a bound with slope 1."""
-
-    def __init__(self, radius: Number = 0.9, exponent: Number = 48.0) -> None: ...
-
-class Plane(Shape):
-    """Ground: everything up to a height."""
-
-    def __init__(self, y: Number = 0.0) -> None: ...
-
-class HalfSpace(Shape):
-    """Everything behind a plane."""
-
-    @overload
-    def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
-    @overload
-    def __init__(
-        self,
-        normal_x: Number,
-        normal_y: Number,
-        normal_z: Number,
-        /,
-        offset: Number = 0.0,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        *,
-        x: Number = ...,
-        y: Number = ...,
-        z: Number = ...,
-        offset: Number = 0.0,
-    ) -> None: ...
-
-class Slab(Shape):
-    """Level slab without end, half of it above the origin."""
-
-    def __init__(self, thickness: Number = 0.5) -> None: ...
-
-class Wedge(Shape):
-    """What lies between two planes that meet in the z axis, around the way down; without end."""
-
-    def __init__(self, angle: Number = 1.0) -> None: ...
-
-class Triangle(Shape):
-    """Flat triangle without thickness."""
-
-    @overload
-    def __init__(self, a: Vector = ..., b: Vector = ..., c: Vector = ...) -> None: ...
-    @overload
-    def __init__(
-        self,
-        a_x: Number,
-        a_y: Number,
-        a_z: Number,
-        b_x: Number,
-        b_y: Number,
-        b_z: Number,
-        c_x: Number,
-        c_y: Number,
-        c_z: Number,
-        /,
-    ) -> None: ...
-
-class Quad(Shape):
-    """Face with four corners, without thickness: the triangles a, b, c and a, c, d."""
-
-    @overload
-    def __init__(
-        self,
-        a: Vector = ...,
-        b: Vector = ...,
-        c: Vector = ...,
-        d: Vector = ...,
-    ) -> None: ...
-    @overload
-    def __init__(
-        self,
-        a_x: Number,
-        a_y: Number,
-        a_z: Number,
-        b_x: Number,
-        b_y: Number,
-        b_z: Number,
-        c_x: Number,
-        c_y: Number,
-        c_z: Number,
-        d_x: Number,
-        d_y: Number,
-        d_z: Number,
-        /,
-    ) -> None: ...
-
-class Gyroid(Shape):
-    """Schoen's gyroid: no straight lines, no mirrors, two mazes that never meet."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class SchwarzP(Shape):
-    """Schwarz's primitive surface: tubes along the axes that meet in every cell's middle."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class Diamond(Shape):
-    """Schwarz's diamond surface: tubes along the bonds of a diamond's atoms."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class Neovius(Shape):
-    """Neovius' surface: as Schwarz's primitive one, with tubes along the edges too."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class Lidinoid(Shape):
-    """Lidin's surface, a twisted kin of the gyroid."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class SplitP(Shape):
-    """A surface between the gyroid and Schwarz's primitive one."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class IWP(Shape):
-    """Schoen's I-WP surface: tubes along the diagonals of a cube."""
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        offset: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
-class PolylineTube(Shape):
-    """A round tube through points, straight between them."""
-
-    def __init__(
-        self,
-        points: Points = ...,
-        radius: Number = 0.1,
-        closed: bool = False,
-    ) -> None: ...
-
-class TaperedPolylineTube(Shape):
-    """A round tube through points, with a radius for each: branches, tentacles."""
-
-    def __init__(self, points: Points = ...) -> None: ...
-
-class BezierTube(Shape):
-    """A round tube along a quadratic Bézier curve."""
+class CubicBezier(Shape2D):
+    """A line along a cubic Bézier curve, followed by pairs of parabolas."""
 
     @overload
     def __init__(
         self,
         start: Vector = ...,
-        control: Vector = ...,
+        leaving: Vector = ...,
+        arriving: Vector = ...,
         end: Vector = ...,
-        radius: Number = 0.1,
+        radius: Number = 0.05,
+        pieces: int = 4,
     ) -> None: ...
     @overload
     def __init__(
         self,
         start_x: Number,
         start_y: Number,
-        start_z: Number,
-        control_x: Number,
-        control_y: Number,
-        control_z: Number,
+        leaving_x: Number,
+        leaving_y: Number,
+        arriving_x: Number,
+        arriving_y: Number,
         end_x: Number,
         end_y: Number,
-        end_z: Number,
         /,
-        radius: Number = 0.1,
+        radius: Number = 0.05,
+        pieces: int = 4,
     ) -> None: ...
 
 class CubicBezierTube(Shape):
@@ -2086,6 +977,967 @@ class CubicBezierTube(Shape):
         pieces: int = 16,
     ) -> None: ...
 
+class CubicLattice(Shape):
+    """Struts along the edges of cubes, a node at the origin."""
+
+    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.06) -> None: ...
+
+class CutDisk(Shape2D):
+    """What a level line leaves of a disc, above it."""
+
+    def __init__(self, radius: Number = 1.0, height: Number = -0.3) -> None: ...
+
+class CutHollowSphere(Shape):
+    """Bowl: what lies below a level plane of a ball's wall, with a round rim."""
+
+    def __init__(
+        self,
+        radius: Number = 0.9,
+        height: Number = 0.25,
+        thickness: Number = 0.1,
+    ) -> None: ...
+
+class CutSphere(Shape):
+    """What a level plane leaves of a ball: the part above."""
+
+    def __init__(self, radius: Number = 1.0, height: Number = 0.25) -> None: ...
+
+class Cylinder(Shape):
+    """Upright cylinder."""
+
+    def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
+
+class CylinderBetween(Shape):
+    """Cylinder whose ends are centred at two points."""
+
+    @overload
+    def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.5) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        start_z: Number,
+        end_x: Number,
+        end_y: Number,
+        end_z: Number,
+        /,
+        radius: Number = 0.5,
+    ) -> None: ...
+
+class DeathStar(Shape):
+    """Ball with a hollow that another ball above it leaves."""
+
+    def __init__(
+        self,
+        radius: Number = 1.0,
+        cut_radius: Number = 0.75,
+        distance: Number = 1.25,
+    ) -> None: ...
+
+class Diamond(Shape):
+    """Schwarz's diamond surface: tubes along the bonds of a diamond's atoms."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Disc(Shape):
+    """A round plate without thickness around the y axis."""
+
+    def __init__(self, radius: Number = 0.75) -> None: ...
+
+class Dodecahedron(Shape):
+    """Regular body of twelve pentagons; beyond edges less than the distance."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class Egg(Shape2D):
+    """Two discs, one above the other, and bulging sides that go smoothly over into both."""
+
+    def __init__(
+        self,
+        bottom: Number = 0.4,
+        top: Number = 0.2,
+        height: Number = 0.4,
+        bulge: Number = 0.6,
+    ) -> None: ...
+
+class Ellipse(Shape2D):
+    """Ellipse with its axes along x and y."""
+
+    @overload
+    def __init__(self, radii: Vector | Number = ...) -> None: ...
+    @overload
+    def __init__(self, radii_x: Number, radii_y: Number, /) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
+
+class Ellipsoid(Shape):
+    """Ellipsoid; outside a lower bound, close to the distance near the surface."""
+
+    @overload
+    def __init__(self, radii: Vector | Number = ...) -> None: ...
+    @overload
+    def __init__(self, radii_x: Number, radii_y: Number, radii_z: Number, /) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ..., z: Number = ...) -> None: ...
+
+class EquilateralTriangle(Shape2D):
+    """Triangle with equal sides, a corner up, its middle at the origin."""
+
+    def __init__(self, size: Number = 1.0) -> None: ...
+
+class FbmSolid(Shape):
+    """Rugged lumps: noise at several scales."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        level: Number = 0.0,
+        octaves: int = 4,
+        lacunarity: Number = 2.0,
+        gain: Number = 0.5,
+        seed: int = 0,
+    ) -> None: ...
+
+class FccLattice(Shape):
+    """Struts from the corners of cubes to the middles of their faces (face-centred cubic)."""
+
+    def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
+
+class GearProfile(Shape2D):
+    """A gear with involute teeth, one of them up; gears of one tooth size mesh."""
+
+    def __init__(
+        self,
+        radius: Number = 0.5,
+        pressure_angle: Number = 0.3490658503988659,
+        count: int = 12,
+    ) -> None: ...
+
+class GradientNoiseSolid(Shape):
+    """Lumps of Perlin's noise."""
+
+    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+
+class Gyroid(Shape):
+    """Schoen's gyroid: no straight lines, no mirrors, two mazes that never meet."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class HalfPlane(Shape2D):
+    """All that lies behind a straight line."""
+
+    @overload
+    def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
+    @overload
+    def __init__(self, normal_x: Number, normal_y: Number, /, offset: Number = 0.0) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ..., offset: Number = 0.0) -> None: ...
+
+class HalfSpace(Shape):
+    """Everything behind a plane."""
+
+    @overload
+    def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
+    @overload
+    def __init__(
+        self,
+        normal_x: Number,
+        normal_y: Number,
+        normal_z: Number,
+        /,
+        offset: Number = 0.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        z: Number = ...,
+        offset: Number = 0.0,
+    ) -> None: ...
+
+class Heart(Shape2D):
+    """A square on its corner with half a disc on each upper side."""
+
+    def __init__(self, height: Number = 1.0) -> None: ...
+
+class Heightfield(Shape):
+    """Terrain from an image of heights, in its first channel; its edges go on without end."""
+
+    @overload
+    def __init__(
+        self,
+        image: Image = ...,
+        size: Vector | Number = ...,
+        height: Number = 1.0,
+        steepness: Number = 1.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        image: Image,
+        size_x: Number,
+        size_y: Number,
+        /,
+        height: Number = 1.0,
+        steepness: Number = 1.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        image: Image = ...,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        height: Number = 1.0,
+        steepness: Number = 1.0,
+    ) -> None: ...
+
+class Helix(Shape):
+    """A tube that winds around the y axis without end, through the x axis, rising toward z."""
+
+    def __init__(self, major: Number = 0.5, minor: Number = 0.1, pitch: Number = 0.4) -> None: ...
+
+class HexPrism(Shape):
+    """Upright prism over a regular hexagon; one side looks along z."""
+
+    def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+
+class Hexagon(Shape2D):
+    """Regular polygon with six corners, one of them up."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class Hexagram(Shape2D):
+    """Star of two triangles, six points, one of them up."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class Horseshoe(Shape2D):
+    """Part of a ring around the y axis, prolonged straight at both ends."""
+
+    def __init__(
+        self,
+        radius: Number = 0.5,
+        angle: Number = 1.9,
+        legs: Number = 0.4,
+        thickness: Number = 0.25,
+    ) -> None: ...
+
+class Hyperbola(Shape2D):
+    """All that lies beyond the two branches of a hyperbola, to the left and to the right."""
+
+    def __init__(self, radius: Number = 0.4, steepness: Number = 1.0) -> None: ...
+
+class IWP(Shape):
+    """Schoen's I-WP surface: tubes along the diagonals of a cube."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Icosahedron(Shape):
+    """Regular body of twenty triangles; beyond edges less than the distance."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class ImageField(Shape2D):
+    """A shape whose distances are the texels of an image, in their first channel."""
+
+    @overload
+    def __init__(
+        self,
+        image: Image = ...,
+        size: Vector | Number = ...,
+        scale: Number = 1.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        image: Image,
+        size_x: Number,
+        size_y: Number,
+        /,
+        scale: Number = 1.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        image: Image = ...,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        scale: Number = 1.0,
+    ) -> None: ...
+
+class InfiniteCone(Shape):
+    """Cone without end, downward from its tip at the origin."""
+
+    def __init__(self, angle: Number = 0.5) -> None: ...
+
+class InfiniteCylinder(Shape):
+    """Round bar along the y axis, without end."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class IsoscelesTrapezoid(Shape2D):
+    """Trapezoid whose slanted sides mirror each other; halfway up at y = 0."""
+
+    def __init__(self, bottom: Number = 1.0, top: Number = 0.6, height: Number = 0.7) -> None: ...
+
+class IsoscelesTriangle(Shape2D):
+    """Triangle with its tip up, halfway up at y = 0."""
+
+    def __init__(self, width: Number = 0.8, height: Number = 1.0) -> None: ...
+
+class Lidinoid(Shape):
+    """Lidin's surface, a twisted kin of the gyroid."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Link(Shape):
+    """Link of a chain, upright, seen as a ring along the z axis."""
+
+    def __init__(self, height: Number = 0.5, major: Number = 0.4, minor: Number = 0.15) -> None: ...
+
+class LogarithmicSpiral(Shape2D):
+    """A line that winds outwards by the same factor each turn, counterclockwise from the x axis."""
+
+    def __init__(
+        self,
+        inner: Number = 0.05,
+        outer: Number = 1.0,
+        turns: int = 3,
+        radius: Number = 0.02,
+    ) -> None: ...
+
+class Mandelbox(Shape):
+    """The Mandelbox: points whose foldings at a cube and a ball stay."""
+
+    def __init__(self, size: Number = 1.5, scale: Number = 2.0, iterations: int = 8) -> None: ...
+
+class Mandelbulb(Shape):
+    """The Mandelbulb, around the y axis: points whose powers stay, in polar coordinates."""
+
+    def __init__(self, power: int = 8, iterations: int = 8) -> None: ...
+
+class MengerSponge(Shape):
+    """Menger's sponge: a cube without its middle cross, and so on for the 20 cubes that are left."""
+
+    def __init__(self, size: Number = 1.0, iterations: int = 4) -> None: ...
+
+class Metaballs(Shape):
+    """Balls that melt into each other; their order does not matter."""
+
+    def __init__(self, balls: Points = ..., softness: Number = 0.1) -> None: ...
+
+class Moon(Shape2D):
+    """A disc around the origin less a second disc to its right."""
+
+    def __init__(
+        self,
+        radius: Number = 0.7,
+        cut_radius: Number = 0.6,
+        offset: Number = 0.4,
+    ) -> None: ...
+
+class Neovius(Shape):
+    """Neovius' surface: as Schwarz's primitive one, with tubes along the edges too."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Octagon(Shape2D):
+    """Regular polygon with eight corners, one of them up."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class OctagonPrism(Shape):
+    """Upright prism over a regular octagon; sides look along x and z."""
+
+    def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+
+class Octahedron(Shape):
+    """Regular octahedron."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class OctahedronCheap(Shape):
+    """Octahedron by its faces alone; beyond edges less than the distance."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class OctetLattice(Shape):
+    """The octet truss: the edges of octahedra and tetrahedra that fill space."""
+
+    def __init__(self, cell_size: Number = 0.75, radius: Number = 0.05) -> None: ...
+
+class OrientedRectangle(Shape2D):
+    """A bar with square ends between two points."""
+
+    @overload
+    def __init__(
+        self,
+        start: Vector = ...,
+        end: Vector = ...,
+        thickness: Number = 0.25,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        end_x: Number,
+        end_y: Number,
+        /,
+        thickness: Number = 0.25,
+    ) -> None: ...
+
+class OrientedVesica(Shape2D):
+    """A lens between two points."""
+
+    @overload
+    def __init__(self, start: Vector = ..., end: Vector = ..., width: Number = 0.5) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        end_x: Number,
+        end_y: Number,
+        /,
+        width: Number = 0.5,
+    ) -> None: ...
+
+class Parabola(Shape2D):
+    """All that lies above the parabola y = curvature x^2."""
+
+    def __init__(self, curvature: Number = 1.0) -> None: ...
+
+class ParabolaSegment(Shape2D):
+    """What a parabola cuts off above the x axis."""
+
+    def __init__(self, width: Number = 1.0, height: Number = 0.8) -> None: ...
+
+class Parallelogram(Shape2D):
+    """Parallelogram with two sides along x."""
+
+    def __init__(self, width: Number = 0.8, height: Number = 0.6, skew: Number = 0.3) -> None: ...
+
+class Pentagon(Shape2D):
+    """Regular polygon with five corners, one of them up."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class Pentagram(Shape2D):
+    """Star drawn by the diagonals of a pentagon, five points, one of them up."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class Pie(Shape2D):
+    """Sector of a disc around the y axis."""
+
+    def __init__(self, radius: Number = 1.0, angle: Number = 0.7) -> None: ...
+
+class Plane(Shape):
+    """Ground: everything up to a height."""
+
+    def __init__(self, y: Number = 0.0) -> None: ...
+
+class Polygon(Shape2D):
+    """Any polygon; where it crosses itself, inside is what it goes around an odd number of times."""
+
+    def __init__(self, points: Points = ...) -> None: ...
+
+class Polyline(Shape2D):
+    """A line through points, as wide as a disc drawn along it."""
+
+    def __init__(
+        self,
+        points: Points = ...,
+        radius: Number = 0.05,
+        closed: bool = False,
+    ) -> None: ...
+
+class PolylineTube(Shape):
+    """A round tube through points, straight between them."""
+
+    def __init__(
+        self,
+        points: Points = ...,
+        radius: Number = 0.1,
+        closed: bool = False,
+    ) -> None: ...
+
+class Prism(Shape):
+    """Upright prism over a regular polygon; one side looks along z."""
+
+    def __init__(self, count: int = 5, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+
+class Pyramid(Shape):
+    """Upright pyramid over a square."""
+
+    def __init__(self, size: Number = 1.0, height: Number = 1.0) -> None: ...
+
+class Quad(Shape):
+    """Face with four corners, without thickness: the triangles a, b, c and a, c, d."""
+
+    @overload
+    def __init__(
+        self,
+        a: Vector = ...,
+        b: Vector = ...,
+        c: Vector = ...,
+        d: Vector = ...,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        a_x: Number,
+        a_y: Number,
+        a_z: Number,
+        b_x: Number,
+        b_y: Number,
+        b_z: Number,
+        c_x: Number,
+        c_y: Number,
+        c_z: Number,
+        d_x: Number,
+        d_y: Number,
+        d_z: Number,
+        /,
+    ) -> None: ...
+
+class QuadraticBezier(Shape2D):
+    """A line along a quadratic Bézier curve."""
+
+    @overload
+    def __init__(
+        self,
+        start: Vector = ...,
+        control: Vector = ...,
+        end: Vector = ...,
+        radius: Number = 0.05,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        control_x: Number,
+        control_y: Number,
+        end_x: Number,
+        end_y: Number,
+        /,
+        radius: Number = 0.05,
+    ) -> None: ...
+
+class QuadraticCircle(Shape2D):
+    """Nearly a circle, of four parabolas: each joins two axes and leaves them at right angles."""
+
+    def __init__(self, radius: Number = 0.5) -> None: ...
+
+class QuaternionJulia(Shape):
+    """A Julia set of quaternions, where their last part is 0."""
+
+    @overload
+    def __init__(self, c: Vector = ..., iterations: int = 10) -> None: ...
+    @overload
+    def __init__(
+        self,
+        c_x: Number,
+        c_y: Number,
+        c_z: Number,
+        c_w: Number,
+        /,
+        iterations: int = 10,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        z: Number = ...,
+        w: Number = ...,
+        iterations: int = 10,
+    ) -> None: ...
+
+class Rectangle(Shape2D):
+    """Rectangle with sides along the axes."""
+
+    @overload
+    def __init__(self, size: Vector | Number = ...) -> None: ...
+    @overload
+    def __init__(self, size_x: Number, size_y: Number, /) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
+
+class RegularPolygon(Shape2D):
+    """Polygon with equal sides and angles, a corner up."""
+
+    def __init__(self, radius: Number = 0.5, count: int = 7) -> None: ...
+
+class RegularStar(Shape2D):
+    """Star with equal points, one of them up."""
+
+    def __init__(self, radius: Number = 0.5, inner: Number = 0.25, count: int = 7) -> None: ...
+
+class Rhombus(Shape):
+    """Upright prism over a rhombus with rounded upright edges."""
+
+    @overload
+    def __init__(
+        self,
+        diagonals: Vector = ...,
+        height: Number = 1.0,
+        rounding: Number = 0.05,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        diagonals_x: Number,
+        diagonals_y: Number,
+        /,
+        height: Number = 1.0,
+        rounding: Number = 0.05,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        height: Number = 1.0,
+        rounding: Number = 0.05,
+    ) -> None: ...
+
+class Rhombus2(Shape2D):
+    """Rhombus with its diagonals along the axes."""
+
+    @overload
+    def __init__(self, size: Vector | Number = ...) -> None: ...
+    @overload
+    def __init__(self, size_x: Number, size_y: Number, /) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
+
+class Ring(Shape2D):
+    """Part of a ring with straight ends, around the y axis."""
+
+    def __init__(
+        self,
+        radius: Number = 0.75,
+        angle: Number = 1.6,
+        thickness: Number = 0.25,
+    ) -> None: ...
+
+class RoundBox(Shape):
+    """Box whose edges are rounded inward: the full size stays."""
+
+    @overload
+    def __init__(self, size: Vector | Number = ..., rounding: Number = 0.1) -> None: ...
+    @overload
+    def __init__(
+        self,
+        size_x: Number,
+        size_y: Number,
+        size_z: Number,
+        /,
+        rounding: Number = 0.1,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        z: Number = ...,
+        rounding: Number = 0.1,
+    ) -> None: ...
+
+class RoundCone(Shape):
+    """Two balls, one above the other, and the cone that touches both."""
+
+    def __init__(self, bottom: Number = 0.5, top: Number = 0.25, height: Number = 1.0) -> None: ...
+
+class RoundConeBetween(Shape):
+    """Two balls around two points, and the cone that touches both."""
+
+    @overload
+    def __init__(
+        self,
+        start: Vector = ...,
+        end: Vector = ...,
+        start_radius: Number = 0.5,
+        end_radius: Number = 0.25,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        start_z: Number,
+        end_x: Number,
+        end_y: Number,
+        end_z: Number,
+        /,
+        start_radius: Number = 0.5,
+        end_radius: Number = 0.25,
+    ) -> None: ...
+
+class RoundFrame(Shape):
+    """The twelve edges of a box as round bars with balls at the corners."""
+
+    @overload
+    def __init__(self, size: Vector | Number = ..., thickness: Number = 0.1) -> None: ...
+    @overload
+    def __init__(
+        self,
+        size_x: Number,
+        size_y: Number,
+        size_z: Number,
+        /,
+        thickness: Number = 0.1,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        z: Number = ...,
+        thickness: Number = 0.1,
+    ) -> None: ...
+
+class RoundedCylinder(Shape):
+    """Upright cylinder whose edges are rounded inward: the full size stays."""
+
+    def __init__(
+        self,
+        radius: Number = 0.5,
+        height: Number = 1.0,
+        rounding: Number = 0.1,
+    ) -> None: ...
+
+class RoundedPolygon(Shape2D):
+    """A polygon grown by a radius, so that its outer corners are round."""
+
+    def __init__(self, points: Points = ..., radius: Number = 0.1) -> None: ...
+
+class RoundedRectangle(Shape2D):
+    """Rectangle whose corners are rounded, each by its own radius."""
+
+    @overload
+    def __init__(self, size: Vector | Number = ..., radii: Vector | Number = ...) -> None: ...
+    @overload
+    def __init__(
+        self,
+        size_x: Number,
+        size_y: Number,
+        radii_x: Number,
+        radii_y: Number,
+        radii_z: Number,
+        radii_w: Number,
+        /,
+    ) -> None: ...
+
+class RoundedX(Shape2D):
+    """Two bars with round ends along the diagonals."""
+
+    def __init__(self, span: Number = 1.2, thickness: Number = 0.25) -> None: ...
+
+class ScatteredBalls(Shape):
+    """Balls around scattered points, or all that is not in them: gravel, a sponge, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        radius: Number = 0.2,
+        jitter: Number = 0.8,
+        seed: int = 0,
+        holes: bool = False,
+    ) -> None: ...
+
+class SchwarzP(Shape):
+    """Schwarz's primitive surface: tubes along the axes that meet in every cell's middle."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Segment(Shape2D):
+    """A straight line with round ends."""
+
+    @overload
+    def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.05) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        end_x: Number,
+        end_y: Number,
+        /,
+        radius: Number = 0.05,
+    ) -> None: ...
+
+class SimplexNoiseSolid(Shape):
+    """Lumps of simplex noise, rounder and smaller than those of Perlin's."""
+
+    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+
+class Slab(Shape):
+    """Level slab without end, half of it above the origin."""
+
+    def __init__(self, thickness: Number = 0.5) -> None: ...
+
+class SmoothDodecahedron(Shape):
+    """Between a ball and a dodecahedron; a bound with slope 1."""
+
+    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
+
+class SmoothIcosahedron(Shape):
+    """Between a ball and an icosahedron; a bound with slope 1."""
+
+    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
+
+class SmoothOctahedron(Shape):
+    """Between a ball and an octahedron; a bound with slope 1."""
+
+    def __init__(self, radius: Number = 0.6, exponent: Number = 12.0) -> None: ...
+
+class SmoothTruncatedIcosahedron(Shape):
+    """Between a ball and a football; a bound with slope 1."""
+
+    def __init__(self, radius: Number = 0.9, exponent: Number = 48.0) -> None: ...
+
+class SmoothTruncatedOctahedron(Shape):
+    """Between a ball and a truncated octahedron; a bound with slope 1."""
+
+    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
+
+class SolidAngle(Shape):
+    """The part of a ball that lies within an angle of the y axis, its tip at the origin."""
+
+    def __init__(self, angle: Number = 0.6, radius: Number = 1.0) -> None: ...
+
+class Sphere(Shape):
+    """Ball."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class SplinePath(Shape2D):
+    """A smooth line through points, made of two parabolas between each two."""
+
+    def __init__(
+        self,
+        points: Points = ...,
+        radius: Number = 0.05,
+        closed: bool = False,
+    ) -> None: ...
+
+class SplitP(Shape):
+    """A surface between the gyroid and Schwarz's primitive one."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
+class Spring(Shape):
+    """A coil spring around the y axis, its ends ground flat."""
+
+    def __init__(
+        self,
+        major: Number = 0.4,
+        minor: Number = 0.07,
+        pitch: Number = 0.25,
+        height: Number = 1.0,
+    ) -> None: ...
+
+class Stairs(Shape2D):
+    """A flight of stairs that climbs to the right, with what is below it; starts at the origin."""
+
+    @overload
+    def __init__(self, step: Vector = ..., count: int = 4) -> None: ...
+    @overload
+    def __init__(self, step_x: Number, step_y: Number, /, count: int = 4) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ..., count: int = 4) -> None: ...
+
+class Superellipsoid(Shape):
+    """Between a diamond, a ball and a box, by two exponents; a bound with slope 1."""
+
+    @overload
+    def __init__(
+        self,
+        radii: Vector | Number = ...,
+        across: Number = 4.0,
+        upward: Number = 4.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        radii_x: Number,
+        radii_y: Number,
+        radii_z: Number,
+        /,
+        across: Number = 4.0,
+        upward: Number = 4.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        x: Number = ...,
+        y: Number = ...,
+        z: Number = ...,
+        across: Number = 4.0,
+        upward: Number = 4.0,
+    ) -> None: ...
+
+class TangentCam(Shape2D):
+    """A cam with straight flanks that turns about the origin, its nose up."""
+
+    def __init__(self, base: Number = 0.4, nose: Number = 0.15, lift: Number = 0.3) -> None: ...
+
 class TaperedBezierTube(Shape):
     """A round tube along a quadratic Bézier curve, its radius changing evenly; straight pieces."""
 
@@ -2117,6 +1969,116 @@ class TaperedBezierTube(Shape):
         pieces: int = 16,
     ) -> None: ...
 
+class TaperedPolylineTube(Shape):
+    """A round tube through points, with a radius for each: branches, tentacles."""
+
+    def __init__(self, points: Points = ...) -> None: ...
+
+class Tetrahedron(Shape):
+    """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class Torus(Shape):
+    """Ring around the y axis."""
+
+    def __init__(self, major: Number = 0.75, minor: Number = 0.25) -> None: ...
+
+class TriPrism(Shape):
+    """Upright prism over an equilateral triangle; one side looks along z."""
+
+    def __init__(self, apothem: Number = 0.4, height: Number = 1.0) -> None: ...
+
+class Triangle(Shape):
+    """Flat triangle without thickness."""
+
+    @overload
+    def __init__(self, a: Vector = ..., b: Vector = ..., c: Vector = ...) -> None: ...
+    @overload
+    def __init__(
+        self,
+        a_x: Number,
+        a_y: Number,
+        a_z: Number,
+        b_x: Number,
+        b_y: Number,
+        b_z: Number,
+        c_x: Number,
+        c_y: Number,
+        c_z: Number,
+        /,
+    ) -> None: ...
+
+class Triangle2(Shape2D):
+    """Triangle between three points of the plane."""
+
+    @overload
+    def __init__(self, first: Vector = ..., second: Vector = ..., third: Vector = ...) -> None: ...
+    @overload
+    def __init__(
+        self,
+        first_x: Number,
+        first_y: Number,
+        second_x: Number,
+        second_y: Number,
+        third_x: Number,
+        third_y: Number,
+        /,
+    ) -> None: ...
+
+class TruncatedIcosahedron(Shape):
+    """Football: twenty hexagons and twelve pentagons with equal edges."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class TruncatedOctahedron(Shape):
+    """Body of eight hexagons and six squares with equal edges; it fills space."""
+
+    def __init__(self, radius: Number = 1.0) -> None: ...
+
+class Tunnel(Shape2D):
+    """Half a disc on top of two walls; the disc's centre is the origin."""
+
+    def __init__(self, width: Number = 1.0, height: Number = 0.5) -> None: ...
+
+class UnevenCapsule(Shape2D):
+    """Two discs, one above the other, and all between their common tangents."""
+
+    def __init__(self, bottom: Number = 0.4, top: Number = 0.2, height: Number = 0.6) -> None: ...
+
+class ValueNoiseSolid(Shape):
+    """Lumps of value noise, in line with the axes."""
+
+    def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
+
+class Vesica(Shape2D):
+    """What two equal discs have in common: a lens with its tips on the y axis."""
+
+    def __init__(self, width: Number = 0.6, height: Number = 1.0) -> None: ...
+
+class VesicaBetween(Shape):
+    """Body between two arcs that meet in two given points."""
+
+    @overload
+    def __init__(self, start: Vector = ..., end: Vector = ..., width: Number = 0.5) -> None: ...
+    @overload
+    def __init__(
+        self,
+        start_x: Number,
+        start_y: Number,
+        start_z: Number,
+        end_x: Number,
+        end_y: Number,
+        end_z: Number,
+        /,
+        width: Number = 0.5,
+    ) -> None: ...
+
+class VesicaSolid(Shape):
+    """Upright body between two arcs, with a tip at either end, like a grain of rice."""
+
+    def __init__(self, height: Number = 1.5, width: Number = 0.75) -> None: ...
+
 class VolumeField(Shape):
     """A shape whose distances are the samples of a grid, in their first channel."""
 
@@ -2147,6 +2109,44 @@ class VolumeField(Shape):
         z: Number = ...,
         scale: Number = 1.0,
     ) -> None: ...
+
+class VoronoiCells(Shape):
+    """The cells of scattered points, a gap between them: rubble, packed grains, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        gap: Number = 0.08,
+        jitter: Number = 0.8,
+        seed: int = 0,
+    ) -> None: ...
+
+class VoronoiLines(Shape2D):
+    """The borders between the cells of points scattered in the plane, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        thickness: Number = 0.08,
+        jitter: Number = 0.8,
+        seed: int = 0,
+    ) -> None: ...
+
+class VoronoiWalls(Shape):
+    """The walls between the cells of scattered points: a closed foam, without end."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        thickness: Number = 0.08,
+        jitter: Number = 0.8,
+        seed: int = 0,
+    ) -> None: ...
+
+class Wedge(Shape):
+    """What lies between two planes that meet in the z axis, around the way down; without end."""
+
+    def __init__(self, angle: Number = 1.0) -> None: ...
 
 __all__ = [
     "IWP",

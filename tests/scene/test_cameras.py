@@ -150,7 +150,7 @@ def test_a_panorama_goes_around():
             lambda: TurnedCamera(screen_distance=1, fov=1),
             SceneTypeError,
             "TurnedCamera takes screen_distance or an angle, not both",
-            "each tells the other",
+            "each follows from the other",
         ),
         (
             lambda: OrbitCamera(0),

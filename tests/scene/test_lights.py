@@ -99,6 +99,21 @@ def test_light_from_everywhere():
             "'position of PointLight' takes three numbers, not int 3",
         ),
         (
+            lambda: PointLight(intensity=2.0),
+            SceneTypeError,
+            "PointLight needs 'position'",
+        ),
+        (
+            lambda: PointLight((0, 1, 0), intensty=2.0),
+            SceneTypeError,
+            "PointLight has no 'intensty'",
+        ),
+        (
+            lambda: AmbientLight(0.1, "#fff", 2.0),
+            SceneTypeError,
+            "AmbientLight: too many positional arguments",
+        ),
+        (
             lambda: as_light(PointLight),
             SceneTypeError,
             "a light is wanted, not the class PointLight",

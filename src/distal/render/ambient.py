@@ -1,7 +1,7 @@
 """Light from all around, as surfaces see it.
 
 Input: a unit normal and the numbers of the surroundings. Output: what a white
-diffuse surface shows, unoccluded. Point lights and the like are in ``lights``.
+diffuse surface shows, unoccluded. Lights with a position or direction are in ``lights``.
 """
 
 from __future__ import annotations

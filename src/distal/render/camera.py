@@ -63,7 +63,7 @@ class Basis:
 
 @func
 def mirrored(uv: vec2, mirror: bool) -> vec2:
-    """The place in the picture, left and right swapped where asked."""
+    """The place in the picture, left and right swapped if ``mirror`` is true."""
     return select(mirror, vec2(-uv.x, uv.y), uv)
 
 
@@ -87,7 +87,7 @@ def basis_turned(yaw: float, pitch: float, roll: float) -> Basis:
 
 @func
 def through_screen(uv: vec2, position: vec3, basis: Basis, focal: float) -> Ray:
-    """Perspective: through a screen of half height 1 that stands ``focal`` ahead."""
+    """Perspective: through a screen of half height 1 at distance ``focal``."""
     direction = basis.right * uv.x + basis.up * uv.y + basis.ahead * focal
     return Ray(position, normalize(direction))
 

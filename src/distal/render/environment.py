@@ -1,7 +1,7 @@
 """A picture of the surroundings: as background, and as diffuse light.
 
-Input: an equirectangular picture (-z in its middle, up at its top) in linear light. What
-flows out: the light from a direction; and nine spherical harmonics of it, which
+Input: an equirectangular picture (-z in its middle, up at its top) in linear light.
+Output: the light from a direction; and nine spherical harmonics of it, which
 ``ambient.environment_ambient`` reads. The harmonics are computed once, in Python.
 """
 

@@ -12,7 +12,7 @@ import math
 from distal.lang import clamp, cos, dot, func, inversesqrt, max, normalize, struct, tan, vec3
 from distal.render.declarations import light
 
-FAR_AWAY = 1e9  # how far light from everywhere the same is taken to come
+FAR_AWAY = 1e9  # the distance of a light that is the same everywhere
 WHITE = vec3(1.0)
 ORIGIN = vec3(0.0)
 FROM_ABOVE = vec3(1.0, 2.0, 1.0)

@@ -30,8 +30,8 @@ class Surface:
         metal: 1 for metals, whose mirrored light is tinted by ``color``.
         emission: Light that the surface gives by itself.
         absorption: How much light the inside takes for each unit of way (Beer and Lambert).
-        fresnel: 0, the weights hold as they stand. 1, the mirrored share follows Fresnel's
-            formulas, and the weights share out what is left.
+        fresnel: 0, the weights hold. 1, the mirrored share follows Fresnel's formulas, and the
+            weights share out the rest.
     """
 
     color: vec3 = WHITE

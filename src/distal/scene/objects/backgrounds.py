@@ -129,7 +129,7 @@ class Environment(Surroundings):
             (height, width, 3 or 4) of linear light; a ``Picture``; a ``Texture2D``.
         intensity: A factor on its light.
         turn: The surroundings turned to the left about the upright axis, in radians.
-        light: Whether it lights the scene where it is its background. Among a scene's lights it
+        light: Whether it lights the scene whose background it is. Among a scene's lights it
             always does.
 
     Raises:
@@ -155,7 +155,7 @@ class Environment(Surroundings):
         )
 
     @property
-    def ambient(self) -> FunctionCall:  # type: ignore[override]  # computed when it is first asked
+    def ambient(self) -> FunctionCall:  # type: ignore[override]  # computed when it is first read
         """``(n) -> vec3``, what a surface facing n gets of its light."""
         if self._ambient is None:
             whole = self.background
@@ -187,7 +187,7 @@ def environment_light(
 def as_background(
     value: Any, lights: Iterable[Light] = (), place: Span | None = None
 ) -> Background:
-    """A background, or what stands for one: a colour, a sky, a ``@func`` of a direction.
+    """A background of what an author may give for one: a colour, a sky, a ``@func`` of a direction.
 
     Args:
         value: What the author gave; None for the sky among the lights, else a plain gradient.

@@ -2,7 +2,7 @@
 
 Input: places, angles, all of which may be parameters or move with time. Output: the
 call of a camera function of ``render`` that gives each point of the picture its ray. Space is
-right-handed with y up; a camera looks along -z unless told otherwise.
+right-handed with y up; by default a camera looks along -z.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class TurnedCamera(BaseCamera):
         elif fov is not None or fov_deg is not None:
             refuse_kind(
                 "TurnedCamera takes screen_distance or an angle, not both",
-                "each tells the other",
+                "each follows from the other",
                 place,
             )
         given = {

@@ -136,10 +136,13 @@ def given_arguments(
         hint = did_you_mean(unknown, signature.parameters) or takes
         refuse_kind(f"{what} has no '{unknown}'", hint, place)
     try:
-        bound = signature.bind(*args, **kwargs).arguments
+        bound = signature.bind_partial(*args, **kwargs).arguments
     except TypeError as error:
         message = f"{what}: {error}"
         refuse_kind(message, takes, place)
+    for name, parameter in signature.parameters.items():
+        if name not in bound and parameter.default is parameter.empty:
+            refuse_kind(f"{what} needs '{name}'", takes, place)
     optional = declaration.family.optional
     return {n: v for n, v in bound.items() if not (v is None and n in optional)}
 

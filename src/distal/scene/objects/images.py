@@ -1,8 +1,8 @@
 """Pictures as light: what patterns and surroundings read.
 
 Input: a picture's file, an array, a ``Picture``, a texture. Output: a texture of
-linear light: files and bytes are encoded for display (sRGB) and are decoded here, floats are taken
-as light already. A file that cannot be read is told at the author's line.
+linear light: files and bytes are encoded for display (sRGB) and are decoded here, floats are linear
+light already. A file that cannot be read is an error at the author's line.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Text as outlines: which font, which glyphs, where each stands.
+"""Text as outlines: which font, which glyphs, and where each of them is.
 
-Input: a text, a font's name or file. Output: an ``Outline``. Glyphs stand side by
-side as the font's widths and its kerning say; there are no ligatures, and all runs from left to
-right. Without a font Pillow's own is taken, the same everywhere; where that lacks a letter, the
-first known font of the machine that has all.
+Input: a text, a font's name or file. Output: an ``Outline``. The distances of glyphs
+are the font's widths and its kerning; there are no ligatures, and all text runs from left to right.
+Without a font it is Pillow's own, the same everywhere; if that lacks a letter, the first known font
+of the machine that has all.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
 SUFFIXES: Final = (".ttf", ".otf", ".ttc", ".otc")
 # Fonts with many letters, as they are called where they are common.
 KNOWN: Final = ("dejavusans", "notosansregular", "arialunicode", "arial", "segoeui", "helvetica")
-# Of the em square, where a font does not tell the height of its capital letters.
+# Of the em square, if a font does not give the height of its capital letters.
 CAPITALS: Final = 0.7
 
 
@@ -64,15 +64,15 @@ def text_outline(
     for name, value in (("size", size), ("line_spacing", line_spacing)):
         if not 0.0 < value < math.inf:
             refuse(f"{name} must be above 0, not {value}", None, place)
-    rows = text.split("\n")
+    lines = text.split("\n")
     if not text.strip():
         refuse("a text needs a letter", None, place)
-    face = _face(font, set("".join(rows)), place)
+    face = _face(font, set("".join(lines)), place)
     scale = size / face.units
-    middle = 0.5 * (face.capitals * scale - (len(rows) - 1) * line_spacing * size)
+    middle = 0.5 * (face.capitals * scale - (len(lines) - 1) * line_spacing * size)
     edges: list[Edge] = []
-    for i, row in enumerate(rows):
-        glyphs, width = face.laid_out(row, place)
+    for i, line in enumerate(lines):
+        glyphs, width = face.laid_out(line, place)
         origin = complex(-ALIGNMENTS[align] * width * scale, -i * line_spacing * size - middle)
         edges += [tuple(origin + scale * p for p in edge) for edge in glyphs]
     if not edges:
@@ -100,12 +100,12 @@ class Face:
         """The letters that it has no glyph for."""
         return sorted(c for c in letters if ord(c) not in self._names)
 
-    def laid_out(self, row: str, place: Span | None) -> tuple[list[Edge], float]:
+    def laid_out(self, line: str, place: Span | None) -> tuple[list[Edge], float]:
         """The edges of a line from x = 0 on its base line, and its width."""
         at = 0.0
         edges: list[Edge] = []
         before = None
-        for letter in row:
+        for letter in line:
             name = self._names[ord(letter)]
             at += self._kerning.between(before, name) if before else 0.0
             pen = outline_pen(self._glyphs, place)
@@ -117,14 +117,14 @@ class Face:
 
 
 class _Kerning:
-    """How much nearer or farther two glyphs stand: by the new table's pairs, else the old one's."""
+    """How much nearer or farther two glyphs are: by the new table's pairs, else the old one's."""
 
     def __init__(self, font: Any) -> None:
         self._new = list(_pair_tables(font["GPOS"].table)) if "GPOS" in font else []
         self._old = font["kern"].kernTables if "kern" in font and not self._new else []
 
     def between(self, first: str, second: str) -> float:
-        """In the font's units; the first table that knows the pair tells."""
+        """In the font's units; from the first table that knows the pair."""
         for table in self._new:
             if first in table.Coverage.glyphs:
                 value = _pair_value(table, first, second)
@@ -149,7 +149,7 @@ def _pair_tables(table: Any) -> Iterator[Any]:
 
 
 def _pair_value(table: Any, first: str, second: str) -> Any:
-    """What a table says of a pair whose first glyph it covers; None if nothing."""
+    """A table's value for a pair whose first glyph it covers, or None."""
     if table.Format == 1:
         pairs = table.PairSet[table.Coverage.glyphs.index(first)].PairValueRecord
         return next((pair.Value1 for pair in pairs if pair.SecondGlyph == second), None)
@@ -163,7 +163,7 @@ def _pair_value(table: Any, first: str, second: str) -> Any:
 
 
 def _face(font: str | os.PathLike[str] | None, letters: set[str], place: Span | None) -> Face:
-    """The font asked for, or one that has all the letters."""
+    """The requested font, or one that has all the letters."""
     face = _pillows_face() if font is None else _opened(_file_of(font, place), place)
     missing = face.lacks(letters) if face else sorted(letters)
     if face is not None and not missing:

@@ -1,7 +1,7 @@
 """Letters and drawings as flat shapes: ``Text`` and ``SvgPath``.
 
 Input: a text, or the text of an SVG path. Output: flat shapes, exact outside, to be
-extruded, engraved and combined like any other. Reading fonts and paths stands in ``lettering`` and
+extruded, engraved and combined like any other. Fonts and paths are read by ``lettering`` and
 ``outlines``, loaded only when one is made.
 """
 
@@ -43,8 +43,8 @@ class Text(Shape2D):
         line_spacing: float = 1.2,
     ) -> None:
         place = author_place()
-        room = importlib.import_module("distal.scene.objects.lettering")
-        outline = room.text_outline(
+        module = importlib.import_module("distal.scene.objects.lettering")
+        outline = module.text_outline(
             text, font=font, size=size, align=align, line_spacing=line_spacing, place=place
         )
         Field.__init__(self, _node(outline, place, even_odd=False))
@@ -54,7 +54,7 @@ class SvgPath(Shape2D):
     """The area that an SVG path encloses, upright, its middle at the origin.
 
     Args:
-        path: What stands in the attribute ``d``: "M 0 0 L 10 0 …".
+        path: The value of the attribute ``d``: "M 0 0 L 10 0 …".
         size: The larger of width and height; None keeps the drawing's own units.
         even_odd: Whether parts within parts are holes, whichever way they turn.
 
@@ -64,8 +64,8 @@ class SvgPath(Shape2D):
 
     def __init__(self, path: str, *, size: float | None = None, even_odd: bool = False) -> None:
         place = author_place()
-        room = importlib.import_module("distal.scene.objects.outlines")
-        outline = room.svg_path(path, size=size, place=place)
+        module = importlib.import_module("distal.scene.objects.outlines")
+        outline = module.svg_path(path, size=size, place=place)
         Field.__init__(self, _node(outline, place, even_odd=bool(even_odd)))
 
 

@@ -57,7 +57,7 @@ class Material(CalledObject):
         emission: Light that it gives off by itself, a colour.
         absorption: What a unit of its inside takes from light, for each colour.
         fresnel: Whether mirroring grows towards glancing angles as in glass; False keeps the
-            weights as they stand.
+            weights.
 
     Raises:
         ValueError: A number is out of its range, or the weights add up to more than 1.
@@ -168,7 +168,7 @@ def grey(amount: float) -> vec3:
 
 
 def accept(value: Any, asked: Asked) -> Any:
-    """What stands for a pattern, a function or a material where a number could stand, else None."""
+    """The value for a parameter that is given a pattern, function or material, else None."""
     if isinstance(value, Func):
         value = own_pattern(value, (), {}, asked.place)
     if isinstance(asked.type, Struct):
@@ -226,7 +226,7 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
 
 
 def as_material(value: Any, place: Span | None = None) -> Material:
-    """A material, or what stands for one: a colour, a pattern of colours, a @func of a place.
+    """A material of what an author may give for one: a colour, a pattern, a @func of a place.
 
     Raises:
         TypeError: It is none of these.
@@ -285,7 +285,9 @@ def glass(
     """
     place = author_place()
     if color is not None and absorption is not None:
-        refuse_kind("glass takes color or absorption, not both", "each tells the other", place)
+        refuse_kind(
+            "glass takes color or absorption, not both", "each follows from the other", place
+        )
     given: dict[str, Any] = {"ior": ior}
     if color is not None:
         given["absorption"] = _absorption(color, place)

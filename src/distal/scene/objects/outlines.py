@@ -1,8 +1,8 @@
 """Drawings and letters as outlines: the chains of lines and curves that ``fields.outlines`` reads.
 
-Input: the text of an SVG path, or a text and a font (``scene.lettering`` lays it out). What
-flows out: an ``Outline``: the buffers of edges and the box around them. What cannot be read is told
-at the author's line. Reading paths and fonts is left to fontTools, an optional package.
+Input: the text of an SVG path, or a text and a font (``lettering`` lays it out). Output:
+an ``Outline``: the buffers of edges and the box around them. What cannot be read is an
+error at the author's line. Reading paths and fonts is left to fontTools, an optional package.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from distal.scene.tree.source_places import author_place
 # Two points: a line. Three: a quadratic Bézier curve. Four: a cubic one. y points up.
 Edge: TypeAlias = tuple[complex, ...]
 
-# How far a quadratic curve may leave the cubic that it stands for, in sides of the outline's box.
+# How far a quadratic curve may leave the cubic that it replaces, in sides of the outline's box.
 TOLERANCE: Final = 1.0 / 4000.0
 # Flatter than this share of its length, a curve is a line.
 STRAIGHT: Final = 1e-6
@@ -54,7 +54,7 @@ def svg_path(path: str, *, size: float | None = None, place: Span | None = None)
     Open parts are closed by a line, as SVG does before it fills them.
 
     Args:
-        path: What stands in the attribute ``d``: "M 0 0 L 10 0 …".
+        path: The value of the attribute ``d``: "M 0 0 L 10 0 …".
         size: The larger of width and height; None keeps the drawing's own units.
         place: The author's line.
 
@@ -178,7 +178,7 @@ def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
 
 
 def _numbers(edges: Sequence[Edge]) -> Any:
-    """Two floats for each point, rounded alike wherever the same point stands."""
+    """Two floats for each point, rounded alike wherever the same point occurs."""
     return np.array(edges, np.complex128).view(np.float64).astype(np.float32)
 
 

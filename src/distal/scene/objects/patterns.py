@@ -124,7 +124,7 @@ def _as_pattern(call: FunctionCall) -> Pattern:
 def _declared(
     declaration: Declaration, given: dict[str, Any], place: Span | None
 ) -> Pattern | Material:
-    """A declared pattern; of two sides, joined by the share of the second that it gives."""
+    """A declared pattern; if it has two sides, these mixed by the share that it computes."""
     share = _as_pattern(declared_call(declaration, given, place, accept=accept))
     if not declaration.extras:
         return share

@@ -1,7 +1,7 @@
 """A class for every shape of the field library, ``Sphere`` to ``Hexagon``.
 
-Input: the library's primitives. Output: a class for each, called with the shape's numbers.
-``tools/gen_shapes_stub.py`` writes ``shapes.pyi``, which editors read.
+Input: the library's primitives. Output: a class for each, called with the shape's
+numbers. Editors read ``distal/__init__.pyi``, which ``tools/gen_stubs.py`` makes.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from distal.diagnostics import Span
 
-# Nobody turns by 30, 45 or 90 radians; 15 might be the end of a loop.
+# Nobody turns by 30, 45 or 90 radians; 15 may be the end of a loop.
 LEAST_DEGREES: Final = 30
 STEP_OF_DEGREES: Final = 15
 
