@@ -24,10 +24,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import distal
 from distal.devices.threads import usable_threads
-from distal.lang.runtime_hook import executor
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
 from distal.video import video
 from distal.video.encoding import encoder_threads
-from distal.video.formats import KINDS, codec_of
+from distal.video.formats import FORMATS, codec_of
 from distal.video.pixels import Converter
 from distal.video.segments import Piece, join
 
@@ -61,12 +62,12 @@ class Stage:
 def render_alone(image: object, frames: int) -> None:
     """Make the pictures."""
     for i in range(frames):
-        executor().render(image, size=SIZE, time=float(i / RATE), index=i)
+        executor().render(image, RenderOptions(size=SIZE, time=float(i / RATE), index=i))
 
 
 def encode_alone(pictures: list[object], frames: int, folder: Path) -> None:
     """Encode pictures that are there, in pieces of two seconds, and join these."""
-    codec, pieces = codec_of(KINDS[".mp4"], 80.0), []
+    codec, pieces = codec_of(FORMATS[".mp4"], 80.0), []
     converter = Converter(codec)
     for first in range(0, frames, 120):
         count = min(120, frames - first)
@@ -77,7 +78,7 @@ def encode_alone(pictures: list[object], frames: int, folder: Path) -> None:
             piece.add(converter.frame(pictures[min(at, 2 * HELD - 1 - at)]))
         piece.finish()
         pieces.append((path, count))
-    join(pieces, folder / "alone.mp4", KINDS[".mp4"], RATE, {})
+    join(pieces, folder / "alone.mp4", FORMATS[".mp4"], RATE, {})
 
 
 def main() -> None:
@@ -89,7 +90,8 @@ def main() -> None:
     frames = options.seconds * 60
     image = distal.load("example:raymarcher")
     pictures = [
-        executor().render(image, size=SIZE, time=float(i / RATE)).array for i in range(HELD)
+        executor().render(image, RenderOptions(size=SIZE, time=float(i / RATE))).array
+        for i in range(HELD)
     ]
     render, encode, both = Stage("rendering alone"), Stage("encoding alone"), Stage("video")
     with tempfile.TemporaryDirectory() as name:

@@ -9,12 +9,6 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from distal.lang.runtime_hook import (
-    set_calculator_loader,
-    set_combiner_loader,
-    set_executor_loader,
-    set_presenter_loader,
-)
 from distal.public_names import DECLARED_NAMES
 from distal.version import __version__
 
@@ -41,28 +35,6 @@ _MODULE_OF = {
 
 # ``from distal import *`` leaves Python's own ``compile`` alone.
 __all__ = ["__version__", *(name for name in _MODULE_OF if name != "compile")]
-
-
-def _executor() -> Any:
-    return importlib.import_module("distal.runtime.executor").PythonExecutor()
-
-
-def _calculator() -> Any:
-    return importlib.import_module("distal.compiler.constant_evaluation").compute
-
-
-def _combiner() -> Any:
-    return importlib.import_module("distal.frontend.python_expressions").combine
-
-
-def _presenter() -> Any:
-    return importlib.import_module("distal.presenter").Presenter()
-
-
-set_executor_loader(_executor)
-set_calculator_loader(_calculator)
-set_combiner_loader(_combiner)
-set_presenter_loader(_presenter)
 
 
 def _unknown(name: str) -> str:

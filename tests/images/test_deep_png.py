@@ -68,7 +68,7 @@ def test_ffmpeg_reads_the_same_levels(tmp_path, alpha, format, channels):
 
 @pytest.mark.skipif(shutil.which("convert") is None, reason="ImageMagick is not installed")
 def test_imagemagick_reads_the_same_levels_and_texts(tmp_path):
-    picture = Picture(ramp(0.25)).told(source="scene.py:ball", source_hash="abc")
+    picture = Picture(ramp(0.25)).with_provenance(source="scene.py:ball", source_hash="abc")
     picture.save(tmp_path / "a.png", bits=16)
     raw = subprocess.run(
         ["convert", "a.png", "-depth", "16", "-endian", "LSB", "RGBA:-"],
@@ -88,7 +88,7 @@ def test_imagemagick_reads_the_same_levels_and_texts(tmp_path):
 
 
 def test_texts_and_head_are_those_of_a_usual_file(tmp_path):
-    picture = Picture(ramp()).told(source="scène.py:图", source_hash="abc", time=0.1)
+    picture = Picture(ramp()).with_provenance(source="scène.py:图", source_hash="abc", time=0.1)
     picture.save(tmp_path / "a.png", bits=16)
     picture.save(tmp_path / "b.png")
     with Image.open(tmp_path / "a.png") as deep, Image.open(tmp_path / "b.png") as usual:
@@ -121,7 +121,7 @@ def test_pixels_of_another_program_are_not_mistaken(tmp_path):
 @pytest.mark.parametrize("bits", [8, 16])
 @pytest.mark.parametrize("keep", [9, 40, 0.5, 0.9])
 def test_cut_file_is_told_in_one_line(tmp_path, bits, keep):
-    Picture(ramp()).told(source_hash="a").save(tmp_path / "a.png", bits=bits)
+    Picture(ramp()).with_provenance(source_hash="a").save(tmp_path / "a.png", bits=bits)
     data = (tmp_path / "a.png").read_bytes()
     end = keep if isinstance(keep, int) else int(keep * len(data))
     (tmp_path / "a.png").write_bytes(data[:end])

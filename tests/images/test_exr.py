@@ -27,7 +27,7 @@ def picture() -> Picture:
         "material": random.integers(0, 70000, (31, 47)).astype(np.uint32),
     }
     made = Picture(np.clip(light, 0.0, 1.0), light=light, layers=layers)
-    return made.told(source="scène.py:图", source_hash="abc", parameters={"blend": 0.3})
+    return made.with_provenance(source="scène.py:图", source_hash="abc", parameters={"blend": 0.3})
 
 
 def channels(path):
@@ -161,7 +161,7 @@ def test_cut_file_is_told_in_one_line(picture, tmp_path, share, capfd):
 
 
 def test_file_that_claims_to_be_huge_is_refused(tmp_path):
-    picture = Picture(np.ones((2, 2, 4), np.float32)).told(source_hash="a")
+    picture = Picture(np.ones((2, 2, 4), np.float32)).with_provenance(source_hash="a")
     picture.save(tmp_path / "a.exr")
     data = (tmp_path / "a.exr").read_bytes()
     window = b"dataWindow\0box2i\0\x10\0\0\0"

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import distal
 from distal.cli.application import application
 from distal.images.metadata import read
+from distal.lang.render_options import RenderOptions
 from distal.scene.rerender import difference, planned, rerender
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
@@ -116,16 +117,17 @@ def test_frame_mouse_seed_and_index_of_python_are_kept(run):
 def test_camera_that_was_moved_by_hand_is_kept(run):
     shown = viewable(distal.load("scene.py", "scene"))
     moved = Steering(yaw=0.3, pitch=0.1, zoom=0.75, pan=(0.1, -0.2))
-    picture = shown.render(size=(24, 16), steering=moved)
+    options = RenderOptions(size=(24, 16))
+    picture = shown.render(options, steering=moved)
     picture.save("a.png")
     again = rerender(planned(Path("a.png")))
     assert np.array_equal(again.array, picture.array)
-    assert not np.array_equal(again.array, shown.render(size=(24, 16)).array)
+    assert not np.array_equal(again.array, shown.render(options).array)
 
 
 def test_stage_is_as_large_as_it_was_when_the_shape_was_shown(run):
     shown = viewable(distal.load("scene.py", "ball"))  # staged for the default size
-    picture = shown.render(size=(24, 16), params={"size": 0.3})
+    picture = shown.render(RenderOptions(size=(24, 16), params={"size": 0.3}))
     picture.save("a.png")
     again = rerender(planned(Path("a.png")))
     assert np.array_equal(again.array, picture.array)

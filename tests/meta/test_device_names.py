@@ -1,6 +1,7 @@
 """What is written of devices is what the code takes: docstrings, the guide, the command line."""
 
 import ast
+import inspect
 import re
 from pathlib import Path
 
@@ -8,8 +9,9 @@ import pytest
 
 import distal
 from distal.cli.base import Device
+from distal.lang.render_options import RenderOptions
 from distal.runtime.device_names import AUTO, DEVICE_NAMES
-from distal.runtime.executor import DEVICES
+from distal.runtime.kernels import DEVICES
 
 SOURCE = Path(distal.__file__).parent
 ROOT = Path(__file__).parents[2]
@@ -51,13 +53,19 @@ def test_an_entry_of_a_docstring_names_every_device_or_none(place, text):
 @pytest.mark.parametrize(
     "place",
     [
-        *("scene/scene.py:render", "lang/functions.py:render", "runtime/executor.py:render"),
+        *("scene/scene.py:render", "lang/functions.py:render"),
         "video/recording.py:video",
     ],
 )
 def test_what_authors_call_names_every_device(place):
     found = dict(functions())[place]
     entry = ENTRY.search(ast.get_docstring(found, clean=False) or "")
+    assert entry is not None
+    assert re.findall(r'"([a-z-]+)"', entry[2]) == list(DEVICE_NAMES)
+
+
+def test_the_declaration_of_the_options_names_every_device():
+    entry = ENTRY.search(inspect.getdoc(RenderOptions) or "")
     assert entry is not None
     assert re.findall(r'"([a-z-]+)"', entry[2]) == list(DEVICE_NAMES)
 

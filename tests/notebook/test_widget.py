@@ -16,6 +16,8 @@ from distal import Camera, Scene, Sphere, Torus, time
 from distal.diagnostics import CompileError
 from distal.export import payload as payload_room
 from distal.lang import Frame, choice, color, func, image, slider, vec3
+from distal.lang.render_options import RenderOptions
+from distal.notebook.widget import show
 from distal.scene.steering import Steering
 
 softness = slider("Softness", 0.05, high=0.2)
@@ -63,7 +65,7 @@ def test_images_and_shapes_are_shown_too():
     assert drawn.show().payload["steering"] is None
     assert Sphere().show().payload["steering"] is not None
     with pytest.raises(distal.LoadError, match="'distance' is a @func"):
-        distal.presenter.Presenter().show(distance)
+        show(distance)
 
 
 def test_what_moves_plays_unless_told_otherwise():
@@ -174,7 +176,8 @@ def test_the_picture_as_it_stands_is_computed_by_python():
     )
     found = widget.render()
     wanted = distal.scene.viewing.viewable.viewable(scene).render(
-        size=(48, 36), params={"softness": 0.2}, steering=Steering(0.7, 0.2, 0.8, (0.1, 0.0))
+        RenderOptions(size=(48, 36), params={"softness": 0.2}),
+        steering=Steering(0.7, 0.2, 0.8, (0.1, 0.0)),
     )
     assert (found.array == wanted.array).all()
     assert not np.allclose(found.array, scene.render(size=(48, 36)).array, atol=0.05)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from distal.lang.render_options import RenderOptions
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import Viewable
 from tests.browser import Watched, offline_page
@@ -84,13 +85,10 @@ class Looked:
                 moved["yaw"], moved["pitch"], moved["zoom"], tuple(moved["pan"])
             )
         height, width = shown.shape[:2]
-        expected = seen.render(
-            size=(width, height),
-            time=state["time"],
-            params=state["parameters"],
-            view=state["view"],
-            **options,
+        rendering = RenderOptions(
+            size=(width, height), time=state["time"], params=state["parameters"]
         )
+        expected = seen.render(rendering, view=state["view"], **options)
         return difference(expected.array, shown)
 
 

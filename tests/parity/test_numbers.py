@@ -9,6 +9,7 @@ import pytest
 
 import distal
 from distal.lang.expressions import time
+from distal.lang.render_options import RenderOptions
 from distal.runtime.executor import PythonExecutor
 from tests import egl, gpu
 from tests.glsl import run_glsl
@@ -21,7 +22,7 @@ RAMP = Ramp([float(n % 7) for n in range(1000)], time * 2.0 + 0.25)
 
 @cache
 def expected() -> np.ndarray:
-    picture = PythonExecutor().render(RAMP, size=SIZE, time=1.5, device="reference")
+    picture = PythonExecutor().render(RAMP, RenderOptions(size=SIZE, time=1.5, device="reference"))
     return picture.array
 
 
@@ -46,5 +47,5 @@ def test_wgsl(target: str, path: str) -> None:
 
 
 def test_cpu() -> None:
-    picture = PythonExecutor().render(RAMP, size=SIZE, time=1.5)
+    picture = PythonExecutor().render(RAMP, RenderOptions(size=SIZE, time=1.5))
     assert np.array_equal(picture.array, expected())

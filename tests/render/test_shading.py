@@ -14,7 +14,7 @@ import pytest
 
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, max, min, vec2, vec3
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.render import ambient, bounce, lights, material, shade, sky
 from distal.render.lights import LightSample
 from distal.render.march import March

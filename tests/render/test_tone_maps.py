@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.render import tonemap
 
 GREYS = np.concatenate([[0.0], np.geomspace(1e-5, 60.0, 80), [0.0031308, 0.00315, 0.0399, 0.0406]])

@@ -10,7 +10,7 @@ import pytest
 
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, vec2, vec3, vec4
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.render import camera, film, layers, legend, local_views, settings, views
 from distal.render.camera import Ray
 from distal.render.march import March

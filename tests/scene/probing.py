@@ -11,7 +11,7 @@ from distal.ir.build import field
 from distal.ir.nodes import Param, Read, Return
 from distal.ir.types import VEC2, VEC3
 from distal.lang.composed import Composed
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 
 TYPES = {"uv": VEC2}
 

@@ -14,7 +14,7 @@ import pytest
 
 import distal
 from distal.ir.types import FLOAT, VEC3
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.render.material import Surface
 from distal.scene.objects.cameras import TurnedCamera
 from tests.scene.constructor_cases import (

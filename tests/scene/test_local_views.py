@@ -5,7 +5,8 @@ import pytest
 
 import distal
 from distal.lang import Frame, image, vec3
-from distal.lang.runtime_hook import executor
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
 from distal.scene.lowering.local_views import locals_of, view_of_image
 
 SIZE = (8, 4)
@@ -45,7 +46,7 @@ def counted(frame: Frame) -> vec3:
 
 
 def shown(view, of=plain):
-    return executor().render(view_of_image(of, view), size=SIZE).array
+    return executor().render(view_of_image(of, view), RenderOptions(size=SIZE)).array
 
 
 def test_locals_are_those_of_the_author_and_tell_what_varies():
@@ -124,6 +125,7 @@ def test_every_example_image_shows_its_coordinate_and_signal():
     for name in ("melting", "raymarcher", "course_2_depth"):
         made = distal.load(f"example:{name}")
         for view in ("coordinate", "signal"):
-            picture = executor().render(view_of_image(made, view), size=(16, 12)).array
+            options = RenderOptions(size=(16, 12))
+            picture = executor().render(view_of_image(made, view), options).array
             assert np.isfinite(picture).all()
             assert np.ptp(picture[..., :3]) > 0.1, (name, view)

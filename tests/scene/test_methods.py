@@ -19,7 +19,7 @@ from distal.fields.combine.blends import BLENDS
 from distal.fields.ease import EASES
 from distal.fields.library import OPERATORS
 from distal.lang import func, sin, vec3
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from tests.scene import method_fields as cases
 from tests.scene.method_cases import SOLIDS
 from tests.scene.method_cases_flat import FLATS

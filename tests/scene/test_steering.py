@@ -7,6 +7,7 @@ import pytest
 
 from distal import Box, Camera, OrbitCamera, OrthographicCamera, PanoramaCamera, Scene, Sphere
 from distal.lang import slider
+from distal.lang.render_options import RenderOptions
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
 
@@ -17,7 +18,7 @@ SHAPE = (Box((1.0, 0.6, 1.4)) | Sphere(0.4).translate(0.7, 0.4, 0.2)).paint("#c9
 
 def picture(camera, steering=None, view="color"):
     seen = viewable(Scene(SHAPE, camera=camera))
-    return seen.render(size=SIZE, view=view, steering=steering).array
+    return seen.render(RenderOptions(size=SIZE), view=view, steering=steering).array
 
 
 def assert_alike(a, b):
@@ -113,6 +114,7 @@ def test_a_target_that_is_a_parameter_is_what_it_turns_around():
     height = slider("Height", 0.0, 0.0, 2.0)
     camera = Camera((0.0, height, 4.0), (0.0, height, 0.0), fov=FOV)
     seen = viewable(Scene(SHAPE, camera=camera))
-    found = seen.render(size=SIZE, params={"height": 1.0}, steering=Steering(yaw=0.9))
+    options = RenderOptions(size=SIZE, params={"height": 1.0})
+    found = seen.render(options, steering=Steering(yaw=0.9))
     wanted = OrbitCamera(4.0, azimuth=0.9, target=(0.0, 1.0, 0.0), fov=FOV)
     assert_alike(found.array, picture(wanted))

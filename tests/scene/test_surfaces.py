@@ -13,7 +13,7 @@ from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import VEC3
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.scene.lowering.picture import Picturing
 
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)

@@ -8,7 +8,8 @@ import pytest
 from distal import Scene, Sphere, time
 from distal.diagnostics import LoadError
 from distal.lang import Frame, func, image, vec3
-from distal.lang.runtime_hook import executor
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
 
@@ -41,7 +42,7 @@ def test_a_scene_is_seen_in_every_way():
 def test_a_shape_stands_on_a_stage():
     seen = viewable(Sphere(2.0))
     assert seen.steers and seen.scene is not None
-    picture = seen.render(size=(16, 12))
+    picture = seen.render(RenderOptions(size=(16, 12)))
     assert picture.array.std() > 0.05
 
 
@@ -64,9 +65,9 @@ def test_a_scene_whose_exposure_moves_is_animated():
 
 def test_encoded_views_are_the_pictures_values():
     seen = viewable(Scene(Sphere().paint("#c63"), tone_map="aces", exposure=1.3))
-    size = (24, 18)
-    whole = seen.render(size=size).array
-    encoded = executor().render(seen.image("color", encoded=True), size=size)
+    options = RenderOptions(size=(24, 18))
+    whole = seen.render(options).array
+    encoded = executor().render(seen.image("color", encoded=True), options)
     assert np.abs(whole - encoded.array).max() < 1e-4
 
 

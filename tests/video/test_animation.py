@@ -9,7 +9,7 @@ from PIL import Image, features
 
 import distal
 from distal.video import video
-from distal.video.formats import WishError
+from distal.video.formats import VideoError
 from tests.video.moving import psnr, scene_file, still
 
 pytest.importorskip("av", reason="PyAV writes them: pip install 'distal[video]'")
@@ -203,8 +203,8 @@ def test_what_a_kind_of_file_cannot_have(moving, tmp_path):
         "exactly; round it",
     }
     for (name, fps, quality), message in cases.items():
-        with pytest.raises(WishError) as caught:
+        with pytest.raises(VideoError) as caught:
             video(moving, tmp_path / name, duration=1, fps=fps, quality=quality, size=SIZE)
         assert str(caught.value) == message
-    with pytest.raises(WishError, match="webp has at most 16383 pixels a side, not 16384"):
+    with pytest.raises(VideoError, match="webp has at most 16383 pixels a side, not 16384"):
         video(moving, tmp_path / "o.webp", duration=1, size=(16384, 2))

@@ -12,7 +12,7 @@ import pytest
 import distal
 from distal.images.atomic_files import SaveError
 from distal.video import video
-from distal.video.program import Program
+from distal.video.moving_picture import MovingPicture
 from tests.video.moving import decode, scene_file
 
 pytest.importorskip("av", reason="PyAV writes videos: pip install 'distal[video]'")
@@ -118,14 +118,14 @@ def test_a_failure_before_anything_is_whole_leaves_nothing(moving, tmp_path):
 
 
 def test_a_scene_that_fails_in_the_middle_keeps_the_pieces(moving, tmp_path, monkeypatch):
-    whole, told = Program.picture, []
+    whole, told = MovingPicture.picture, []
 
     def picture(self, index, at, size=None):
         if index == 50:
             raise distal.LoadError("the author's message")
         return whole(self, index, at, size)
 
-    monkeypatch.setattr(Program, "picture", picture)
+    monkeypatch.setattr(MovingPicture, "picture", picture)
     out = tmp_path / "out.mp4"
     with pytest.raises(distal.LoadError, match="the author's message"):
         video(moving, out, **WISHES, tell=told.append)
@@ -160,14 +160,14 @@ def test_a_full_disk_is_one_line(moving, tmp_path, suffix):
 
 @pytest.mark.parametrize("damage", ["", "half"])
 def test_a_damaged_piece_is_made_again(moving, tmp_path, monkeypatch, damage):
-    out, whole = tmp_path / "out.mp4", Program.picture
+    out, whole = tmp_path / "out.mp4", MovingPicture.picture
 
     def picture(self, index, at, size=None):
         if index == 130:
             raise distal.LoadError("broken off")
         return whole(self, index, at, size)
 
-    monkeypatch.setattr(Program, "picture", picture)
+    monkeypatch.setattr(MovingPicture, "picture", picture)
     with pytest.raises(distal.LoadError):
         video(moving, out, **WISHES)
     monkeypatch.undo()

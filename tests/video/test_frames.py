@@ -7,7 +7,7 @@ from PIL import Image
 import distal
 from distal.images.atomic_files import SaveError
 from distal.video import video
-from distal.video.formats import WishError
+from distal.video.formats import VideoError
 from tests.video.moving import SCENE, scene_file, still
 
 SIZE = (48, 32)
@@ -124,5 +124,5 @@ def test_a_video_can_leave_its_frames_behind(moving, tmp_path):
         assert made.rendered == (5 if name == "out.mp4" else 0)
     with Image.open(folder / "00003.png") as picture:
         assert (np.asarray(picture.convert("RGB")) == still(moving, SIZE, 0.3)).all()
-    with pytest.raises(WishError, match="keep_frames is for videos"):
+    with pytest.raises(VideoError, match="keep_frames is for videos"):
         video(moving, folder / "%05d.png", duration=1, keep_frames=folder, size=SIZE)

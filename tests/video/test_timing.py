@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from distal.video.formats import WishError
+from distal.video.formats import VideoError
 from distal.video.timing import frame_rate, timing
 
 
@@ -78,7 +78,7 @@ def test_rates_of_broadcast_are_recognised():
     ],
 )
 def test_what_has_no_sense_is_refused(given, message):
-    with pytest.raises(WishError) as caught:
+    with pytest.raises(VideoError) as caught:
         timing(*given)
     assert str(caught.value) == message
 
@@ -87,6 +87,6 @@ def test_what_has_no_sense_is_refused(given, message):
     ("start", "duration"), [(1048577, 1), (-1048577, 1), (1048570, 10), ("1e8", "0.1")]
 )
 def test_times_stay_where_frames_are_told_apart(start: object, duration: object) -> None:
-    with pytest.raises(WishError, match=r"times are within 1048576 seconds \(12 days\) of 0"):
+    with pytest.raises(VideoError, match=r"times are within 1048576 seconds \(12 days\) of 0"):
         timing(start, duration, 30)
     assert timing(1048570, 6, 30).time(0) == 1048570.0

@@ -12,6 +12,7 @@ import pytest
 import distal
 from distal import Scene, Sphere
 from distal.lang import Frame, choice, color, image, integer, point, slider, toggle, vec3
+from distal.lang.render_options import RenderOptions
 from distal.scene.steering import STILL, Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.key_bindings import BINDINGS, HELP
@@ -21,8 +22,8 @@ from distal.window.dials import Dial, dials
 from distal.window.gestures import Mouse, orbited, panned, zoomed
 from distal.window.keys import Action, action_of_character, action_of_key
 from distal.window.layout import BAR_HEIGHT, Table, time_track
-from distal.window.pace import BUDGET_S, Pace
 from distal.window.reload import Watch, files_in
+from distal.window.resolution import BUDGET_S, ResolutionChooser
 from distal.window.session import Session
 from distal.window.worker import Worker
 
@@ -147,7 +148,8 @@ def test_what_is_grabbed_follows_the_pointer_on_the_picture() -> None:
     session.drag(110.0, 45.0, 0.0)
     session.release(0.0)
     shot = session.shot(0.0)
-    depth = session.viewable.render(view="material", steering=shot.steering, size=(160, 120)).array
+    options = RenderOptions(size=(160, 120))
+    depth = session.viewable.render(options, view="material", steering=shot.steering).array
     rows, columns = np.nonzero(np.abs(depth[..., :3] - depth[0, 0, :3]).max(axis=-1) > 0.05)
     # A sphere beside the middle is drawn out by perspective: a few pixels to the outside.
     assert columns.mean() == pytest.approx(110, abs=4)
@@ -386,7 +388,7 @@ def test_a_broken_neighbour_is_watched_too(tmp_path: Path) -> None:
 
 
 def test_frames_get_coarse_enough_while_something_moves_and_sharp_after() -> None:
-    pace = Pace()
+    pace = ResolutionChooser()
     assert pace.share((640, 480), is_moving=False) == 0.125
     pace.learn(0.004, 80 * 60)  # 0.26 s for all: a quarter of the width comes in time
     assert pace.share((640, 480), is_moving=False) == 1.0
@@ -401,7 +403,7 @@ def test_frames_get_coarse_enough_while_something_moves_and_sharp_after() -> Non
 
 
 def test_the_pace_does_not_waver_between_two_shares() -> None:
-    pace = Pace()
+    pace = ResolutionChooser()
     pace.learn(BUDGET_S * 1.1, 100 * 100)
     assert pace.share((100, 100), is_moving=True) == 0.5
     for _ in range(10):

@@ -6,8 +6,9 @@ a page or a text holds is the library's matter; here stands only what goes with 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -24,6 +25,9 @@ from distal.cli.base import (
     reporting,
 )
 from distal.cli.messages import say
+
+if TYPE_CHECKING:
+    from distal.lang.presentable import ExportOptions
 
 _SUFFIXES = [f"{t.suffix} {t.place.partition(',')[0]}" for t in TEXT_TARGETS.values() if t.suffix]
 
@@ -84,7 +88,7 @@ def export(
     ] = False,
 ) -> None:
     """Write a scene as a page that shows it by itself, or as a shader for another place."""
-    options = {
+    flags: dict[str, tuple[str, Any]] = {
         "--size": ("size", _size(size)),
         "--duration": ("duration", _duration(duration)),
         "--title": ("title", title),
@@ -93,30 +97,33 @@ def export(
         "--no-panel": ("panel", False if no_panel else None),
         "--no-poster": ("poster", False if no_poster else None),
     }
-    given = {option: told for option, told in options.items() if told[1] is not None}
-    seconds = read_time(at)
-    _check(scene, output, target, given)
-    _write(
-        scene,
-        output,
-        target,
-        assignments or [],
-        {"view": view or "color", "time": seconds, **dict(given.values())},
-    )
+    given = {flag: entry for flag, entry in flags.items() if entry[1] is not None}
+    # The names of ``flags`` are fields of PageOptions, which checks the values.
+    options: ExportOptions = {"view": view or "color", "time": read_time(at)}
+    options.update(cast("ExportOptions", dict(given.values())))
+    _check(scene, output, target, {flag: name for flag, (name, _) in given.items()})
+    _write(scene, output, target, assignments or [], options)
 
 
-def _check(scene: str, output: Path, target: str | None, given: dict[str, Any]) -> None:
-    """Refuse what does not go together, before any work is spent on it."""
-    from distal.export.registry import KINDS, kind_of
+def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str]) -> None:
+    """Refuse what does not go together, before any work is spent on it.
+
+    Args:
+        scene: The scene's file.
+        output: The file to write.
+        target: What is written, where the suffix does not say it.
+        given: The flags of pages that were given, and the names of their options.
+    """
+    from distal.export.registry import FORMATS, kind_of
     from distal.images.atomic_files import check_destination
 
     try:
         name = kind_of(output, target)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    for option, (key, _) in given.items():
-        if key not in KINDS[name].options:
-            raise UsageError(f"{option} is for pages, and {output} is a text ({name})")
+    for flag, option in given.items():
+        if option not in FORMATS[name].option_names:
+            raise UsageError(f"{flag} is for pages, and {output} is a text ({name})")
     if output.resolve() == Path(read_scene(scene)[0]).resolve():
         raise UsageError(f"'{output}' is the scene itself")
     check_destination(output)
@@ -125,23 +132,24 @@ def _check(scene: str, output: Path, target: str | None, given: dict[str, Any]) 
 
 
 def _write(
-    scene: str, output: Path, target: str | None, assignments: list[str], options: dict[str, Any]
+    scene: str, output: Path, target: str | None, assignments: list[str], options: ExportOptions
 ) -> None:
-    from distal.export.registry import export as written
+    from distal.export.registry import export as write
     from distal.scene.viewing.viewable import viewable
 
     obj, values = load_picture(scene, assignments)
     seen = viewable(obj, values, options["time"])
-    for name in (options["view"], *options.get("views", ())):
+    for name in (options["view"], *(options.get("views") or ())):
         check_view(seen, name)
-    made = written(seen, output, target=target, params=values, **options)
+    options["params"] = values
+    made = write(seen, output, target=target, **options)
     for view, reason in made.omitted.items():
         say(f"warning: the view '{view}' is left out: {reason}")
     say(made)
 
 
 def _size(text: str | None) -> tuple[int, int] | None:
-    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.lang.render_options import LARGEST_SIDE_PX
 
     return None if text is None else read_size(text, LARGEST_SIDE_PX)
 

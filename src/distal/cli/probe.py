@@ -50,7 +50,7 @@ def probe(
 ) -> None:
     """Tell what one pixel saw: its ray, the march, the shape and its material."""
     from distal.lang.functions import Func
-    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.scene.checks.probe import probe as look
     from distal.scene.viewing.viewable import viewable
 

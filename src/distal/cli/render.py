@@ -6,13 +6,11 @@ shows is the library's matter; here stands only which options go with what.
 
 from __future__ import annotations
 
-import functools
 import json
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -36,13 +34,12 @@ from distal.cli.base import (
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
+    from distal.lang.render_options import RenderOptions
     from distal.scene.viewing.viewable import Viewable
-
-Run: TypeAlias = "Callable[..., Picture]"
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
+class ViewArguments:
     """How a scene is to be seen; None where nothing was said."""
 
     view: str
@@ -51,25 +48,16 @@ class Wishes:
     transparent: bool
     exposure: float | None
     tone_map: str | None
-    layers: tuple[str, ...] | None = None
 
-    @property
-    def options(self) -> dict[str, Any]:
-        """What ``Scene.render`` is told of them."""
-        said: dict[str, Any] = {"view": self.view, "plane": self.plane, "samples": self.samples}
-        said |= {"transparent": self.transparent, "layers": self.layers}
-        plain = (None, False, "color", ())
-        return {name: value for name, value in said.items() if value not in plain}
-
-    def refuse_for_image(self, name: str) -> None:
-        """Refuse what only a scene can be asked for."""
+    def refuse_for_image(self, name: str, layers: tuple[str, ...]) -> None:
+        """Refuse what only a scene has."""
         given = {
             "--slice": self.plane,
             "--samples": self.samples,
             "--transparent": self.transparent or None,
             "--exposure": self.exposure,
             "--tone-map": self.tone_map,
-            "--layers": self.layers or None,
+            "--layers": layers or None,
         }
         for option, value in given.items():
             if value is not None:
@@ -137,21 +125,21 @@ def render(
     from distal.cli.messages import say
     from distal.cli.report import ProgressBar, stages
     from distal.images.picture import check_savable
-    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
     from distal.scene.viewing.viewable import viewable
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
-    wishes = read_wishes(view, plane, samples, transparent, exposure, tone_map)
+    arguments = read_view(view, plane, samples, transparent, exposure, tone_map)
     suffix, _ = check_savable(output, bits)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
     obj, values = load_picture(scene, assignments)
     seen = viewable(obj, values, seconds)
-    wishes = replace(wishes, layers=read_layers(layers, suffix, seen, wishes.view))
-    run = rendering(seen, wishes)
+    wanted = read_layers(layers, suffix, seen, arguments.view)
+    check_shown(seen, arguments, wanted)
     loaded = time.perf_counter()
     with ProgressBar() as progress:
-        picture = run(
+        options = RenderOptions(
             size=width_height,
             time=seconds,
             params=values,
@@ -159,6 +147,7 @@ def render(
             threads=threads,
             progress=progress,
         )
+        picture = rendered_picture(seen, arguments, wanted, options)
     rendered = time.perf_counter()
     picture.save(output, bits)
     figures = {
@@ -175,15 +164,15 @@ def render(
         say(f"{output}: {picture.width}x{picture.height}; {stages(figures)}")
 
 
-def read_wishes(
+def read_view(
     view: str | None,
     plane: str | None,
     samples: int | None,
     transparent: bool,
     exposure: float | None,
     tone_map: str | None,
-) -> Wishes:
-    """The options of how a scene is seen, held against each other."""
+) -> ViewArguments:
+    """The options of how a scene is seen, with those that exclude each other refused."""
     from distal.render.tonemap import NAMES
 
     if plane is not None and view not in (None, "slice"):
@@ -194,7 +183,7 @@ def read_wishes(
         raise UsageError(f"an exposure is finite, not {exposure}")
     seen = view or ("color" if plane is None else "slice")
     wanted = None if plane is None else read_plane(plane)
-    return Wishes(seen, wanted, samples, transparent, exposure, tone_map)
+    return ViewArguments(seen, wanted, samples, transparent, exposure, tone_map)
 
 
 def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
@@ -214,16 +203,33 @@ def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tu
         raise UsageError(str(error)) from None
 
 
-def rendering(seen: Viewable, wishes: Wishes) -> Run:
-    """What renders a picture as it is to be seen.
+def check_shown(seen: Viewable, arguments: ViewArguments, layers: tuple[str, ...]) -> None:
+    """Refuse what cannot be seen that way.
 
     Raises:
-        UsageError: It cannot be seen that way.
+        UsageError: It is an ``@image``, which has no such option, or there is no such view.
     """
     if seen.scene is None:
-        wishes.refuse_for_image(seen.name)
-    check_view(seen, wishes.view)
+        arguments.refuse_for_image(seen.name, layers)
+    check_view(seen, arguments.view)
+
+
+def rendered_picture(
+    seen: Viewable, arguments: ViewArguments, layers: tuple[str, ...], options: RenderOptions
+) -> Picture:
+    """The picture as it is to be seen."""
+    from distal.scene.rendering import render_scene
+    from distal.scene.view_options import ViewOptions
+
     if seen.scene is None:
-        return functools.partial(seen.render, view=wishes.view)
-    scene = seen.scene.developed(exposure=wishes.exposure, tone_map=wishes.tone_map)
-    return functools.partial(scene.render, **wishes.options)
+        return seen.render(options, view=arguments.view)
+    scene = seen.scene.developed(exposure=arguments.exposure, tone_map=arguments.tone_map)
+    view = ViewOptions(
+        samples=arguments.samples or 1,
+        view=arguments.view,
+        transparent=arguments.transparent,
+        layers=layers,
+    )
+    if arguments.plane is not None:
+        view = replace(view, plane=arguments.plane)
+    return render_scene(scene, view, options)

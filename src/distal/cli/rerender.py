@@ -79,7 +79,7 @@ def rerender(
     from distal.cli.report import ProgressBar
     from distal.images.metadata import ReadError
     from distal.images.picture import check_savable
-    from distal.runtime.uniform_values import LARGEST_SIDE_PX
+    from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.scene import rerender as room
 
     if check and (size is not None or samples is not None):

@@ -7,7 +7,7 @@ off, the line says how it goes on.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -25,9 +25,6 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
-
-if TYPE_CHECKING:
-    from distal.video import Made
 
 
 @application.command()
@@ -82,44 +79,37 @@ def video(
     """Render a scene that moves to a video or to numbered pictures."""
     from distal.cli.messages import say
     from distal.cli.report import FrameBar
-    from distal.runtime.uniform_values import LARGEST_SIDE_PX
-    from distal.video.formats import kind_of
+    from distal.lang.render_options import LARGEST_SIDE_PX
+    from distal.video import video as record
+    from distal.video.formats import VideoError, format_of
 
     width_height = read_size(size, LARGEST_SIDE_PX)
-    kind = kind_of(output)
-    if quality is not None and not kind.lossy and quality != "lossless":
-        raise UsageError(f"--quality is for mp4, webm and webp; {kind.name} keeps what it can")
+    format = format_of(output)
+    if quality is not None and not format.lossy and quality != "lossless":
+        raise UsageError(f"--quality is for mp4, webm and webp; {format.name} keeps what it can")
     device_name = chosen_device(device, adapter)
     obj, values = load_picture(scene, assignments)
     with FrameBar() as bar:
-        made = _made(
-            obj,
-            output,
-            duration=duration,
-            fps=fps,
-            size=width_height,
-            start=start,
-            params=values,
-            view=view,
-            samples=samples,
-            loop=loop,
-            quality=quality or "high",
-            device=device_name,
-            threads=threads,
-            keep_frames=keep_frames,
-            fresh=fresh,
-            progress=bar,
-            tell=bar.say,
-        )
+        try:
+            made = record(
+                obj,
+                output,
+                duration=duration,
+                fps=fps,
+                size=width_height,
+                start=start,
+                params=values,
+                view=view,
+                samples=samples,
+                loop=loop,
+                quality=quality or "high",
+                device=device_name,
+                threads=threads,
+                keep_frames=keep_frames,
+                fresh=fresh,
+                progress=bar,
+                tell=bar.say,
+            )
+        except VideoError as error:
+            raise UsageError(str(error)) from None
     say(str(made))
-
-
-def _made(obj: Any, output: Path, **wishes: Any) -> Made:
-    """The video; a wish without sense is a mistake of the command line."""
-    from distal.video import video as make
-    from distal.video.formats import WishError
-
-    try:
-        return make(obj, output, **wishes)
-    except WishError as error:
-        raise UsageError(str(error)) from None

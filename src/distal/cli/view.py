@@ -36,7 +36,7 @@ def view(
     adapter: AdapterOption = None,
     assignments: SetOption = None,
     at: TimeOption = "0",
-    seen_as: Annotated[
+    first_view: Annotated[
         str, typer.Option("--view", help="How it is looked at first; V goes through all.")
     ] = "color",
     scale: Annotated[
@@ -46,6 +46,7 @@ def view(
     paused: Annotated[bool, typer.Option("--paused", help="Begin with the time standing.")] = False,
 ) -> None:
     """Show a scene in a window; saving its file shows it anew. H in the window tells the keys."""
+    from distal.lang.render_options import RenderOptions
     from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display
 
@@ -54,17 +55,14 @@ def view(
     path, name = read_scene(scene)
     obj, values = load_picture(scene, assignments)
     try:
-        code, ended = show(
-            obj,
-            path,
-            name,
+        options = RenderOptions(
             size=width_height,
-            device=chosen_device(device, adapter),
-            time_s=seconds,
+            time=seconds,
             params=values,
-            seen_as=seen_as,
-            scale=scale,
-            paused=paused,
+            device=chosen_device(device, adapter),
+        )
+        code, ended = show(
+            obj, path, name, options, first_view=first_view, scale=scale, paused=paused
         )
     except ValueError as error:
         raise UsageError(str(error)) from None

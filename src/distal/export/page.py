@@ -11,18 +11,18 @@ import hashlib
 import html
 import json
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 from distal.export.exported import Exported
+from distal.export.page_options import PageOptions
 from distal.export.payload import payload
-from distal.export.poster import poster as poster_bytes
+from distal.export.poster import poster
 from distal.images.atomic_files import replacement
-from distal.runtime.uniform_values import checked_size, checked_time
-from distal.scene.viewing.viewable import COLOR, Viewable
+from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__
 
 PLAYER: Final = Path(__file__).with_name("player.js")
@@ -59,53 +59,18 @@ _ICON: Final = (
 )
 
 
-def write(
-    seen: Viewable,
-    path: Path,
-    target: str = "html",
-    *,
-    size: tuple[int, int] = (640, 480),
-    time: float = 0.0,
-    duration: float | None = None,
-    params: Mapping[str, Any] | None = None,
-    title: str | None = None,
-    embed: bool = False,
-    panel: bool = True,
-    poster: bool = True,
-    view: str = COLOR,
-    views: Sequence[str] | None = None,
-    device: str = "cpu",
-) -> Exported:
-    """Write the page; the options are those of ``scene.export``."""
-    size, time = checked_size(size), checked_time(time)
-    if duration is not None and not checked_time(duration) > 0.0:
-        raise ValueError(f"a duration is more than 0 seconds, not {duration}")
-    if title is not None and not isinstance(title, str):
-        raise TypeError(f"a title is a text, not {title!r}")
-    if isinstance(views, str):
-        raise TypeError(f"views are names in a list, not {views!r}")
-    for name in (view, *(views or ())):
+def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
+    """Write the page."""
+    for name in (options.view, *(options.views or ())):
         seen.image(name)  # there must be such a view
     player = player_script()
     omitted: dict[str, str] = {}
     told = payload(
-        seen,
-        size=size,
-        params=params,
-        time=time,
-        duration=duration,
-        title=title,
-        embed=embed,
-        panel=panel and not embed,
-        view=view,
-        views=views,
-        omit=lambda name, error: omitted.update({name: error.diagnostics[0].message}),
+        seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
     )
-    shown = b""
-    if poster:
-        shown = poster_bytes(seen, size=size, time=time, params=params, view=view, device=device)
+    shown = poster(seen, options) if options.poster else b""
     stage = _stage(told, shown)
-    text = _fragment(stage, player) if embed else _document(stage, told, player)
+    text = _fragment(stage, player) if options.embed else _document(stage, told, player)
     with replacement(path) as file:
         file.write(text.encode("utf-8"))
     parts = {

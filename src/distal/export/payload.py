@@ -20,6 +20,7 @@ from distal.backends import emit, get_target
 from distal.backends.base import Artifact
 from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
+from distal.export.page_options import PageOptions
 from distal.export.resources import resource, table
 from distal.frontend import lower
 from distal.ir.nodes import Module
@@ -43,70 +44,55 @@ Places = tuple[tuple[str, int] | None, ...]
 
 def payload(
     seen: Viewable,
-    *,
-    size: tuple[int, int] = (640, 480),
-    params: Mapping[str, Any] | None = None,
-    time: float = 0.0,
-    duration: float | None = None,
-    title: str | None = None,
-    embed: bool = False,
-    panel: bool = True,
-    poster: str | None = None,
-    view: str = COLOR,
-    views: Sequence[str] | None = None,
+    options: PageOptions,
     omit: Callable[[str, CompileError], None] | None = None,
 ) -> dict[str, Any]:
     """Everything that the player needs.
 
     Args:
         seen: What is shown.
-        size: The author's picture in pixels.
-        params: Values of parameters at the start, by name.
-        time: Seconds at the start.
-        duration: Seconds after which the time begins anew; None: never.
-        title: What a person reads; None for the scene's own name.
-        embed: Whether it is the bare canvas.
-        panel: Whether there are controls beside it.
-        poster: A data URL, where no page shows a poster.
-        view: What is shown first.
-        views: What can be looked at; None for all.
-        omit: Told of each view that WebGL 2 cannot show.
+        options: The options of the page.
+        omit: Called with each view that WebGL 2 cannot show.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
         ValueError: There is no such view or parameter, or a value is out of range.
     """
     programs = Programs(seen)
-    names = list(dict.fromkeys(views or seen.views))
-    if view not in names:
-        names.insert(0, view)
+    names = list(dict.fromkeys(options.views or seen.views))
+    if options.view not in names:
+        names.insert(0, options.view)
     shown = []
     for name in names:
         try:
             number = programs.add(name)
         except CompileError as error:
-            if name == view:
+            if name == options.view:
                 raise
             if omit is not None:
                 omit(name, error)
             continue
         shown.append({"name": name, "label": view_label(name), "program": number})
-    name = title or name_of(seen)
+    name = options.title or name_of(seen)
     return {
         "format": FORMAT,
         "distal": __version__,
         "name": name,
         "description": description_of(seen, name),
-        "size": list(size),
-        "embed": embed,
-        "panel": panel,
+        "size": list(options.size),
+        "embed": options.embed,
+        "panel": options.panel and not options.embed,
         "steering": {"elevation": seen.elevation} if seen.steers else None,
-        "time": {"start": time, "duration": duration, "animated": seen.animated},
+        "time": {
+            "start": options.time,
+            "duration": options.duration,
+            "animated": seen.animated,
+        },
         "parameters": [_parameter(p) for p in seen.parameters],
-        "values": _start_values(seen.parameters, params),
+        "values": _start_values(seen.parameters, options.params),
         "views": shown,
-        "view": view,
-        "poster": poster,
+        "view": options.view,
+        "poster": None,
         "files": programs.files,
         "programs": _packed(programs.made),
         "resources": programs.resources,

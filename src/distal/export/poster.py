@@ -6,12 +6,13 @@ Input: something to be seen. Output: a small WebP file's bytes.
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
 from PIL import Image as PillowImage
 
+from distal.export.page_options import PageOptions
 from distal.images.png import quantise
+from distal.lang.render_options import RenderOptions
 from distal.scene.viewing.viewable import Viewable
 
 WIDTH_PX: Final = 480
@@ -20,19 +21,17 @@ MOST_BYTES: Final = 10_000
 QUALITIES: Final = (82, 74, 66, 58, 50, 42, 34)
 
 
-def poster(
-    seen: Viewable,
-    *,
-    size: tuple[int, int],
-    time: float = 0.0,
-    params: Mapping[str, Any] | None = None,
-    view: str = "color",
-    device: str = "cpu",
-) -> bytes:
-    """A small picture in the aspect of ``size``, as WebP."""
-    width = min(WIDTH_PX, size[0])
-    height = max(1, round(width * size[1] / size[0]))
-    picture = seen.render(view=view, size=(width, height), time=time, params=params, device=device)
+def poster(seen: Viewable, options: PageOptions) -> bytes:
+    """A small picture in the aspect of a page's own, as WebP."""
+    width = min(WIDTH_PX, options.size[0])
+    height = max(1, round(width * options.size[1] / options.size[0]))
+    small = RenderOptions(
+        size=(width, height),
+        time=options.time,
+        params=options.params or {},
+        device=options.device,
+    )
+    picture = seen.render(small, view=options.view)
     pixels = PillowImage.fromarray(quantise(picture.array)[..., :3])
     data = b""
     for quality in QUALITIES:

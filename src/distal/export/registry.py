@@ -6,50 +6,56 @@ the declarations of targets. To add another kind: one module with ``write``, and
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 from distal.backends import TEXT_TARGETS
 from distal.export.exported import Exported
+from distal.export.page_options import PageOptions, TextOptions
 from distal.images.atomic_files import SaveError, check_destination
+from distal.lang.lazy_module import LazyModule
+from distal.lang.presentable import ExportOptions
 from distal.scene.viewing.viewable import viewable
+
+if TYPE_CHECKING:
+    from distal.export import page, texts
+else:
+    page = LazyModule("distal.export.page")
+    texts = LazyModule("distal.export.texts")
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
-    """A kind of file.
+class FileFormat:
+    """A kind of file that an export writes.
 
     Attributes:
-        module: Whose ``write(seen, path, target, **options)`` makes it.
-        suffix: What its files end in; None where another kind has the suffix.
-        options: What ``export`` may be told of it.
+        options: Its options.
+        suffix: What its files end in; None where another one has the suffix.
     """
 
-    module: str
-    suffix: str | None
-    options: frozenset[str]
+    options: type[TextOptions]
+    suffix: str | None = None
+
+    @property
+    def option_names(self) -> frozenset[str]:
+        """What ``export`` takes for it."""
+        return frozenset(field.name for field in fields(self.options))
 
 
-_TEXT: Final = frozenset({"params", "view", "time"})
-_PAGE: Final = _TEXT | {
-    *("size", "duration", "title", "embed", "panel", "poster", "views", "device"),
-}
-
-KINDS: Final = {
-    "html": Kind("distal.export.page", ".html", _PAGE),
-    **{
-        name: Kind("distal.export.texts", target.suffix, _TEXT)
-        for name, target in TEXT_TARGETS.items()
-    },
+FORMATS: Final = {
+    "html": FileFormat(PageOptions, ".html"),
+    **{name: FileFormat(TextOptions, target.suffix) for name, target in TEXT_TARGETS.items()},
 }
 
 
 def export(
-    obj: Any, path: str | PathLike[str], *, target: str | None = None, **options: Any
+    obj: Any,
+    path: str | PathLike[str],
+    *,
+    target: str | None = None,
+    **options: Unpack[ExportOptions],
 ) -> Exported:
     """Write a scene, a shape or an ``@image`` as a file that shows it elsewhere.
 
@@ -59,11 +65,7 @@ def export(
             .glsl for Shadertoy, .fs for ISF, .frag for WebGL 2, .wgsl for WebGPU.
         target: "html", or that of a text, a name of ``distal.backends.TEXT_TARGETS``: "shadertoy",
             "glsl-es300" ...
-        options: ``params`` (values of parameters by name), ``view`` (what is shown first) and
-            ``time`` (seconds). Of a page also ``size`` (width and height in pixels), ``duration``
-            (seconds after which the time begins anew), ``title``, ``embed`` (a fragment for other
-            pages), ``panel``, ``poster`` (whether there are any), ``views`` (those to include), and
-            ``device`` (what renders the poster, as for ``Scene.render``).
+        options: The fields of ``PageOptions`` for a page, those of ``TextOptions`` for a text.
 
     Raises:
         SaveError: The suffix is unknown, or the file cannot be written.
@@ -74,14 +76,16 @@ def export(
     """
     destination = Path(path)
     name = kind_of(destination, target)
-    kind = KINDS[name]
-    if unknown := sorted(set(options) - kind.options):
-        known = ", ".join(sorted(kind.options))
+    taken = FORMATS[name].option_names
+    if unknown := sorted(set(options) - taken):
+        known = ", ".join(sorted(taken))
         raise TypeError(f"'{unknown[0]}' is no option of {name}; options: {known}")
     check_destination(destination)
-    seen = viewable(obj, options.get("params"), options.get("time", 0.0))
-    write: Callable[..., Exported] = importlib.import_module(kind.module).write
-    return write(seen, destination, name, **options)
+    chosen = PageOptions(**options)
+    seen = viewable(obj, chosen.params, chosen.time)
+    if name == "html":
+        return page.write(seen, destination, chosen)
+    return texts.write(seen, destination, name, chosen)
 
 
 def kind_of(path: Path, target: str | None) -> str:
@@ -92,10 +96,10 @@ def kind_of(path: Path, target: str | None) -> str:
         ValueError: There is no such target.
     """
     if target is not None:
-        if target not in KINDS:
-            raise ValueError(f"there is no target '{target}'; targets: {', '.join(KINDS)}")
+        if target not in FORMATS:
+            raise ValueError(f"there is no target '{target}'; targets: {', '.join(FORMATS)}")
         return target
-    by_suffix = {kind.suffix: name for name, kind in KINDS.items() if kind.suffix}
+    by_suffix = {format.suffix: name for name, format in FORMATS.items() if format.suffix}
     by_suffix[".htm"] = "html"
     found = by_suffix.get(path.suffix.lower())
     if found is None:

@@ -18,6 +18,7 @@ from distal.backends.clike.module_text import comment_text
 from distal.backends.targets import Declares
 from distal.compiler.driver import run_passes
 from distal.export.exported import Exported
+from distal.export.page_options import TextOptions
 from distal.frontend import lower
 from distal.images.atomic_files import SaveError, replacement
 from distal.ir.nodes import EntryKind, Module, Origin
@@ -92,18 +93,17 @@ def _broken(text: str) -> list[str]:
     return lines
 
 
-def write(
-    seen: Viewable,
-    path: Path,
-    target: str,
-    *,
-    params: Mapping[str, Any] | None = None,
-    view: str = "color",
-    time: float = 0.0,
-) -> Exported:
-    """Write the text, what it needs beside it, and its interface where a host has to be told."""
-    values = checked_values(seen.parameters, params)
-    image = seen.image(view, encoded=True)
+def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Exported:
+    """Write the text, what it needs beside it, and its interface where a host has to be told.
+
+    Args:
+        seen: What it shows.
+        path: The file.
+        target: The text's target, as for ``distal.compile``.
+        options: What is shown.
+    """
+    values = checked_values(seen.parameters, options.params)
+    image = seen.image(options.view, encoded=True)
     module = lower(image.text() if isinstance(image, Composed) else image)
     description = TEXT_TARGETS[target]
     artifact = emit(run_passes(_set(module, values), description), description)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from distal.images import metadata, png
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.metadata import Provenance
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.lang.srgb import decode_srgb
 from distal.packages import PackageError, imported
 
@@ -97,9 +97,9 @@ class Picture:
         """The texts that a saved file carries."""
         return metadata.texts(self.provenance, (self.width, self.height))
 
-    def told(self, **facts: Any) -> Picture:
-        """The same picture, with more known of where it came from; ``Provenance`` has the names."""
-        return replace(self, provenance=replace(self.provenance, **facts))
+    def with_provenance(self, **changes: Any) -> Picture:
+        """The same picture with these fields of its ``Provenance`` changed."""
+        return replace(self, provenance=replace(self.provenance, **changes))
 
     def with_layers(self, layers: Mapping[str, NDArray[Any]]) -> Picture:
         """The same picture with layers."""

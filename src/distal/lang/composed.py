@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from distal.ir.nodes import EntryKind
 from distal.ir.types import Type
 from distal.lang.functions import Func
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:

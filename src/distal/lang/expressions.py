@@ -3,7 +3,7 @@
 Input: parameters, the time, numbers, vectors, and operators or built-ins between them
 (``0.5 + 0.1 * np.cos(time)``). Output: an ``Expression`` that holds the node of the IR.
 Operators mean what they mean in scene code; the rules themselves are the front end's, reached
-through the one hook. NumPy's functions find their way here by themselves: it is not imported.
+through ``runtime_access``. NumPy's functions find their way here by themselves: it is not imported.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from distal.ir.intrinsics import python_functions
 from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
-from distal.lang.runtime_hook import combined, executor
+from distal.lang.runtime_access import executor, python_expressions
 from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ class Symbolic(Unchanging):
                 f"{plain} has no counterpart in scene code; "
                 "use a built-in of distal.lang, or write it in a @func"
             )
-        result = combined(operation, inputs)
+        result = python_expressions.combine(operation, inputs)
         if result is None:
             given = " and ".join(type(i).__name__ for i in inputs)
             raise TypeError(f"np.{name} of a parameter or of time does not take {given}")
@@ -254,7 +254,7 @@ def composed_value(operation: str, operands: tuple[Any, ...]) -> Expression:
     Raises:
         TypeError: It does not take them.
     """
-    result = combined(operation, operands)
+    result = python_expressions.combine(operation, operands)
     if result is None:
         given = ", ".join(type(o).__name__ for o in operands)
         raise TypeError(f"{operation}() of a parameter or of time does not take ({given})")
@@ -262,7 +262,7 @@ def composed_value(operation: str, operands: tuple[Any, ...]) -> Expression:
 
 
 def _operated(operation: str, *operands: Any) -> Any:
-    result = combined(operation, operands)
+    result = python_expressions.combine(operation, operands)
     return NotImplemented if result is None else result
 
 

@@ -13,10 +13,12 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from distal.lang.presentable import Presentable
-from distal.lang.runtime_hook import executor
+from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.lang.runtime_access import executor
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:
+    from distal.images.picture import Picture
     from distal.lang.parameters import Parameter
 
 
@@ -93,32 +95,37 @@ class Image(Func, Presentable):
         params: Mapping[str, Any] | None = None,
         device: str = "cpu",
         threads: int | None = None,
-        progress: Callable[[float], Any] | None = None,
-        cancel: Any = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
         index: int = 0,
         seed: int = 0,
-    ) -> Any:
+    ) -> Picture:
         """Compute the picture.
 
         Args:
             size: Width and height in pixels.
-            time: ``frame.time`` in seconds.
+            time: Seconds; ``frame.time`` of an ``@image``.
             params: Values of parameters by name; the others have their defaults.
             device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
                 "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
-            threads: How many to use; None for all the machine lends.
+            threads: How many CPU threads to use; None for all that the process may use.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.
             mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
             index: ``frame.index``, the frame's number; wraps at 32 bits.
-            seed: ``frame.seed``; wraps at 32 bits.
+            seed: ``frame.seed``, where random numbers start; wraps at 32 bits.
+
+        Raises:
+            CompileError: The scene code has mistakes.
+            DeviceError: The device is missing or was lost; never with "auto", which then warns.
+            TypeError: A value has the wrong type.
+            ValueError: A value is out of range, or there is no such parameter or device.
         """
-        return executor().render(
-            self,
+        options = RenderOptions(
             size=size,
             time=time,
-            params=params,
+            params=params or {},
             device=device,
             threads=threads,
             progress=progress,
@@ -127,6 +134,7 @@ class Image(Func, Presentable):
             index=index,
             seed=seed,
         )
+        return executor().render(self, options)
 
 
 def func(function: Callable[..., Any]) -> Func:

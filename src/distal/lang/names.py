@@ -11,7 +11,7 @@ from typing import Any
 
 from distal.ir.intrinsics import Intrinsic
 from distal.lang.expressions import composed_value, is_symbolic
-from distal.lang.runtime_hook import calculated, executor
+from distal.lang.runtime_access import constant_evaluation, executor
 from distal.lang.values import MatrixValue, VectorValue
 
 
@@ -42,7 +42,7 @@ class LangFunction:
         if python is not None and (kwargs or _means_python(args)):
             return python(*args, **kwargs)
         if not kwargs and all(map(_is_constant, args)):
-            value = calculated(self.row, args)
+            value = constant_evaluation.compute(self.row, args)
             if value is not None:
                 return value
         return executor().call(self, args, kwargs)

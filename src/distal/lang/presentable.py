@@ -1,14 +1,72 @@
-"""What every picture can do besides being rendered: be shown, exported, filmed.
+"""What every picture can do besides being rendered: be shown, exported, written as a video.
 
-The work is done far above; this room only hands the object on.
+The work is done in ``distal.notebook``, ``distal.export`` and ``distal.video``, imported when they
+are first needed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
-from distal.lang.runtime_hook import presenter
+from distal.lang.render_options import Cancel
+from distal.lang.runtime_access import exports, recording, widget
+from distal.packages import explained
+
+if TYPE_CHECKING:
+    from distal.export.exported import Exported
+    from distal.notebook.widget import LiveView
+    from distal.video.recording import FinishedSequence, Progress
+    from distal.video.store import Tell
+
+
+class ShowOptions(TypedDict, total=False):
+    """The options of ``show``; ``LiveView`` documents them."""
+
+    size: tuple[int, int]
+    params: Mapping[str, Any] | None
+    time: float
+    playing: bool | None
+    view: str
+    panel: bool
+
+
+class ExportOptions(TypedDict, total=False):
+    """The options of ``export`` besides the target; ``PageOptions`` documents them."""
+
+    size: tuple[int, int]
+    time: float
+    duration: float | None
+    params: Mapping[str, Any] | None
+    title: str | None
+    embed: bool
+    panel: bool
+    poster: bool
+    view: str
+    views: Sequence[str] | None
+    device: str
+
+
+class VideoOptions(TypedDict, total=False):
+    """The options of ``video`` besides the duration; ``distal.video.video`` documents them."""
+
+    fps: float | Fraction | str
+    size: tuple[int, int]
+    start: float | Fraction | str
+    params: Mapping[str, Any] | None
+    view: str
+    samples: int
+    loop: bool
+    quality: str | float
+    device: str
+    threads: int | None
+    keep_frames: str | PathLike[str] | None
+    fresh: bool
+    progress: Progress | None
+    cancel: Cancel | None
+    tell: Tell | None
 
 
 class Presentable:
@@ -16,7 +74,7 @@ class Presentable:
 
     __slots__ = ()
 
-    def show(self, **options: Any) -> Any:
+    def show(self, **options: Unpack[ShowOptions]) -> LiveView:
         """A live picture in a notebook, with a control for every parameter.
 
         The widget's ``params``, ``time``, ``view`` and ``steering`` are bound both ways: controls
@@ -29,26 +87,39 @@ class Presentable:
         Raises:
             CompileError: The scene code has mistakes, or says what WebGL cannot do.
         """
-        return presenter().show(self, **options)
+        try:
+            show = widget.show
+        except Exception as error:
+            raise explained(error) or error from None
+        return show(self, **options)
 
-    def export(self, path: str | PathLike[str], **options: Any) -> Any:
+    def export(
+        self,
+        path: str | PathLike[str],
+        *,
+        target: str | None = None,
+        **options: Unpack[ExportOptions],
+    ) -> Exported:
         """Write a web page or a shader's text; the suffix or ``target`` says which.
 
         A page is one file that needs no network: a live picture with controls.
 
         Args:
             path: ``page.html``, or a text: ``.frag``, ``.glsl``, ``.wgsl``, ``.fs`` (ISF).
-            options: ``target`` for a text; for a page ``size``, ``time``, ``duration``, ``params``,
-                ``title``, ``view``, ``views``, ``embed``, ``panel``, ``poster``, and
-                ``device``, which renders the poster, as for ``render``.
+            target: What is written, where the suffix does not say it: "html", or that of a text.
+            options: For a page ``size``, ``time``, ``duration``, ``params``, ``title``, ``view``,
+                ``views``, ``embed``, ``panel``, ``poster``, and ``device``, which renders the
+                poster, as for ``render``; for a text ``params``, ``view``, ``time``.
 
         Raises:
             CompileError: The scene code has mistakes, or says what the target cannot do.
             SaveError: The suffix is unknown, or the file cannot be written.
         """
-        return presenter().export(self, path, **options)
+        return exports.export(self, path, target=target, **options)
 
-    def video(self, path: str | PathLike[str], *, duration: float, **options: Any) -> Any:
+    def video(
+        self, path: str | PathLike[str], *, duration: float, **options: Unpack[VideoOptions]
+    ) -> FinishedSequence:
         """Render a video or a sequence of pictures; the suffix says which.
 
         A run that was broken off goes on where it ended. Needs the extra ``video`` for mp4 and
@@ -65,4 +136,4 @@ class Presentable:
             CompileError: The scene code has mistakes.
             SaveError: The suffix is unknown, or the file cannot be written.
         """
-        return presenter().video(self, path, duration=duration, **options)
+        return recording.video(self, path, duration=duration, **options)

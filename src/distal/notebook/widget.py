@@ -8,16 +8,25 @@ change. Knows nothing of how the browser draws.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Unpack
 
 import anywidget
 import traitlets
 
 from distal.export.page import PLAYER
+from distal.export.page_options import PageOptions
 from distal.export.payload import payload
+from distal.images.picture import Picture
 from distal.lang.chosen_values import checked_values
-from distal.runtime.uniform_values import checked_size, checked_time
+from distal.lang.presentable import ShowOptions
+from distal.lang.render_options import (
+    Cancel,
+    Progress,
+    RenderOptions,
+    checked_size,
+    checked_time,
+)
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import Viewable, viewable
 
@@ -76,7 +85,8 @@ class LiveView(anywidget.AnyWidget):
         if view not in self._seen.views:
             raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
         values = self._checked(params)
-        made = payload(self._seen, size=size, params=values, time=time, panel=panel)
+        # The view that is shown first is the widget's own trait.
+        made = payload(self._seen, PageOptions(size=size, params=values, time=time, panel=panel))
         # Without what WebGL cannot show.
         self._views = [shown["name"] for shown in made["views"]]
         super().__init__(
@@ -98,22 +108,47 @@ class LiveView(anywidget.AnyWidget):
         """
         self.params = {**self.params, **values}
 
-    def render(self, size: tuple[int, int] | None = None, **options: Any) -> Any:
-        """The picture as it stands now, computed by Python: a ``Picture`` to save or to measure.
+    def render(
+        self,
+        size: tuple[int, int] | None = None,
+        *,
+        device: str = "cpu",
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+        index: int = 0,
+        seed: int = 0,
+        freeze: bool = False,
+    ) -> Picture:
+        """What the widget shows now, computed by Python: a ``Picture`` to save or to measure.
 
         Args:
             size: Width and height in pixels; the widget's without it.
-            options: As for ``Scene.render``: ``device``, ``threads`` …
+            device: As for ``Scene.render``, like all that follows.
+            threads: How many CPU threads to use.
+            progress: Called with the finished share.
+            cancel: Ends the work early.
+            mouse: The frame's mouse.
+            index: The frame's number.
+            seed: Where random numbers start.
+            freeze: Make constants of all numbers.
         """
-        moved = _as_steering(self.steering)
-        return self._seen.render(
+        options = RenderOptions(
             size=size or self._size,
             time=self.time,
             params=dict(self.params),
-            view=self.view,
-            steering=moved if self._seen.steers else None,
-            **options,
+            device=device,
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+            mouse=mouse,
+            index=index,
+            seed=seed,
+            freeze=freeze,
         )
+        moved = _as_steering(self.steering) if self._seen.steers else None
+        return self._seen.render(options, view=self.view, steering=moved)
 
     def _checked(self, values: Mapping[str, Any] | None) -> dict[str, Any]:
         chosen = checked_values(self._seen.parameters, values)
@@ -169,7 +204,7 @@ def _plain(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-def show(obj: Any, **options: Any) -> LiveView:
+def show(obj: Any, **options: Unpack[ShowOptions]) -> LiveView:
     """A live picture of a scene, a shape or an ``@image``; see ``LiveView``.
 
     Raises:

@@ -1,67 +1,45 @@
-"""What happens when Python calls scene code: ``f(points)`` and ``image.render()``.
+"""Runs scene code for Python: ``f(points)`` and ``image.render()``.
 
-Input: recorded functions and plain values. Output: arrays and Pictures. This room
-joins the front end, the devices and the film; ``distal.lang`` reaches it through its one hook.
+Input: recorded functions, plain values and ``RenderOptions``. Output: arrays and pictures. It joins
+the front end, the devices and the pictures; ``distal.lang`` reaches it through ``runtime_access``.
 """
 
 from __future__ import annotations
 
-import importlib
 import threading
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from distal.backends import get_target
 from distal.compiler.driver import run_passes
 from distal.devices.base import Kernel
 from distal.diagnostics import DeviceError
-from distal.frontend import lower
-from distal.frontend.signatures.matching import signature_of
-from distal.frontend.signatures.signatures import MISSING, read_header
 from distal.images.picture import Picture, Provenance
 from distal.ir.nodes import Origin, Return
-from distal.ir.types import VEC4, Type
+from distal.ir.types import VEC4
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
+from distal.lang.render_options import RenderOptions, checked_time
 from distal.loading import loaded_from
-from distal.runtime.call_values import (
-    bind,
-    choose_types,
-    count,
-    empty,
-    is_double,
-    is_many,
-    rows_of,
-    single,
-    with_names,
-)
-from distal.runtime.device_names import AUTO, CPU, DEVICE_NAMES, GPU, GPU_FRAGMENT, REFERENCE
+from distal.runtime.call_arguments import call_arguments
+from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
+from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
+from distal.runtime.kernels import KernelCache, automatic_device
 from distal.runtime.lowered import Lowered, Types
-from distal.runtime.uniform_values import (
-    LARGEST_SIDE_PX,
-    Declared,
-    checked_size,
-    checked_time,
-    frame_values,
-)
+from distal.runtime.uniform_values import Declared, frame_values
 
-KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
-# Name -> the module that prepares kernels for it, and what it is told besides.
-DEVICES: Final[dict[str, tuple[str, dict[str, str]]]] = {
-    CPU: ("distal.devices.cpu", {}),
-    GPU: ("distal.devices.gpu", {"path": "compute"}),
-    GPU_FRAGMENT: ("distal.devices.gpu", {"path": "fragment"}),
-    REFERENCE: ("distal.devices.reference", {}),
-}
+if TYPE_CHECKING:
+    from distal.devices.gpu import GpuKernel
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,16 +50,30 @@ class _Parts:
     declared: Declared
 
 
+@dataclass(frozen=True, slots=True)
+class DrawTarget:
+    """The texture that ``PythonExecutor.draw`` draws into.
+
+    Attributes:
+        view: The texture's view, on the device of ``distal.devices.adapters``.
+        format: The texture's format.
+        adapter: The adapter that the texture is on; the best when None.
+    """
+
+    view: Any
+    format: str
+    adapter: str | None = None
+
+
 class PythonExecutor:
     """Runs scene code for Python; keeps compiled kernels for the life of the process.
 
-    A function is lowered again when a constant it captured has changed; a kernel is found by what
-    lowering gave, so that scenes which differ in their numbers only share one.
+    A function is lowered again when a constant it captured has changed.
     """
 
     def __init__(self) -> None:
-        self._kernels: dict[tuple[str, str, int], Kernel] = {}
-        self._lock = threading.RLock()  # frames of a film are rendered by several threads
+        self.kernels = KernelCache()
+        self._lock = threading.RLock()  # frames of a video are rendered by several threads
         self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
         self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
 
@@ -98,120 +90,77 @@ class PythonExecutor:
                 return True
         return False
 
-    def render(self, image: Image | Composed, *, device: str = "cpu", **options: Any) -> Picture:
-        """The picture of an image; see ``Image.render`` for what is not said here.
-
-        Args:
-            image: An image, a scene, or a view of one.
-            device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
-                "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
-            options: Besides: ``settings``, values of a scene's numbers by name, for this picture
-                only; ``freeze``: make constants of the numbers, for a picture that is worth its
-                own compilation.
+    def render(self, image: Image | Composed, options: RenderOptions) -> Picture:
+        """The picture of an image, a scene, or a view of one.
 
         Raises:
             DeviceError: The device is missing or was lost; never with "auto", which then warns.
         """
-        if device != AUTO:
-            return self._render_on(device, image, **options)
-        found = _found()
+        if options.device != AUTO:
+            return self._render_on(options.device, image, options)
+        found = automatic_device()
         try:
-            return self._render_on(found, image, **options)
+            return self._render_on(found, image, options)
         except DeviceError as error:
-            if found == "cpu":
+            if found == CPU:
                 raise
             warnings.warn(f"{error}; rendering on the CPU instead", stacklevel=2)
-            return self._render_on("cpu", image, **options)
+            return self._render_on(CPU, image, options)
 
-    def _render_on(
-        self,
-        device: str,
-        image: Image | Composed,
-        *,
-        size: tuple[int, int],
-        time: float = 0.0,
-        params: Mapping[str, Any] | None = None,
-        threads: int | None = None,
-        progress: Callable[[float], Any] | None = None,
-        cancel: Any = None,
-        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int = 0,
-        seed: int = 0,
-        settings: Mapping[str, Any] | None = None,
-        freeze: bool = False,
-    ) -> Picture:
-        size, seconds = checked_size(size), checked_time(time)
-        begin = _now()
+    def _render_on(self, device: str, image: Image | Composed, options: RenderOptions) -> Picture:
+        begin = time.perf_counter()
         run = self._parts(image)
-        parts, declared = run.parts, run.declared
-        values = declared.parameter_values(params or {})
-        numbers = declared.number_values(settings or {})
-        if freeze:
+        parts = run.parts
+        values, others = _uniforms(run.declared, options)
+        if options.freeze:
+            numbers = run.declared.number_values(options.settings)
             parts = tuple(part.frozen(numbers) for part in parts)
-        kernels = [self._kernel(part, device, 32) for part in parts]
-        compiled = _now()
-        others = {**numbers, **frame_values(size, seconds, mouse, index, seed)}
+        kernels = [self.kernels.kernel(part, device, 32) for part in parts]
+        compiled = time.perf_counter()
         pixels = kernels[0].render(
-            *size,
-            declared.for_kernel(0, values, others),
+            *options.size,
+            run.declared.for_kernel(0, values, others),
             parts[0].resources,
-            threads=threads,
-            progress=progress,
-            cancel=cancel,
+            threads=options.threads,
+            progress=options.progress,
+            cancel=options.cancel,
         )
         stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
-        linear = None
+        linear: NDArray[np.float32] | None = None
         if len(parts) > 1:
             linear = pixels
-            uniforms = declared.for_kernel(1, values, others)
             pixels = kernels[1].map_pixels(
-                linear, uniforms, parts[1].resources, threads=threads, cancel=cancel
+                linear,
+                run.declared.for_kernel(1, values, others),
+                parts[1].resources,
+                threads=options.threads,
+                cancel=options.cancel,
             )
-        stats["render_s"] = _now() - compiled
+        stats["render_s"] = time.perf_counter() - compiled
         known = loaded_from(image)
         origin = Provenance(
             source=image.name if known is None else known.source,
             source_hash=parts[0].source_hash if known is None else known.digest,
             neighbours=() if known is None else known.neighbours,
             parameters=values,
-            time=seconds,
+            time=options.time,
             index=others["index"],
             seed=others["seed"],
             mouse=others["mouse"],
-            freeze=freeze,
+            freeze=options.freeze,
             device=device,
         )
         return Picture(pixels, origin, stats, linear)
 
     def draw(
-        self,
-        image: Image | Composed,
-        view: Any,
-        *,
-        format: str,
-        size: tuple[int, int],
-        time: float = 0.0,
-        params: Mapping[str, Any] | None = None,
-        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int = 0,
-        seed: int = 0,
-        settings: Mapping[str, Any] | None = None,
-        adapter: str | None = None,
+        self, image: Image | Composed, target: DrawTarget, options: RenderOptions
     ) -> dict[str, Any]:
-        """Draw an image of display values into a texture view of wgpu, and wait for nothing.
+        """Draw an image of display values into a texture of wgpu, and wait for nothing.
 
         Args:
             image: What is drawn; its pixels are display values.
-            view: The texture's view, on the device of ``distal.devices.adapters``.
-            format: The texture's format.
-            size: Its width and height in pixels.
-            time: Seconds; this and what follows as for ``render``.
-            params: Values of parameters.
-            mouse: The mouse.
-            index: The frame's number.
-            seed: What random numbers start from.
-            settings: Values of a scene's numbers.
-            adapter: Which adapter; the best when None.
+            target: The texture.
+            options: As for ``render``; the size is the texture's, and the target says which device.
 
         Returns:
             What is known of the kernel.
@@ -221,13 +170,10 @@ class PythonExecutor:
         """
         run = self._parts(image)
         assert len(run.parts) == 1, "a window shows display values"
-        size, declared = checked_size(size), run.declared
-        others = declared.number_values(settings or {})
-        others |= frame_values(size, checked_time(time), mouse, index, seed)
-        uniforms = declared.for_kernel(0, declared.parameter_values(params or {}), others)
-        name = "gpu-fragment" if adapter is None else f"gpu-fragment:{adapter}"
-        kernel = self._kernel(run.parts[0], name, 32)
-        kernel.draw(view, format, *size, uniforms, run.parts[0].resources)  # type: ignore[attr-defined]
+        uniforms = run.declared.for_kernel(0, *_uniforms(run.declared, options))
+        device = GPU_FRAGMENT if target.adapter is None else f"{GPU_FRAGMENT}:{target.adapter}"
+        kernel = cast("GpuKernel", self.kernels.kernel(run.parts[0], device, 32))
+        kernel.draw(target.view, target.format, *options.size, uniforms, run.parts[0].resources)
         return kernel.stats
 
     def call(
@@ -237,13 +183,25 @@ class PythonExecutor:
         kwargs: Mapping[str, Any],
         params: Mapping[str, Any] | None = None,
         time: float = 0.0,
-        device: str = "cpu",
+        device: str = CPU,
     ) -> Any:
-        """The function's value for numbers, vectors, or arrays with one row for each point."""
+        """The function's value for numbers, vectors, or arrays with one row for each point.
+
+        Args:
+            function: What is called.
+            args: Values by position.
+            kwargs: Values by name.
+            params: Values of parameters by name; the others have their defaults.
+            time: Seconds.
+            device: A device's name, as for ``render``.
+
+        Raises:
+            TypeError: No overload takes the values.
+        """
         seconds = checked_time(time)
         double = any(map(is_double, [*args, *kwargs.values()]))
         dtype = np.dtype(np.float64 if double else np.float32)
-        types, values, rows = _arguments(function, args, kwargs, dtype)
+        types, values, rows = call_arguments(function, args, kwargs, dtype)
         many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
         points = count(rows)
         lowered = self._lower(function, types)
@@ -252,10 +210,11 @@ class PythonExecutor:
         uniforms = _all_values(Declared([module]), params or {}, seconds)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
+        kernel: Kernel
         if rows:
-            kernel = self._kernel(lowered, device, 64 if double else 32)
-        else:  # one value of parameters alone is not worth machine code
-            kernel = self._kernel(lowered, "reference", 64)
+            kernel = self.kernels.kernel(lowered, device, 64 if double else 32)
+        else:  # machine code for a single value would take longer than the value itself
+            kernel = self.kernels.kernel(lowered, REFERENCE, 64)
         result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
 
@@ -263,14 +222,14 @@ class PythonExecutor:
         """The value of an expression of parameters and time."""
         lowered = Lowered.of(_ValueOf(expression), None)
         uniforms = _all_values(Declared([lowered.module]), params, checked_time(time))
-        result = self._kernel(lowered, "reference", 64).evaluate([], uniforms, {})
+        result = self.kernels.kernel(lowered, REFERENCE, 64).evaluate([], uniforms, {})
         return single(result, expression.type)
 
     def _parts(self, function: Func | Composed) -> _Parts:
         """What is run for a function, remembered while it is the same."""
         with self._lock:
             first = self._lower(function, None)
-            display = getattr(function, "display", None)
+            display = function.display if isinstance(function, Composed) else None
             parts = (first,) if display is None else (first, self._lower(display, (VEC4,)))
             known = self._together.get(function)
             if known is None or known.parts != parts:
@@ -289,31 +248,6 @@ class PythonExecutor:
                 lowered = known[types] = Lowered.of(function, types)
             return lowered
 
-    def _kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
-        name, _, adapter = device.partition(":")
-        if name not in DEVICES or (adapter and not name.startswith("gpu")):
-            known = ", ".join(DEVICE_NAMES)
-            raise ValueError(f"there is no device '{device}'; devices: {known}")
-        key = (lowered.digest, device, precision)
-        with self._lock:
-            kernel = self._kernels.pop(key, None)
-            if kernel is None:
-                room, options = DEVICES[name]
-                is_gpu = name.startswith("gpu")
-                told = {**options, "adapter": adapter or None} if is_gpu else options
-                prepare = importlib.import_module(room).prepare
-                kernel = prepare(lowered.module, precision=precision, **told)
-            self._kernels[key] = kernel  # the last used stands last
-            if len(self._kernels) > KERNELS_KEPT:
-                self._kernels.pop(next(iter(self._kernels)), None)
-            return kernel
-
-
-def _found() -> str:
-    """What "auto" means on this machine."""
-    found = importlib.import_module("distal.devices.adapters").resolve(AUTO)
-    return f"{found.device}:{found.adapter}" if found.adapter else str(found.device)
-
 
 class _ValueOf(Composed):
     """An expression as a function of nothing."""
@@ -329,87 +263,13 @@ class _ValueOf(Composed):
         return name
 
 
+def _uniforms(declared: Declared, options: RenderOptions) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The values of the parameters, and those of the frame and of the numbers."""
+    values = declared.parameter_values(options.params)
+    return values, {**declared.number_values(options.settings), **frame_values(options)}
+
+
 def _all_values(declared: Declared, params: Mapping[str, Any], seconds: float) -> dict[str, Any]:
     """The uniforms of a function that is called from Python."""
     others = {**declared.numbers, "time": seconds}
     return declared.for_kernel(0, declared.parameter_values(params), others)
-
-
-def _arguments(
-    function: Func | Composed | LangFunction,
-    args: Sequence[Any],
-    kwargs: Mapping[str, Any],
-    dtype: np.dtype[Any],
-) -> tuple[tuple[Type, ...], list[Any], list[Any]]:
-    """The types of the overload that takes the arguments; these in its order, also as rows."""
-    if isinstance(function, LangFunction):
-        if kwargs:
-            raise TypeError(f"{function.row.name}() takes no keyword arguments")
-        for signature in function.row.signatures:
-            for types, _ in signature.instances():
-                rows = rows_of(args, types, dtype) if len(types) == len(args) else None
-                if rows is not None:
-                    return types, list(args), rows
-    elif isinstance(function, Composed):
-        types = tuple(type for _, type in function.signature)
-        names = dict.fromkeys((name for name, _ in function.signature), MISSING)
-        values = bind(function.name, names, args, kwargs)
-        rows = rows_of(values, types, dtype)
-        if rows is not None:
-            return types, values, rows
-    else:
-        mistake: TypeError | None = None
-        for overload in function.overloads:
-            header = read_header(overload)
-            if header.problems:
-                lower(function)  # raises with the author's lines
-            try:
-                defaults = {slot.name: slot.default for slot in header.slots}
-                values = bind(header.name, defaults, args, kwargs)
-            except TypeError as error:
-                mistake = error
-                continue
-            found = choose_types(header, values, dtype)
-            if found is not None:
-                types, rows = found
-                return types, values, rows
-        if mistake is not None and len(function.overloads) == 1:
-            raise mistake
-    given = ", ".join(map(_described, [*args, *kwargs.values()]))
-    raise TypeError(f"{_name(function)}() does not take ({given}); {_takes(function)}")
-
-
-def _name(function: Func | Composed | LangFunction) -> str:
-    return function.row.name if isinstance(function, LangFunction) else function.name
-
-
-def _takes(function: Func | Composed | LangFunction) -> str:
-    if isinstance(function, LangFunction):
-        overloads = [
-            f"({', '.join(map(str, types))})"
-            for signature in function.row.signatures
-            for types, _ in signature.instances()
-        ]
-    elif isinstance(function, Composed):
-        params = ", ".join(f"{name}: {type}" for name, type in function.signature)
-        overloads = [f"({params}) -> {function.result}"]
-    else:
-        overloads = [signature_of(read_header(o)) for o in function.overloads]
-    return f"it takes {' or '.join(overloads)}, or arrays with a row for each point"
-
-
-def _described(value: Any) -> str:
-    try:
-        shape = np.shape(value) if not isinstance(value, str) else ()
-    except ValueError:
-        return f"a {type(value).__name__} whose parts differ in length"
-    if shape:
-        return f"an array of shape {shape}"
-    return repr(value) if isinstance(value, int | float | str) else type(value).__name__
-
-
-def _now() -> float:
-    return time.perf_counter()
-
-
-__all__ = ["LARGEST_SIDE_PX", "PythonExecutor"]

@@ -7,20 +7,16 @@ or ``ValueError`` that names it. Knows no device.
 
 from __future__ import annotations
 
-import math
-import operator
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
-from distal.ir.limits import LARGEST_TIME
 from distal.ir.nodes import Module, Origin, UniformDeclaration
 from distal.ir.types import BOOL, FLOAT, INT, Vector
 from distal.lang.chosen_values import checked_values
 from distal.lang.parameter_values import as_bool, as_float, as_int, as_point
 from distal.lang.parameters import Parameter
+from distal.lang.render_options import RenderOptions
 from distal.passes.entry import renamed_parameters
-
-LARGEST_SIDE_PX: Final = 16384
 
 
 class Declared:
@@ -90,61 +86,13 @@ def _checked_number(uniform: UniformDeclaration, value: Any) -> Any:
     return as_point(uniform.name, value, (uniform.type.size,))
 
 
-def frame_values(
-    size: tuple[int, int], seconds: float, mouse: Any, index: Any, seed: Any
-) -> dict[str, Any]:
-    """The frame's uniforms; ``size`` and ``seconds`` are checked already."""
+def frame_values(options: RenderOptions) -> dict[str, Any]:
+    """The frame's uniforms."""
+    width, height = options.size
     return {
-        "resolution": (float(size[0]), float(size[1])),
-        "time": seconds,
-        "mouse": _checked_mouse(mouse),
-        "index": (_checked_int("index", index) + 2**31) % 2**32 - 2**31,
-        "seed": _checked_int("seed", seed) & 0xFFFFFFFF,
+        "resolution": (float(width), float(height)),
+        "time": options.time,
+        "mouse": options.mouse,
+        "index": (options.index + 2**31) % 2**32 - 2**31,
+        "seed": options.seed & 0xFFFFFFFF,
     }
-
-
-def checked_size(size: Any) -> tuple[int, int]:
-    """Width and height in pixels."""
-    try:
-        width, height = map(operator.index, size)
-    except (TypeError, ValueError):
-        raise TypeError(f"size is (width, height) in pixels, not {size!r}") from None
-    if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
-        raise ValueError(f"each side has 1 to {LARGEST_SIDE_PX} pixels, not {width}x{height}")
-    return width, height
-
-
-def checked_time(seconds: Any) -> float:
-    """A time in seconds that 32 bits still tell from its neighbours."""
-    try:
-        value = float(seconds)
-    except (TypeError, ValueError):
-        raise TypeError(f"time is a number of seconds, not {seconds!r}") from None
-    except OverflowError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise ValueError(f"time is finite, not {value}")
-    if abs(value) > LARGEST_TIME:
-        raise ValueError(
-            f"time is within {LARGEST_TIME:.0f} seconds (12 days) of 0, not {value:g}: floats of "
-            "32 bits are too far apart there"
-        )
-    return value
-
-
-def _checked_mouse(mouse: Any) -> tuple[float, ...]:
-    try:
-        values = tuple(float(part) for part in mouse)
-    except (TypeError, ValueError):
-        values = ()
-    if len(values) != 4 or not all(map(math.isfinite, values)):
-        raise ValueError(f"mouse is four finite numbers, not {mouse!r}")
-    return values
-
-
-def _checked_int(name: str, value: Any) -> int:
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise TypeError(f"{name} is a whole number, not {value!r}") from None
-    return number

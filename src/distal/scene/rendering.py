@@ -1,94 +1,90 @@
-"""A scene's picture, computed: which programs, with which numbers, and what is doubtful about it.
+"""Renders a scene: which programs run, with which numbers, and which warnings they give.
 
-Input: a scene, and what its author asked to see. Output: a ``Picture`` with its
+Input: a scene, what is to be shown of it, and how it is rendered. Output: a ``Picture`` with its
 layers, which says how it was made. Needs NumPy; scenes compile without this module.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from distal.lang.runtime_hook import executor
-from distal.scene.checks import warnings as doubts
-from distal.scene.lowering.layers import checked_layers, values
-from distal.scene.scene_arguments import checked_samples, slice_settings
-from distal.scene.steering import Steering
+from distal.lang.render_options import Progress, RenderOptions
+from distal.lang.runtime_access import executor
+from distal.scene.checks.warnings import check_slopes, doubt_black, doubt_functions, shows
+from distal.scene.lowering.layers import values
 from distal.scene.tree.errors import refuse
+from distal.scene.view_options import ViewOptions
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.scene.scene import Scene
 
 
-@dataclass(frozen=True, slots=True)
-class Wish:
-    """What is to be seen; the fields are arguments of ``Scene.render``."""
-
-    samples: int
-    view: str
-    transparent: bool
-    plane: tuple[Any, float]
-    steering: Steering | None
-    layers: Sequence[str]
-
-
-def rendered(
-    scene: Scene, wish: Wish, progress: Callable[[float], Any] | None, **options: Any
-) -> Picture:
-    """The picture of a scene.
+def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Picture:
+    """The picture of a scene, with its layers.
 
     Args:
         scene: The scene.
-        wish: What is to be seen.
-        progress: Called with the finished share.
-        options: Those of ``executor().render``: size, time, params and the like.
+        view: What is shown of it.
+        options: How it is rendered.
+
+    Raises:
+        CompileError: The scene has mistakes, or its camera is inside a solid.
+        DeviceError: The device is missing or was lost.
     """
-    samples, view = checked_samples(wish.samples), wish.view
-    layers = checked_layers(wish.layers)
-    steered = wish.steering is not None
-    moved = {} if wish.steering is None else wish.steering.settings
-    sliced = slice_settings(wish.plane) if view == "slice" else {}
-    sampled = {"Samples": samples} if samples > 1 else {}
-    params, time = options["params"] or {}, options["time"]
-    doubts.check_slopes(scene.shape, params, time)
-    doubts.doubt_functions(scene.shape, params, time)
-    shares = _parts_of(progress, 1 + len(layers))
-    image = scene.view(view, transparent=wish.transparent, sampled=samples > 1, steered=steered)
-    settings = {**sampled, **sliced, **moved}
-    picture: Picture = executor().render(image, settings=settings, progress=shares[0], **options)
-    if view == "color" and not wish.transparent and not doubts.shows(picture.array[..., 3]):
-        message = f"the camera is inside '{scene.shape.name}', and no ray finds a way out"
-        refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
-    if view == "color":
-        doubts.doubt_black(scene, picture, params, time)
-    found = {}
-    for name, share in zip(layers, shares[1:], strict=True):
-        layer = scene.layer(name, steered=steered)
-        pixels = executor().render(layer, settings=moved, progress=share, **options).array
-        found[name] = values(name, pixels)
-    return picture.with_layers(found).told(
-        samples=samples,
-        view=view,
-        transparent=wish.transparent,
+    sliced, moved = view.slice_settings, view.steering_settings
+    check_slopes(scene.shape, options.params, options.time)
+    doubt_functions(scene.shape, options.params, options.time)
+    shares = _shares(options.progress, 1 + len(view.layers))
+    image = scene.view(
+        view.view,
+        transparent=view.transparent,
+        sampled=view.samples > 1,
+        steered=view.steering is not None,
+    )
+    settings = {**view.sample_settings, **sliced, **moved}
+    picture = executor().render(image, replace(options, settings=settings, progress=shares[0]))
+    if view.view == "color":
+        _check_visible(scene, view, picture, options)
+    layers = {
+        name: _layer(scene, name, view, replace(options, settings=moved, progress=share))
+        for name, share in zip(view.layers, shares[1:], strict=True)
+    }
+    return picture.with_layers(layers).with_provenance(
+        samples=view.samples,
+        view=view.view,
+        transparent=view.transparent,
         plane=tuple(sliced.values()) or None,
-        steering=None if wish.steering is None else wish.steering.numbers,
+        steering=None if view.steering is None else view.steering.numbers,
         stage=scene.staged,
-        layers=layers,
+        layers=view.layers,
         **scene.asked_display,
     )
 
 
-def _parts_of(
-    progress: Callable[[float], Any] | None, count: int
-) -> list[Callable[[float], Any] | None]:
-    """What is told of each of several parts of the work, which are taken for equal."""
+def _check_visible(
+    scene: Scene, view: ViewOptions, picture: Picture, options: RenderOptions
+) -> None:
+    """Refuse a picture from inside a solid; warn of one that is black."""
+    if not view.transparent and not shows(picture.array[..., 3]):
+        message = f"the camera is inside '{scene.shape.name}', and no ray finds a way out"
+        refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
+    doubt_black(scene, picture, options.params, options.time)
+
+
+def _layer(scene: Scene, name: str, view: ViewOptions, options: RenderOptions) -> Any:
+    layer = scene.layer(name, steered=view.steering is not None)
+    return values(name, executor().render(layer, options).array)
+
+
+def _shares(progress: Progress | None, count: int) -> list[Progress | None]:
+    """The callback for each of several parts of the work, which count as equally long."""
     if progress is None:
         return [None] * count
     whole = progress
 
-    def part(done: int) -> Callable[[float], Any]:
+    def part(done: int) -> Progress:
         return lambda share: whole((done + share) / count)
 
     return [part(done) for done in range(count)]

@@ -6,8 +6,8 @@ then. Nothing of a scene's file is run before its text is known to be the one of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
@@ -18,8 +18,11 @@ from distal.diagnostics import LONGEST_MESSAGE, LoadError, printable
 from distal.images import exr, png
 from distal.images.metadata import Provenance, ReadError, Record, read
 from distal.images.picture import Picture
-from distal.loading import EXAMPLE_PREFIX, digest_of, load, split_source
+from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.loading import EXAMPLE_PREFIX, SceneCode, digest_of, load, split_source
+from distal.scene.rendering import render_scene
 from distal.scene.steering import Steering
+from distal.scene.view_options import ViewOptions
 from distal.scene.viewing.viewable import viewable
 from distal.version import __version__
 
@@ -122,10 +125,19 @@ def rerender(
     samples: int | None = None,
     device: str | None = None,
     threads: int | None = None,
-    progress: Callable[[float], Any] | None = None,
-    cancel: Any = None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> Picture:
-    """Render a picture again; what is None is as it was.
+    """Render a picture again; None keeps the recorded value.
+
+    Args:
+        plan: The picture's file, and its scene.
+        size: Width and height in pixels.
+        samples: Rays for each pixel of a scene.
+        device: What renders, as for ``Scene.render``.
+        threads: How many CPU threads to use; None for all that the process may use.
+        progress: Called with the finished share, from 0 to 1.
+        cancel: An event, or a function without arguments, that ends the work early.
 
     Raises:
         RerenderError: The scene cannot show it: a parameter or a view is gone.
@@ -135,48 +147,48 @@ def rerender(
     """
     origin = plan.record.provenance
     obj = load(plan.file, plan.name)
-    options = {
-        "size": size or plan.record.size,
-        "time": origin.time,
-        "params": origin.parameters,
-        "device": device or origin.device or "cpu",
-        "threads": threads,
-        "progress": progress,
-        "cancel": cancel,
-        "mouse": origin.mouse,
-        "index": origin.index,
-        "seed": origin.seed,
-    }
     try:
+        options = RenderOptions(
+            size=size or plan.record.size,
+            time=origin.time,
+            params=origin.parameters,
+            device=device or origin.device or "cpu",
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+            mouse=origin.mouse,
+            index=origin.index,
+            seed=origin.seed,
+        )
         made = _rendered(obj, origin, samples, options)
-    except (ValueError, TypeError, OverflowError) as error:  # asked for, and the scene has not
+    except (ValueError, TypeError, OverflowError) as error:  # what the scene does not have any more
         raise RerenderError(f"cannot rebuild {plan.path}: {error}") from None
-    return made.told(source=plan.named)
+    return made.with_provenance(source=plan.named)
 
 
-def _rendered(obj: Any, origin: Provenance, samples: int | None, options: Any) -> Picture:
+def _rendered(
+    obj: SceneCode, origin: Provenance, samples: int | None, options: RenderOptions
+) -> Picture:
     seen = viewable(obj, *(origin.stage or ({}, 0.0)))
     if seen.scene is None:
         if samples is not None:
             raise ValueError(f"samples are for scenes and shapes; '{seen.name}' is an @image")
-        return seen.render(view=origin.view, **options)
+        return seen.render(options, view=origin.view)
     scene = seen.scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
     moved = None
     if origin.steering is not None:
         yaw, pitch, zoom, *pan = origin.steering
         moved = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
-    asked: dict[str, Any] = {} if origin.plane is None else {"plane": origin.plane}
-    again: Picture = scene.render(
+    view = ViewOptions(
         samples=origin.samples if samples is None else samples,
         view=origin.view,
         transparent=origin.transparent,
-        freeze=origin.freeze,
         steering=moved,
         layers=origin.layers,
-        **asked,
-        **options,
     )
-    return again
+    if origin.plane is not None:
+        view = replace(view, plane=origin.plane)
+    return render_scene(scene, view, replace(options, freeze=origin.freeze))
 
 
 def difference(plan: Plan, picture: Picture) -> Difference:

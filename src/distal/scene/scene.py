@@ -7,8 +7,7 @@ that encodes light for display. The cheapest renderer is chosen that shows all m
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from distal.fields.guarantees import Limit
@@ -17,7 +16,9 @@ from distal.ir.nodes import EntryKind, Param, Read, Return
 from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
+from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import hand_on
 from distal.render import tonemap, views
 from distal.scene.lowering.cells import check_cells
@@ -37,14 +38,19 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.steering import Steering
 from distal.scene.tree.source_places import author_place
+from distal.scene.view_options import ViewOptions
 
 if TYPE_CHECKING:
+    from distal.images.picture import Picture
+    from distal.scene import rendering
     from distal.scene.objects.argument_types import Color, Number, Varying
     from distal.scene.objects.backgrounds import Background, Surroundings
     from distal.scene.objects.cameras import BaseCamera
     from distal.scene.objects.lights import Light
     from distal.scene.objects.materials import Material
     from distal.scene.objects.shape import Shape
+else:
+    rendering = LazyModule("distal.scene.rendering")  # needs NumPy
 
 
 class Scene(Composed, Presentable):
@@ -164,8 +170,8 @@ class Scene(Composed, Presentable):
         params: Mapping[str, Any] | None = None,
         device: str = "cpu",
         threads: int | None = None,
-        progress: Callable[[float], Any] | None = None,
-        cancel: Any = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
         index: int = 0,
         seed: int = 0,
@@ -177,21 +183,21 @@ class Scene(Composed, Presentable):
         freeze: bool = False,
         steering: Steering | None = None,
         layers: Sequence[str] = (),
-    ) -> Any:
+    ) -> Picture:
         """Compute the picture.
 
         Args:
             size: Width and height in pixels.
-            time: Seconds.
+            time: Seconds; ``frame.time`` of an ``@image``.
             params: Values of parameters by name; the others have their defaults.
             device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
                 "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
-            threads: How many to use; None for all the machine lends.
+            threads: How many CPU threads to use; None for all that the process may use.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.
-            mouse: As for ``Image.render``.
-            index: The frame's number.
-            seed: What random numbers start from.
+            mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
+            index: ``frame.index``, the frame's number; wraps at 32 bits.
+            seed: ``frame.seed``, where random numbers start; wraps at 32 bits.
             samples: Rays for each pixel.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
@@ -202,23 +208,35 @@ class Scene(Composed, Presentable):
             steering: How the camera is moved by hand; None: not.
             layers: What else to compute of each pixel's middle, for ``Picture.layers``: "depth",
                 "normal", "albedo", "material".
+
+        Raises:
+            CompileError: The scene has mistakes, or its camera is inside a solid.
+            DeviceError: The device is missing or was lost; never with "auto", which then warns.
+            TypeError: A value has the wrong type.
+            ValueError: A value is out of range, or there is no such view, parameter or device.
         """
-        rendering = importlib.import_module("distal.scene.rendering")  # needs NumPy
-        return rendering.rendered(
-            self,
-            rendering.Wish(samples, view, transparent, plane, steering, layers),
-            progress,
+        shown = ViewOptions(
+            samples=samples,
+            view=view,
+            transparent=transparent,
+            plane=plane,
+            steering=steering,
+            layers=layers,
+        )
+        options = RenderOptions(
             size=size,
             time=time,
-            params=params,
+            params=params or {},
             device=device,
             threads=threads,
+            progress=progress,
             cancel=cancel,
             mouse=mouse,
             index=index,
             seed=seed,
             freeze=freeze,
         )
+        return rendering.render_scene(self, shown, options)
 
     def view(
         self,

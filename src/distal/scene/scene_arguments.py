@@ -12,7 +12,7 @@ from typing import Any, Final
 from distal import Camera, DistantLight, HemisphereLight
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
-from distal.ir.types import FLOAT, INT, VEC3
+from distal.ir.types import FLOAT, INT
 from distal.lang import func, vec3
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import Field
@@ -20,9 +20,7 @@ from distal.scene.objects.lights import Light
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.conversion import Asked, choice, number
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
-MOST_SAMPLES: Final = 65536
 _LIMITS: Final = {
     "exposure": Limit.NOT_NEGATIVE,
     "fog_density": Limit.NOT_NEGATIVE,
@@ -131,27 +129,3 @@ def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tu
     if unsaid:
         return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
     return tuple(given)
-
-
-def checked_samples(samples: object) -> int:
-    """Rays for each pixel.
-
-    Raises:
-        ValueError: It is no such number.
-    """
-    if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
-        raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
-    return samples
-
-
-def slice_settings(plane: Any) -> dict[str, Any]:
-    """Which plane a slice shows, as settings of a picture."""
-    place = author_place()
-    try:
-        normal, offset = plane
-    except (TypeError, ValueError):
-        hint = "plane=((0, 0, 1), 0.5)"
-        refuse_kind(f"a plane is a normal and an offset, not {plane!r:.60}", hint, place)
-    direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
-    distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
-    return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}

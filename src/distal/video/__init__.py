@@ -6,6 +6,6 @@ numbered PNG files.
 
 from __future__ import annotations
 
-from distal.video.recording import Made, video
+from distal.video.recording import FinishedSequence, video
 
-__all__ = ["Made", "video"]
+__all__ = ["FinishedSequence", "video"]

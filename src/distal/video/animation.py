@@ -17,7 +17,7 @@ import numpy as np
 from PIL import Image
 
 from distal.images.atomic_files import SaveError
-from distal.video.formats import LOSSLESS, Kind, library
+from distal.video.formats import LOSSLESS, VideoFormat, library
 from distal.video.pixels import BT709, FULL, RGB, SRGB
 from distal.video.segments import whole_or_nothing
 from distal.video.texts import with_texts
@@ -58,22 +58,22 @@ class Animation:
         return [math.floor(time + Fraction(1, 2)) for time in exact]
 
 
-def animate(made: Animation, path: Path, kind: Kind, progress: Progress) -> None:
+def animate(made: Animation, path: Path, format: VideoFormat, progress: Progress) -> None:
     """Write one file of all frames.
 
     Args:
         made: The frames, and how they are shown.
         path: Where to write; not yet the place where others look.
-        kind: gif, apng or webp.
+        format: gif, apng or webp.
         progress: Told how many frames are done.
 
     Raises:
         SaveError: A frame cannot be read, or the file not be written.
     """
-    write = {"gif": _gif, "apng": _apng, "webp": _webp}[kind.name]
+    write = {"gif": _gif, "apng": _apng, "webp": _webp}[format.name]
     with whole_or_nothing(path):
         write(made, path, progress)
-        with_texts(path, kind, made.texts)
+        with_texts(path, format, made.texts)
 
 
 def _gif(made: Animation, path: Path, progress: Progress) -> None:

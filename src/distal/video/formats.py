@@ -26,12 +26,12 @@ GIF_FASTEST: Final = 50
 _NUMBERED: Final = re.compile(r"%(0\d+|)d")
 
 
-class WishError(ValueError):
+class VideoError(ValueError):
     """What was asked for has no sense, or a kind of file cannot have it; in one line."""
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class VideoFormat:
     """A kind of file.
 
     Attributes:
@@ -50,14 +50,14 @@ class Kind:
     largest: int = 16384
 
 
-KINDS: Final[Mapping[str, Kind]] = {
-    ".mp4": Kind("mp4", encoded=True, lossy=True),
-    ".webm": Kind("webm", encoded=True, lossy=True),
-    ".gif": Kind("gif", loops=True),
-    ".apng": Kind("apng", loops=True),
-    ".webp": Kind("webp", loops=True, lossy=True, largest=16383),
+FORMATS: Final[Mapping[str, VideoFormat]] = {
+    ".mp4": VideoFormat("mp4", encoded=True, lossy=True),
+    ".webm": VideoFormat("webm", encoded=True, lossy=True),
+    ".gif": VideoFormat("gif", loops=True),
+    ".apng": VideoFormat("apng", loops=True),
+    ".webp": VideoFormat("webp", loops=True, lossy=True, largest=16383),
 }
-FRAMES: Final = Kind("frames")
+FRAMES: Final = VideoFormat("frames")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class Codec:
     exact: bool = False
 
 
-def kind_of(path: Path) -> Kind:
+def format_of(path: Path) -> VideoFormat:
     """What is written to a path.
 
     Raises:
@@ -87,11 +87,11 @@ def kind_of(path: Path) -> Kind:
     if suffix == ".png":
         _check_pattern(path)
         return FRAMES
-    if suffix not in KINDS:
-        known = ", ".join([*KINDS, "or pictures named like frames/%05d.png"])
+    if suffix not in FORMATS:
+        known = ", ".join([*FORMATS, "or pictures named like frames/%05d.png"])
         named = f"the suffix '{path.suffix}'" if suffix else "no suffix"
         raise SaveError(f"cannot write {path}: it has {named}; videos end in {known}")
-    return KINDS[suffix]
+    return FORMATS[suffix]
 
 
 def _check_pattern(path: Path) -> None:
@@ -110,15 +110,15 @@ def numbered(pattern: Path, index: int) -> Path:
     return pattern.with_name(name)
 
 
-def read_quality(quality: str | float, kind: Kind) -> float | str:
+def read_quality(quality: str | float, format: VideoFormat) -> float | str:
     """A quality from 0 to 100, or "lossless".
 
     Raises:
-        WishError: There is no such quality, or this kind of file has none to choose.
+        VideoError: There is no such quality, or this kind of file has none to choose.
     """
     if isinstance(quality, str) and quality == LOSSLESS:
-        if kind.name == "gif":
-            raise WishError("a gif has 256 colors: it is never lossless; choose webp or apng")
+        if format.name == "gif":
+            raise VideoError("a gif has 256 colors: it is never lossless; choose webp or apng")
         return LOSSLESS
     if isinstance(quality, str) and quality in QUALITIES:
         value = QUALITIES[quality]
@@ -129,49 +129,51 @@ def read_quality(quality: str | float, kind: Kind) -> float | str:
             value = -1.0
         if not 0.0 <= value <= 100.0:
             names = ", ".join([*QUALITIES, LOSSLESS])
-            raise WishError(f"a quality is {names} or a number from 0 to 100, not {quality!r:.40}")
+            raise VideoError(f"a quality is {names} or a number from 0 to 100, not {quality!r:.40}")
     return value
 
 
-def check_size(size: tuple[int, int], kind: Kind, quality: float | str) -> None:
+def check_size(size: tuple[int, int], format: VideoFormat, quality: float | str) -> None:
     """Refuse a size that a kind of file cannot have.
 
     Raises:
-        WishError: With the nearest size that it can have.
+        VideoError: With the nearest size that it can have.
     """
     width, height = size
-    if max(size) > kind.largest:
-        raise WishError(f"{kind.name} has at most {kind.largest} pixels a side, not {max(size)}")
-    if kind.encoded and quality != LOSSLESS and (width % 2 or height % 2):
+    if max(size) > format.largest:
+        raise VideoError(
+            f"{format.name} has at most {format.largest} pixels a side, not {max(size)}"
+        )
+    if format.encoded and quality != LOSSLESS and (width % 2 or height % 2):
         # Players for everyone show 4:2:0 only, in which two pixels share a color.
         even = f"{width + width % 2}x{height + height % 2}"
-        raise WishError(
-            f"{kind.name} has even sides, {width}x{height} has not; the nearest is {even}, "
+        raise VideoError(
+            f"{format.name} has even sides, {width}x{height} has not; the nearest is {even}, "
             "or the quality lossless"
         )
 
 
-def check_rate(rate: Fraction, kind: Kind) -> None:
+def check_rate(rate: Fraction, format: VideoFormat) -> None:
     """Refuse a frame rate that a kind of file cannot have.
 
     Raises:
-        WishError: It is too high for the file's clock.
+        VideoError: It is too high for the file's clock.
     """
-    if kind.name == "gif" and rate > GIF_FASTEST:
-        raise WishError(
+    if format.name == "gif" and rate > GIF_FASTEST:
+        raise VideoError(
             f"a gif counts in hundredths of a second and has at most {GIF_FASTEST} frames in one, "
             f"not {float(rate):g}; webp and apng have more"
         )
-    if kind.name == "webp" and rate > 1000:
-        raise WishError("a webp counts in milliseconds and has at most 1000 frames in a second")
-    largest = 65535 if kind.name == "apng" else 10**6  # APNG holds a delay as two 16-bit numbers
+    if format.name == "webp" and rate > 1000:
+        raise VideoError("a webp counts in milliseconds and has at most 1000 frames in a second")
+    largest = 65535 if format.name == "apng" else 10**6  # APNG holds a delay as two 16-bit numbers
     if max(rate.numerator, rate.denominator) > largest:
-        raise WishError(f"{kind.name} cannot count {rate} frames a second exactly; round it")
+        raise VideoError(f"{format.name} cannot count {rate} frames a second exactly; round it")
 
 
-def codec_of(kind: Kind, quality: float | str) -> Codec:
+def codec_of(format: VideoFormat, quality: float | str) -> Codec:
     """How frames are encoded for mp4 and webm."""
-    if kind.name == "mp4":
+    if format.name == "mp4":
         if quality == LOSSLESS:
             options = {"preset": "veryfast", "qp": "0", "x264-params": _x264("")}
             return Codec("libx264rgb", "rgb24", options, exact=True)

@@ -16,7 +16,7 @@ from PIL import Image
 from distal.images.atomic_files import SaveError, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode
-from distal.video.program import Program
+from distal.video.moving_picture import MovingPicture
 
 KEY: Final = "distal:frame"
 
@@ -25,18 +25,17 @@ class Frames:
     """The files of a sequence's frames.
 
     Args:
-        files: Where each frame stands.
-        times: When each is, in seconds.
-        program: What renders them.
-        device: What it is rendered on: pictures of two devices differ a little.
+        files: The file of each frame.
+        times: The time of each in seconds.
+        moving: What renders them. Its device counts: pictures of two devices differ a little.
     """
 
     def __init__(
-        self, files: Sequence[Path], times: Sequence[float], program: Program, device: str
+        self, files: Sequence[Path], times: Sequence[float], moving: MovingPicture
     ) -> None:
         self.files = files
-        said = (program.fingerprint, sorted(program.parameters.items()), program.size, device)
-        self._common = repr(said)
+        parameters, device = sorted(moving.parameters.items()), moving.options.device
+        self._common = repr((moving.fingerprint, parameters, moving.size, device))
         self._times = times
 
     def is_there(self, index: int) -> bool:
@@ -58,8 +57,8 @@ class Frames:
             file.write(encode(picture.array, texts))
 
     def _key(self, index: int) -> str:
-        told = f"{self._common} {index} {self._times[index]!r}"
-        return hashlib.sha256(told.encode()).hexdigest()
+        key = f"{self._common} {index} {self._times[index]!r}"
+        return hashlib.sha256(key.encode()).hexdigest()
 
 
 def make_folder(folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 Input: a picture that moves, a path, how long and how fast. Output: the file, or
 numbered pictures. Frames are rendered on the caller's thread while others encode them; what is
-whole is kept, and the same call goes on from there. How files are encoded is ``film``'s matter.
+finished is kept, and the same call continues from there. ``formats`` says how files are encoded.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ from distal.devices.base import cancel_test
 from distal.devices.threads import usable_threads
 from distal.images.atomic_files import check_destination
 from distal.images.picture import Picture
-from distal.runtime.uniform_values import checked_size
+from distal.lang.render_options import Cancel, RenderOptions, checked_size
 from distal.version import __version__
 from distal.video.animation import Animation, animate
 from distal.video.encoding import Encoding, piece_name
 from distal.video.formats import (
     FRAMES,
-    Kind,
-    WishError,
+    VideoError,
+    VideoFormat,
     check_rate,
     check_size,
     codec_of,
-    kind_of,
+    format_of,
     library,
     numbered,
     read_quality,
 )
 from distal.video.frames import Frames, make_folder
+from distal.video.moving_picture import MovingPicture, moving_picture
 from distal.video.overlap import made_ahead, taking
-from distal.video.program import Program, program
 from distal.video.segments import join
 from distal.video.store import Store, Tell
 from distal.video.timing import Timing, timing
@@ -57,7 +57,7 @@ _JUMP: Final = 3.0 / 255.0
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class FinishedSequence:
     """A finished sequence.
 
     Attributes:
@@ -105,9 +105,9 @@ def video(
     keep_frames: str | PathLike[str] | None = None,
     fresh: bool = False,
     progress: Progress | None = None,
-    cancel: Any = None,
+    cancel: Cancel | None = None,
     tell: Tell | None = None,
-) -> Made:
+) -> FinishedSequence:
     """Render a picture that moves, and write it.
 
     Frame i of ``round(duration * fps)`` shows the time ``start + i / fps``: with a duration of one
@@ -138,70 +138,71 @@ def video(
 
     Raises:
         SaveError: The file cannot be written, or PyAV is missing.
-        WishError: A wish has no sense, or this kind of file cannot have it.
+        VideoError: An option is invalid, or this kind of file cannot have it.
         CompileError: The scene is wrong; what is whole by then is kept.
     """
     begin = time.perf_counter()
     output = Path(path)
-    kind = kind_of(output)
+    format = format_of(output)
     when = timing(start, duration, fps)
-    check_rate(when.rate, kind)
-    chosen = read_quality(quality, kind)
-    width_height = checked_size(size)
-    check_size(width_height, kind, chosen)
+    check_rate(when.rate, format)
+    chosen = read_quality(quality, format)
+    check_size(checked_size(size), format, chosen)
     folder = None if keep_frames is None else Path(keep_frames)
-    if kind is FRAMES:
+    if format is FRAMES:
         if folder is not None:
-            raise WishError(f"{output} are the frames; keep_frames is for videos")
+            raise VideoError(f"{output} are the frames; keep_frames is for videos")
     else:
         library()
         check_destination(output)
-    stop, asked = threading.Event(), cancel_test(cancel)
-
-    def is_over() -> bool:
-        return stop.is_set() or asked()
-
-    options = {"device": device, "threads": threads, "cancel": is_over}
-    made = program(obj, width_height, when.time(0), params or {}, view, samples, options)
-    job = _Job(
+    stop, is_cancelled = threading.Event(), cancel_test(cancel)
+    options = RenderOptions(
+        size=size,
+        time=when.time(0),
+        params=params or {},
+        device=device,
+        threads=threads,
+        cancel=lambda: stop.is_set() or is_cancelled(),
+    )
+    job = _RecordingJob(
         output=output,
-        kind=kind,
-        program=made,
+        format=format,
+        moving=moving_picture(obj, options, view, samples),
         timing=when,
         quality=chosen,
         loop=loop,
-        device=device,
         fresh=fresh,
-        told={"view": view, "samples": samples},
+        shown={"view": view, "samples": samples},
         progress=progress or (lambda done, total, what: None),
         tell=tell or (lambda words: None),
         stop=stop,
     )
     if loop:
-        job.look_at_ends()
+        job.compare_ends()
     rendered, size_bytes = job.run(folder)
     seconds = time.perf_counter() - begin
-    return Made(output, when.count, rendered, width_height, when.rate, size_bytes, seconds)
+    return FinishedSequence(
+        output, when.count, rendered, options.size, when.rate, size_bytes, seconds
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class _Job:
+class _RecordingJob:
     output: Path
-    kind: Kind
-    program: Program
+    format: VideoFormat
+    moving: MovingPicture
     timing: Timing
     quality: float | str
     loop: bool
-    device: str
     fresh: bool
-    told: Mapping[str, Any]
+    shown: Mapping[str, Any]
     progress: Progress
     tell: Tell
     stop: threading.Event
 
     def run(self, keep: Path | None) -> tuple[int, int]:
         """Make the file: the number of frames rendered, and the bytes written."""
-        if self.kind is FRAMES:
+        if self.format is FRAMES:
             return self._numbered()
         kept = None
         if keep is not None:
@@ -211,7 +212,7 @@ class _Job:
         store.open(self._manifest(), self.fresh, self.tell)
         try:
             rendered = (
-                self._encoded(store, kept) if self.kind.encoded else self._animated(store, kept)
+                self._encoded(store, kept) if self.format.encoded else self._animated(store, kept)
             )
         except BaseException:
             self._tell_kept(store)
@@ -232,13 +233,13 @@ class _Job:
         frames = kept or self._frames(store.path("frame-%05d.png"))
         rendered = self._write_frames(frames)
         what = Animation(frames.files, self.timing.rate, self.quality, self.loop, self.texts())
-        whole = store.path(f"whole.partial.{self.kind.name}")
-        animate(what, whole, self.kind, lambda i: self.progress(i, self.timing.count, "encoding"))
+        whole = store.path(f"whole.partial.{self.format.name}")
+        animate(what, whole, self.format, lambda i: self.progress(i, self.timing.count, "encoding"))
         store.appear(whole)
         return rendered
 
     def _encoded(self, store: Store, kept: Frames | None) -> int:
-        codec = codec_of(self.kind, self.quality)
+        codec = codec_of(self.format, self.quality)
         pieces = {store.path(piece_name(frames)): frames for frames in self.timing.pieces}
         missing = [
             (file, frames)
@@ -246,15 +247,15 @@ class _Job:
             if not file.exists() or not (kept is None or all(map(kept.is_there, frames)))
         ]
         wanted = [i for _, frames in missing for i in frames]
-        encoding = Encoding(dict(missing), codec, self.program.size, self.timing.rate, kept)
+        encoding = Encoding(dict(missing), codec, self.moving.size, self.timing.rate, kept)
         try:
             self._render(wanted, encoding.ready, encoding.take, workers=1)
         except BaseException:
             encoding.abandon()
             raise
-        whole = store.path(f"whole.partial.{self.kind.name}")
+        whole = store.path(f"whole.partial.{self.format.name}")
         counted = [(file, len(frames)) for file, frames in pieces.items()]
-        join(counted, whole, self.kind, self.timing.rate, self.texts())
+        join(counted, whole, self.format, self.timing.rate, self.texts())
         store.appear(whole)
         return len(wanted)
 
@@ -263,7 +264,7 @@ class _Job:
     def _frames(self, pattern: Path) -> Frames:
         count = range(self.timing.count)
         files = [numbered(pattern, i) for i in count]
-        return Frames(files, [self.timing.time(i) for i in count], self.program, self.device)
+        return Frames(files, [self.timing.time(i) for i in count], self.moving)
 
     def _write_frames(self, frames: Frames) -> int:
         wanted = [i for i in range(self.timing.count) if self.fresh or not frames.is_there(i)]
@@ -288,9 +289,9 @@ class _Job:
 
         def made(i: int) -> Item:
             at = self.timing.time(i)
-            picture = self.program.picture(i, at)
+            picture = self.moving.picture(i, at)
             if i == 0:
-                self.program.doubt(picture, at)
+                self.moving.warn_if_black(picture, at)
             return ready(i, picture)
 
         frames = made_ahead(made, indices, self._at_once(), self.stop.set)
@@ -306,24 +307,24 @@ class _Job:
         While one waits for its last part, or becomes eight bits, the next keeps processors busy.
         On two of them a video of 640x480 took 1.45 times as long as rendering alone, now 1.25.
         """
-        width, height = self.program.size
+        width, height = self.moving.size
         return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
 
-    def look_at_ends(self) -> None:
+    def compare_ends(self) -> None:
         """Say it when a loop jumps: the picture one period later is another."""
-        width, height = self.program.size
+        width, height = self.moving.size
         shrink = max(1, max(width, height) // 160)
         size = (max(1, width // shrink), max(1, height // shrink))
         begin, end = self.timing.start, self.timing.start + self.timing.duration
-        first, last = (self.program.picture(0, float(t), size).array for t in (begin, end))
+        first, last = (self.moving.picture(0, float(t), size).array for t in (begin, end))
         off = np.abs(np.clip(first, 0.0, 1.0) - np.clip(last, 0.0, 1.0))[..., :3]
         if float(np.nan_to_num(off).mean()) > _JUMP:
             self.tell(
                 f"the picture at {float(end):g} s is not that at {float(begin):g} s: "
                 "the loop will jump"
             )
-        if not self.kind.loops:
-            what = "pictures have" if self.kind is FRAMES else f"{self.kind.name} has"
+        if not self.format.loops:
+            what = "pictures have" if self.format is FRAMES else f"{self.format.name} has"
             self.tell(f"{what} no mark for loops: whoever plays it decides")
 
     # What is written down
@@ -332,15 +333,15 @@ class _Job:
         """What the pieces depend on; the duration is none of it, so that it may grow."""
         made = {
             "distal": __version__,
-            "program": self.program.fingerprint,
-            "parameters": dict(self.program.parameters),
-            "size": list(self.program.size),
+            "program": self.moving.fingerprint,
+            "parameters": dict(self.moving.parameters),
+            "size": list(self.moving.size),
             "fps": str(self.timing.rate),
             "start": str(self.timing.start),
-            "device": self.device,
-            **self.told,
+            "device": self.moving.options.device,
+            **self.shown,
         }
-        if self.kind.encoded:
+        if self.format.encoded:
             made |= {"quality": self.quality, "pyav": library().__version__}
         plain: dict[str, Any] = json.loads(json.dumps(made, default=repr))
         return plain
@@ -349,24 +350,24 @@ class _Job:
         """The file's own metadata."""
         comment = {
             "software": f"distal {__version__}",
-            "source": self.program.name,
-            "source_hash": self.program.source_hash,
-            "parameters": dict(self.program.parameters),
+            "source": self.moving.name,
+            "source_hash": self.moving.source_hash,
+            "parameters": dict(self.moving.parameters),
             "start": float(self.timing.start),
             "duration": float(self.timing.duration),
             "fps": str(self.timing.rate),
             "frames": self.timing.count,
-            "size": f"{self.program.size[0]}x{self.program.size[1]}",
-            **self.told,
+            "size": f"{self.moving.size[0]}x{self.moving.size[1]}",
+            **self.shown,
         }
         return {
-            "title": self.program.name,
+            "title": self.moving.name,
             "comment": json.dumps(comment, sort_keys=True, default=repr),
             "software": f"distal {__version__}",
         }
 
     def _tell_kept(self, store: Store) -> None:
-        if self.kind.encoded:
+        if self.format.encoded:
             there = [f for f in self.timing.pieces if store.path(piece_name(f)).exists()]
             kept = sum(map(len, there))
         else:

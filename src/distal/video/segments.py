@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.images.atomic_files import SaveError, move_into_place
-from distal.video.formats import Codec, Kind, library
+from distal.video.formats import Codec, VideoFormat, library
 from distal.video.pixels import tag
 
 # MP4 takes the packets of both codecs and any clock; Matroska's counts milliseconds only.
@@ -75,7 +75,7 @@ class Piece:
 def join(
     pieces: Sequence[tuple[Path, int]],
     path: Path,
-    kind: Kind,
+    format: VideoFormat,
     rate: Fraction,
     texts: Mapping[str, str],
 ) -> None:
@@ -84,7 +84,7 @@ def join(
     Args:
         pieces: Each one's file and its number of frames, in order.
         path: Where the file appears when it is whole; in the folder of the pieces.
-        kind: mp4 or webm.
+        format: mp4 or webm.
         rate: Frames a second.
         texts: The container's metadata.
 
@@ -93,10 +93,10 @@ def join(
     """
     # Without this flag Matroska's files carry a random number: one video would be two files.
     options = {"fflags": "+bitexact"}
-    if kind.name == "mp4":
+    if format.name == "mp4":
         options["movflags"] = "+faststart"
     with whole_or_nothing(path):
-        out = library().open(str(path), "w", format=kind.name, options=options)
+        out = library().open(str(path), "w", format=format.name, options=options)
         try:
             out.metadata.update(texts)
             _copy(pieces, out, rate)

@@ -17,7 +17,7 @@ from typing import BinaryIO, Final
 
 from PIL import Image
 
-from distal.video.formats import Kind
+from distal.video.formats import VideoFormat
 
 _EXIF_DESCRIPTION: Final = 0x010E
 _EXIF_SOFTWARE: Final = 0x0131
@@ -25,15 +25,15 @@ _WEBP_HAS_EXIF: Final = 0x08
 _WEBP_NO_BLEND: Final = 0x02
 
 
-def with_texts(path: Path, kind: Kind, texts: Mapping[str, str]) -> None:
+def with_texts(path: Path, format: VideoFormat, texts: Mapping[str, str]) -> None:
     """Write the texts into the file."""
-    if kind.name == "webp":
+    if format.name == "webp":
         with open(path, "r+b") as file:
             _webp(file, texts)
         return
     temporary = path.with_name(f"{path.name}.texts")
     with open(path, "rb") as source, open(temporary, "wb") as target:
-        {"gif": _gif, "apng": _png}[kind.name](source, target, texts)
+        {"gif": _gif, "apng": _png}[format.name](source, target, texts)
         shutil.copyfileobj(source, target, 2**20)
     os.replace(temporary, path)
 

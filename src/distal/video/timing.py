@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Final
 
 from distal.ir.limits import LARGEST_TIME
-from distal.video.formats import WishError
+from distal.video.formats import VideoError
 
 # More is a mistake of units: three hours at 90 frames a second are fewer.
 MOST_FRAMES: Final = 1_000_000
@@ -66,19 +66,19 @@ def timing(start: object, duration: object, rate: object) -> Timing:
     """The timing that a caller asks for.
 
     Raises:
-        WishError: A number is none, or has no sense.
+        VideoError: A number is none, or has no sense.
     """
     made = Timing(_seconds("start", start), _seconds("duration", duration), frame_rate(rate))
     if made.duration <= 0:
-        raise WishError(f"a duration is more than 0 seconds, not {_plain(duration)}")
+        raise VideoError(f"a duration is more than 0 seconds, not {_plain(duration)}")
     first, last = made.time(0), made.time(made.count - 1)
     if max(abs(first), abs(last)) > LARGEST_TIME:
-        raise WishError(
+        raise VideoError(
             f"times are within {LARGEST_TIME:.0f} seconds (12 days) of 0, this goes from "
             f"{first:g} to {last:g}"
         )
     if made.count > MOST_FRAMES:
-        raise WishError(
+        raise VideoError(
             f"{made.count} frames are too many: {float(made.duration):g} s at "
             f"{float(made.rate):g} fps; a sequence has at most {MOST_FRAMES}"
         )
@@ -89,29 +89,29 @@ def frame_rate(rate: object) -> Fraction:
     """Frames a second: 30, "30000/1001", or 29.97, which means the same.
 
     Raises:
-        WishError: It is no number above 0.
+        VideoError: It is no number above 0.
     """
     text = _plain(rate)
     if text in _BROADCAST:
         return _BROADCAST[text]
     found = _fraction(rate)
     if found is None:
-        raise WishError(f"a frame rate is a number like 30, 29.97 or 30000/1001, not {text:.40}")
+        raise VideoError(f"a frame rate is a number like 30, 29.97 or 30000/1001, not {text:.40}")
     if found <= 0:
-        raise WishError(f"a frame rate is more than 0 a second, not {text:.40}")
+        raise VideoError(f"a frame rate is more than 0 a second, not {text:.40}")
     if found > 1000:
-        raise WishError(f"a frame rate is at most 1000 a second, not {text:.40}")
+        raise VideoError(f"a frame rate is at most 1000 a second, not {text:.40}")
     if found < Fraction(1, 1000):
-        raise WishError(f"a frame rate is at least 0.001 a second, not {text:.40}")
+        raise VideoError(f"a frame rate is at least 0.001 a second, not {text:.40}")
     return found.limit_denominator(100_000)
 
 
 def _seconds(name: str, value: object) -> Fraction:
     found = _fraction(value)
     if found is None:
-        raise WishError(f"a {name} is a number of seconds, not {_plain(value):.40}")
+        raise VideoError(f"a {name} is a number of seconds, not {_plain(value):.40}")
     if abs(found) > 10**9:
-        raise WishError(f"a {name} is at most 1e9 seconds, not {_plain(value):.40}")
+        raise VideoError(f"a {name} is at most 1e9 seconds, not {_plain(value):.40}")
     return found
 
 

@@ -21,11 +21,11 @@ from distal.lang.number_text import shown as number_text
 from distal.loading import EXAMPLE_PREFIX
 from distal.scene.viewing import interaction
 from distal.scene.viewing.viewable import view_label
+from distal.window.frame_renderers import FrameRenderer, RenderedFrame, picture, render_options
+from distal.window.frame_scheduler import FrameRequest, FrameScheduler
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
-from distal.window.making import Making, Order
 from distal.window.overlay import Overlay
-from distal.window.presenters import Made, Maker, picture
 from distal.window.reading import Reading, reading
 from distal.window.reload import PERIOD_S, Loaded, Watch, files_in, load_again
 from distal.window.screen import set_full_screen
@@ -34,7 +34,7 @@ from distal.window.session import Session
 from distal.window.worker import Worker
 
 if TYPE_CHECKING:
-    from distal.window.surface import Surface
+    from distal.window.surface import WindowSurface
 
 _NOTE_S: Final = 4.0
 _FIGURES_S: Final = 0.25  # digits that change faster cannot be read
@@ -45,7 +45,7 @@ _KIND_MISTAKES: Final = (CompileError, LoadError, DeviceError, SaveError, ValueE
 
 
 @dataclass(frozen=True, slots=True)
-class Origin:
+class SceneSource:
     """Where the scene came from, so that it can be loaded again.
 
     Attributes:
@@ -71,10 +71,10 @@ class Application:
     def __init__(
         self,
         session: Session,
-        origin: Origin,
-        maker: Maker,
+        origin: SceneSource,
+        maker: FrameRenderer,
         canvas: Any,
-        surface: Surface,
+        surface: WindowSurface,
         loop: Any,
         *,
         scale: float,
@@ -83,7 +83,7 @@ class Application:
         self._surface, self._loop, self._scale = surface, loop, scale
         self._log = Log()
         self._worker = Worker(loop.call_soon_threadsafe)
-        self._making = Making(maker, self._worker, self._finished, self._failing)
+        self._making = FrameScheduler(maker, self._worker, self._finished, self._failing)
         self._overlay = Overlay()
         self._watch = Watch(origin.files)
         self._is_loading = False
@@ -162,7 +162,7 @@ class Application:
 
     # What is made
 
-    def _finished(self, order: Order, made: Made) -> None:
+    def _finished(self, order: FrameRequest, made: RenderedFrame) -> None:
         if made.share == 1.0:
             self._trouble_of_frame = ""
             self._surface.show(made)
@@ -172,7 +172,7 @@ class Application:
             self._canvas.request_draw()
         self.wake()
 
-    def _failing(self, order: Order, error: BaseException) -> None:
+    def _failing(self, order: FrameRequest, error: BaseException) -> None:
         self._trouble_of_frame = self._tell(error)
         self.wake()
 
@@ -268,7 +268,7 @@ class Application:
             self._watch.watch([*self._origin.files, *files_in(result, self._origin.files[0])])
         else:
             self._trouble_of_file = self._trouble_of_frame = self._told = ""
-            self._origin = Origin(self._origin.path, self._origin.name, result.files)
+            self._origin = SceneSource(self._origin.path, self._origin.name, result.files)
             self._watch.watch(result.files)
             self._session.adopt(result.viewable, time.monotonic(), animated=result.animated)
             self._log("loaded", files=[str(file) for file in result.files])
@@ -364,7 +364,7 @@ class Application:
 
         def job(_: object) -> Path:
             path = free_name(Path.cwd(), title, shot)
-            picture(viewable, shot, size, device).save(path)
+            picture(viewable, shot, render_options(shot, size, device)).save(path)
             return path
 
         def done(result: Path | BaseException) -> None:
@@ -382,7 +382,7 @@ class Application:
         self._full_screen_from = set_full_screen(self._canvas, self._full_screen_from)
 
 
-def _facts(order: Order) -> dict[str, Any]:
+def _facts(order: FrameRequest) -> dict[str, Any]:
     shot, steering = order.shot, order.shot.steering
     return {
         "time": shot.time,

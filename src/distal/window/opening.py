@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Mapping
 from typing import Any, Final
 
-from distal.lang.parameter_values import Value
+from distal.lang.render_options import RenderOptions
 from distal.loading import loaded_from
 from distal.scene.viewing.viewable import viewable
-from distal.window.app import Application, Origin
+from distal.window.app import Application, SceneSource
 from distal.window.screen import check_display, open_canvas, open_surface
 from distal.window.session import Session
 
@@ -26,12 +25,9 @@ def view(
     obj: Any,
     path: str,
     name: str | None,
+    options: RenderOptions,
     *,
-    size: tuple[int, int],
-    device: str,
-    time_s: float = 0.0,
-    params: Mapping[str, Value] | None = None,
-    seen_as: str = "color",
+    first_view: str = "color",
     scale: float = 1.0,
     paused: bool = False,
 ) -> tuple[int, bool]:
@@ -41,13 +37,11 @@ def view(
         obj: What ``distal.load(path, name)`` gave.
         path: Where it came from, to load it again when it is saved.
         name: Which object of the file.
-        size: The window's width and height in its own units.
-        device: What renders, as ``render`` takes it; "auto" is resolved already.
-        time_s: Seconds to begin at.
-        params: Values of parameters by name.
-        seen_as: The view to begin with.
+        options: Size (the window's, in its own units), first time, parameters, and device, where
+            "auto" is resolved already.
+        first_view: The view to begin with.
         scale: Pixels that are rendered for each of the window's, along a side.
-        paused: Whether the time stands at first.
+        paused: Whether the time is paused at first.
 
     Returns:
         The exit code, 0 or 130, and whether everything has ended: what is still being compiled
@@ -60,15 +54,20 @@ def view(
     """
     check_display()
     known = loaded_from(obj)
-    origin = Origin(path, name, known.files if known is not None else ())
-    shown = viewable(obj, params, time_s)
-    if seen_as not in shown.views:
-        raise ValueError(f"there is no view '{seen_as:.40}'; views: {', '.join(shown.views)}")
-    canvas = open_canvas(size, f"{origin.title} - distal")
+    origin = SceneSource(path, name, known.files if known is not None else ())
+    shown = viewable(obj, options.params, options.time)
+    if first_view not in shown.views:
+        raise ValueError(f"there is no view '{first_view:.40}'; views: {', '.join(shown.views)}")
+    canvas = open_canvas(options.size, f"{origin.title} - distal")
     try:
-        surface, maker = open_surface(canvas, device)
+        surface, maker = open_surface(canvas, options.device)
         session = Session(
-            shown, time=time_s, values=params, view=seen_as, paused=paused, now=time.monotonic()
+            shown,
+            time=options.time,
+            values=options.params,
+            view=first_view,
+            paused=paused,
+            now=time.monotonic(),
         )
         loop = canvas._rc_canvas_group.get_loop()
         application = Application(session, origin, maker, canvas, surface, loop, scale=scale)

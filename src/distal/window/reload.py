@@ -23,7 +23,7 @@ from distal.scene.viewing.viewable import Viewable, checked_picture, viewable
 from distal.window.session import Shot, valid_values
 
 if TYPE_CHECKING:
-    from distal.window.presenters import Maker
+    from distal.window.frame_renderers import FrameRenderer
 
 PERIOD_S: Final = 0.25
 
@@ -87,7 +87,7 @@ class Loaded:
     files: tuple[Path, ...]
 
 
-def load_again(path: str, name: str | None, shot: Shot, maker: Maker) -> Loaded:
+def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) -> Loaded:
     """Load a scene and compile what is looked at.
 
     Raises:

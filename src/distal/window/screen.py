@@ -19,8 +19,8 @@ from rendercanvas.glfw import RenderCanvas  # type: ignore[import-untyped, unuse
 from distal.devices.adapters import adapters, chosen, opened, wgpu_module
 from distal.diagnostics import DeviceError
 from distal.packages import loading
-from distal.window.presenters import Maker, PixelMaker, TextureMaker
-from distal.window.surface import Surface
+from distal.window.frame_renderers import FrameRenderer, PixelRenderer, TextureRenderer
+from distal.window.surface import WindowSurface
 
 _NO_WINDOW: Final = "no window can be opened here"
 _MEND: Final = "install the GPU's driver, or in software: apt-get install mesa-vulkan-drivers"
@@ -59,7 +59,7 @@ def open_canvas(size: tuple[int, int], title: str) -> Any:
     )
 
 
-def open_surface(canvas: Any, device: str) -> tuple[Surface, Maker]:
+def open_surface(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer]:
     """What draws on a canvas, and what makes frames for it.
 
     Raises:
@@ -70,15 +70,15 @@ def open_surface(canvas: Any, device: str) -> tuple[Surface, Maker]:
         raise DeviceError(f"{_NO_WINDOW}: no graphics driver; {_MEND}")
     if device.startswith("gpu"):
         return _on_gpu(canvas, device)
-    return Surface(canvas, _any_device(canvas)), PixelMaker(device)
+    return WindowSurface(canvas, _any_device(canvas)), PixelRenderer(device)
 
 
-def _on_gpu(canvas: Any, device: str) -> tuple[Surface, Maker]:
+def _on_gpu(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer]:
     wish = device.partition(":")[2] or None
     gpu = opened(chosen(wish))
     name = f"gpu-fragment:{wish}" if wish else "gpu-fragment"
     try:
-        return Surface(canvas, gpu.device), TextureMaker(name, gpu.device, wish)
+        return WindowSurface(canvas, gpu.device), TextureRenderer(name, gpu.device, wish)
     except (RuntimeError, ValueError, wgpu_module().GPUError) as error:
         raise DeviceError(
             f"{_NO_WINDOW}: {gpu.adapter.name} cannot draw on it ({_first_line(error)});"

@@ -13,8 +13,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.window.frame_renderers import TEXTURE_FORMAT, RenderedFrame
 from distal.window.overlay import Panel
-from distal.window.presenters import TEXTURE_FORMAT, Made
 
 _SHADER: Final = """
 @group(0) @binding(0) var image: texture_2d<f32>;
@@ -43,7 +43,7 @@ fn over(at: Corner) -> @location(0) vec4f {
 """
 
 
-class Surface:
+class WindowSurface:
     """A window's surface, ready to be drawn on.
 
     Attributes:
@@ -65,7 +65,7 @@ class Surface:
         self._frame: Any = None
         self._panels: dict[int, tuple[Panel, Any]] = {}
 
-    def show(self, made: Made) -> None:
+    def show(self, made: RenderedFrame) -> None:
         """Take a frame as the picture from now on."""
         if made.texture is not None:
             self._frame = self._readable(made.texture)

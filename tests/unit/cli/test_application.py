@@ -20,6 +20,7 @@ from distal.lang import func
 from distal.lang.parameters import slider
 from distal.scene.objects.shapes import Sphere
 from distal.scene.scene import Scene
+from distal.scene.view_options import ViewOptions
 
 STATS = {"compile_s": 0.1, "render_s": 0.2, "cache_hit": True, "lanes": 32, "threads": 2}
 
@@ -31,22 +32,24 @@ class Double(Scene):
 
     def __init__(self):
         super().__init__(Sphere(1.0))
-        self.options = None
+        self.shown = self.options = None
         self.failure = None
 
     def parameters(self):
         return [slider("Blend", 0.3)]
 
-    def render(self, **options):
-        if self.failure:
-            raise self.failure
-        self.options = options
-        width, height = options["size"]
-        return Picture(np.ones((height, width, 4), np.float32), stats=STATS)
+
+def rendered(scene, view, options):
+    if scene.failure:
+        raise scene.failure
+    scene.shown, scene.options = view, options
+    width, height = options.size
+    return Picture(np.ones((height, width, 4), np.float32), stats=STATS)
 
 
 @pytest.fixture
 def scene(monkeypatch):
+    monkeypatch.setattr("distal.scene.rendering.render_scene", rendered)
     scene = Double()
     scene.loaded = []
 
@@ -75,9 +78,9 @@ def test_render_writes_the_picture_and_says_how_long_it_took(scene, run):
     result = run("render", "s.py:picture", "-o", "a.png", "--size", "4x3", "--set", "blend=0.5")
     assert result.exit_code == 0, result.output
     assert scene.loaded == [("s.py", "picture")]
-    assert scene.options["size"] == (4, 3)
-    assert scene.options["params"] == {"blend": 0.5}
-    assert scene.options["device"] == "cpu"
+    assert scene.options.size == (4, 3)
+    assert scene.options.params == {"blend": 0.5}
+    assert scene.options.device == "cpu"
     assert Path("a.png").read_bytes().startswith(b"\x89PNG")
     assert result.stdout == ""
     assert "a.png: 4x3; load" in result.stderr
@@ -88,9 +91,9 @@ def test_render_hands_on_time_device_and_threads(scene, run):
     words = ("--time", "1.5", "--device", "reference", "--threads", "3")
     assert run("render", "example:ball", "-o", "a.png", *words).exit_code == 0
     assert scene.loaded == [("example:ball", None)]
-    assert scene.options["time"] == 1.5
-    assert scene.options["device"] == "reference"
-    assert scene.options["threads"] == 3
+    assert scene.options.time == 1.5
+    assert scene.options.device == "reference"
+    assert scene.options.threads == 3
 
 
 def test_a_function_is_no_picture(scene, run, monkeypatch):
@@ -110,13 +113,11 @@ def hidden(x: float) -> float:
 def test_how_a_scene_is_seen_is_handed_on(scene, run):
     words = ("--view", "normal", "--samples", "4", "--transparent")
     assert run("render", "s.py", "-o", "a.png", *words).exit_code == 0
-    seen = {name: scene.options.get(name) for name in ("view", "samples", "transparent")}
-    assert seen == {"view": "normal", "samples": 4, "transparent": True}
+    assert scene.shown == ViewOptions(view="normal", samples=4, transparent=True)
     assert run("render", "s.py", "-o", "a.png", "--slice", "y=-0.5").exit_code == 0
-    assert scene.options["view"] == "slice"
-    assert scene.options["plane"] == ((0.0, 1.0, 0.0), -0.5)
+    assert scene.shown == ViewOptions(view="slice", plane=((0.0, 1.0, 0.0), -0.5))
     assert run("render", "s.py", "-o", "a.png").exit_code == 0
-    assert not {"view", "samples", "transparent", "plane"} & set(scene.options)
+    assert scene.shown == ViewOptions()
 
 
 def test_stats_are_exactly_one_json_line_on_stdout(scene, run):

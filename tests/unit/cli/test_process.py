@@ -16,12 +16,14 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ign
 import distal, time
 from distal.cli import main
 
-class Slow(distal.Scene):
-    def render(self, **options):
-        print("rendering", flush=True)
-        time.sleep(60)
+from distal.scene import rendering
 
-distal.load = lambda path, name=None: Slow(distal.Sphere(1.0))
+def slow(scene, view, options):
+    print("rendering", flush=True)
+    time.sleep(60)
+
+rendering.render_scene = slow
+distal.load = lambda path, name=None: distal.Scene(distal.Sphere(1.0))
 main()
 """
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from distal.lang import Frame, image, vec4
+from distal.runtime.executor import PythonExecutor
 
 
 @image
@@ -46,10 +47,8 @@ def test_mistakes_are_named(options, error, message):
 
 
 def test_kernels_of_long_ago_are_dropped(monkeypatch):
-    from distal.runtime import executor as room  # noqa: PLC0415
-
-    monkeypatch.setattr(room, "KERNELS_KEPT", 2)
-    executor = room.PythonExecutor()
+    monkeypatch.setattr("distal.runtime.kernels.KERNELS_KEPT", 2)
+    executor = PythonExecutor()
 
     def plain(shade):
         @image
@@ -60,6 +59,6 @@ def test_kernels_of_long_ago_are_dropped(monkeypatch):
 
     for shade in (0.1, 0.2, 0.3):
         lowered = executor._lower(plain(shade), None)
-        executor._kernel(lowered, "reference", 32)
-    assert len(executor._kernels) == 2
-    assert (lowered.digest, "reference", 32) in executor._kernels
+        executor.kernels.kernel(lowered, "reference", 32)
+    assert len(executor.kernels) == 2
+    assert (lowered.digest, "reference", 32) in executor.kernels._kernels

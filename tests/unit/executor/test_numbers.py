@@ -13,6 +13,7 @@ from distal.frontend import lower
 from distal.ir.printer import print_identity, print_module
 from distal.lang import slider
 from distal.lang.expressions import time
+from distal.lang.render_options import RenderOptions
 from distal.runtime.executor import PythonExecutor
 from tests.unit.executor.composing import Ball, Display, Ramp
 
@@ -20,7 +21,7 @@ SIZE = (40, 3)
 
 
 def rendered(executor: PythonExecutor, ramp: Ramp, **options: object) -> np.ndarray:
-    return executor.render(ramp, size=SIZE, **options).array  # type: ignore[arg-type]
+    return executor.render(ramp, RenderOptions(size=SIZE, **options)).array  # type: ignore[arg-type]
 
 
 def test_scenes_that_differ_in_numbers_share_a_kernel(
@@ -33,14 +34,14 @@ def test_scenes_that_differ_in_numbers_share_a_kernel(
     assert np.allclose(rendered(executor, first)[0, :, 0], 3.0 * columns)
     assert np.allclose(rendered(executor, second)[0, :, 0], 3.5 * columns)
     assert np.allclose(rendered(executor, first)[0, :, 0], 3.0 * columns)
-    assert len(executor._kernels) == 1
+    assert len(executor.kernels) == 1
     # The stored kernel is found too, though the numbers are others than when it was made.
-    fresh = PythonExecutor().render(Ramp([0.0, 0.25]), size=SIZE)
+    fresh = PythonExecutor().render(Ramp([0.0, 0.25]), RenderOptions(size=SIZE))
     assert fresh.stats["cache_hit"]
     assert np.allclose(fresh.array[0, :, 0], 0.25 * columns)
     # Another count of numbers is another kernel.
     rendered(executor, Ramp([1.0, 2.0, 3.0]))
-    assert len(executor._kernels) == 2
+    assert len(executor.kernels) == 2
 
 
 def test_the_identity_of_a_module_leaves_numbers_out_and_parameters_in() -> None:
@@ -67,8 +68,8 @@ def test_frozen_numbers_are_constants() -> None:
     executor = PythonExecutor()
     rendered(executor, Ramp([1.0, 2.0]), freeze=True)
     rendered(executor, Ramp([1.0, 3.0]), freeze=True)
-    assert len(executor._kernels) == 2
-    for kernel in executor._kernels.values():
+    assert len(executor.kernels) == 2
+    for kernel in executor.kernels._kernels.values():
         assert isinstance(kernel, CpuKernel)
         assert [name for name, *_ in kernel._interface["uniforms"]] == []
 
@@ -85,16 +86,15 @@ def test_mistaken_settings_are_named(
     settings: dict[str, object], kind: type[Exception], message: str
 ) -> None:
     with pytest.raises(kind, match=message):
-        PythonExecutor().render(Ramp([1.0]), size=SIZE, settings=settings)
+        PythonExecutor().render(Ramp([1.0]), RenderOptions(size=SIZE, settings=settings))
 
 
 def test_time_and_parameters_reach_pictures_and_calls() -> None:
     blue = slider("Time", 0.25) * time  # a parameter that is called like a value of the frame
     executor = PythonExecutor()
     for device in ("cpu", "reference"):
-        picture = executor.render(
-            Ramp([], blue), size=SIZE, time=3.0, params={"Time": 0.5}, device=device
-        )
+        options = RenderOptions(size=SIZE, time=3.0, params={"Time": 0.5}, device=device)
+        picture = executor.render(Ramp([], blue), options)
         assert np.all(picture.array[..., 2] == 1.5)
         assert picture.provenance.parameters == {"time": 0.5}
     ball = Ball(blue)
@@ -134,7 +134,8 @@ def test_a_display_encodes_what_the_kernel_gives(device: str) -> None:
     ramp = Ramp([0.01], display=Display())
     assert [p.name for p in executor.parameters(ramp)] == ["gain"]
     for size in ((40, 3), (1, 1), (7, 5), (333, 17)):
-        picture = executor.render(ramp, size=size, device=device, params={"gain": 2.0})
+        options = RenderOptions(size=size, device=device, params={"gain": 2.0})
+        picture = executor.render(ramp, options)
         columns = 0.01 * (np.arange(size[0]) + 0.5)
         assert np.allclose(picture.linear[0, :, 0], columns, rtol=1e-6)
         assert np.allclose(picture.array[0, :, 0], 2.0 * columns + 0.25, rtol=1e-6)

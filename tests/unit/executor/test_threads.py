@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from distal import Box, Scene, Sphere
+from distal.lang.render_options import RenderOptions
 from distal.runtime.executor import PythonExecutor
 from distal.runtime.lowered import Lowered
 
@@ -17,7 +18,8 @@ def test_scenes_are_lowered_by_many_threads_at_once():
         for i, way in enumerate(("exact", "six_taps", "tetrahedron", "forward"))
     ]
     with ThreadPoolExecutor(8) as pool:
-        made = list(pool.map(lambda i: executor.render(scenes[i % 4], size=(8, 6)), range(16)))
+        options = RenderOptions(size=(8, 6))
+        made = list(pool.map(lambda i: executor.render(scenes[i % 4], options), range(16)))
     for i, picture in enumerate(made):
         assert (picture.array == made[i % 4].array).all()
     assert not np.array_equal(made[0].array, made[3].array)
@@ -32,5 +34,5 @@ def test_a_function_is_lowered_once_for_all_threads(monkeypatch):
 
     monkeypatch.setattr("distal.runtime.executor.Lowered.of", staticmethod(counted))
     with ThreadPoolExecutor(8) as pool:
-        list(pool.map(lambda _: executor.render(scene, size=(4, 3)), range(8)))
+        list(pool.map(lambda _: executor.render(scene, RenderOptions(size=(4, 3))), range(8)))
     assert made.count(scene) == 1

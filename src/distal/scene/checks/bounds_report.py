@@ -18,7 +18,7 @@ from distal.ir.build import field as field_of
 from distal.ir.nodes import Construct, Expr, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Array, Vector, tuple_type
 from distal.lang.composed import Composed
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import RememberedBounds, ShapeBounds
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import FunctionBody, Values

@@ -16,7 +16,7 @@ from distal.ir.nodes import CompareOp, Expr, Param, Read, Return
 from distal.ir.types import VEC2
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
 from distal.scene.checks.validation import claims_told, place_json
 from distal.scene.lowering.attributes import AttributePoint, Part, SurfaceAttribute

@@ -24,7 +24,7 @@ from distal.ir.build import number
 from distal.ir.nodes import Call, Return
 from distal.ir.types import FLOAT, VEC2
 from distal.lang.composed import Composed
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.lowering.picture import Picturing
 from distal.scene.lowering.shapes import ZERO_CELL

@@ -19,7 +19,7 @@ from distal.ir.types import Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.resources import Buffer, TextureValue
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.packages import imported
 from distal.scene.lowering.bounds import PACKED, BoundsComposer, ShapeBounds, packed_types
 from distal.scene.tree.node import Node

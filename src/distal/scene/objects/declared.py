@@ -22,7 +22,7 @@ from distal.ir.types import BOOL, FLOAT, INT, Texture, Type
 from distal.ir.types import Buffer as BufferType
 from distal.lang.functions import Func
 from distal.render.declarations import Declaration, ExtraParameter, Family
-from distal.scene.tree.arguments import Accept, Slot, arguments, slots_of, takes_color
+from distal.scene.tree.arguments import Accept, FunctionParameter, arguments, slots_of, takes_color
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
@@ -61,7 +61,7 @@ def _extra(extra: ExtraParameter) -> inspect.Parameter:
     return inspect.Parameter(extra.name, kind, default=extra.default, annotation=extra.annotation)
 
 
-def _parameter(slot: Slot, family: Family) -> inspect.Parameter:
+def _parameter(slot: FunctionParameter, family: Family) -> inspect.Parameter:
     kind = _BY_NAME if slot.name in family.keyword_only else _BY_POSITION
     annotation = annotation_of(slot.type, is_color=takes_color(slot.name, family.colors))
     if family.varies and annotation in ("Number", "Vector", "Color"):

@@ -20,7 +20,7 @@ from distal.ir.types import FLOAT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
-from distal.lang.runtime_hook import executor
+from distal.lang.runtime_access import executor
 from distal.scene.lowering.derived import BoundsOf, GradientOf
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_slope

@@ -7,6 +7,7 @@ that can be moved where it has one, and its parameters. Knows no window and no p
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -17,7 +18,8 @@ from distal.ir.types import FLOAT
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
-from distal.lang.runtime_hook import executor
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
 from distal.render.views import VIEWS
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
 from distal.scene.lowering.local_views import view_of_image
@@ -110,19 +112,21 @@ class Viewable:
         return steering.settings if self.steers else {}
 
     def render(
-        self,
-        *,
-        view: str = COLOR,
-        steering: Steering | None = None,
-        **options: Any,
+        self, options: RenderOptions, *, view: str = COLOR, steering: Steering | None = None
     ) -> Picture:
-        """The picture; the options are those of ``Image.render``: size, time, params, device."""
+        """The picture.
+
+        Args:
+            options: How it is rendered.
+            view: One of ``views``.
+            steering: How the camera is moved by hand; None: not.
+        """
         image = self.image(view, steered=steering is not None)
         settings = {} if steering is None else self.settings(steering)
-        picture: Picture = executor().render(image, settings=settings, **options)
+        picture = executor().render(image, replace(options, settings=settings))
         moved = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
-        return picture.told(view=view, steering=moved, stage=staged)
+        return picture.with_provenance(view=view, steering=moved, stage=staged)
 
     def _has(self, view: str) -> bool:
         try:

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.window.pace import Pace
-from distal.window.presenters import Made, Maker
+from distal.window.frame_renderers import FrameRenderer, RenderedFrame
+from distal.window.resolution import ResolutionChooser
 from distal.window.session import Shot
 from distal.window.worker import Worker
 
@@ -25,7 +25,7 @@ _FIGURES_S: Final = 1.0  # frames are counted over the last second
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class FrameRequest:
     """A frame that is wanted, in making, or shown.
 
     Attributes:
@@ -46,13 +46,13 @@ class Order:
         width, height = self.size
         return max(round(width * self.share), 1), max(round(height * self.share), 1)
 
-    def shows_the_same(self, other: Order) -> bool:
+    def shows_the_same(self, other: FrameRequest) -> bool:
         """Whether only sharpness sets them apart."""
         mine, its = (self.viewable, self.shot, self.size), (other.viewable, other.shot, other.size)
         return mine == its
 
 
-class Making:
+class FrameScheduler:
     """One frame at a time, always of what is wanted when it begins.
 
     Attributes:
@@ -63,19 +63,19 @@ class Making:
 
     def __init__(
         self,
-        maker: Maker,
+        maker: FrameRenderer,
         worker: Worker,
-        finished: Callable[[Order, Made], None],
-        failing: Callable[[Order, BaseException], None],
+        finished: Callable[[FrameRequest, RenderedFrame], None],
+        failing: Callable[[FrameRequest, BaseException], None],
     ) -> None:
         self.maker = maker
-        self.shown: Order | None = None
-        self.made: Made | None = None
-        self.failed: Order | None = None
+        self.shown: FrameRequest | None = None
+        self.made: RenderedFrame | None = None
+        self.failed: FrameRequest | None = None
         self._worker = worker
         self._finished, self._failing = finished, failing
-        self._pace = Pace()
-        self._in_making: Order | None = None
+        self._pace = ResolutionChooser()
+        self._in_making: FrameRequest | None = None
         self._begun = float("-inf")
         self._times: deque[float] = deque(maxlen=240)
 
@@ -107,7 +107,7 @@ class Making:
         ):
             self._forget(viewable, shot)
         share = self._pace.share(size, is_moving=is_moving)
-        order = Order(viewable, shot, size, share)
+        order = FrameRequest(viewable, shot, size, share)
         if self._in_making is not None:
             self._give_up_for(order, is_moving=is_moving)
             return None
@@ -125,13 +125,13 @@ class Making:
         if making is None or making.viewable is not viewable or making.shot.view != shot.view:
             self._pace.forget()
 
-    def _is_wanted(self, order: Order) -> bool:
+    def _is_wanted(self, order: FrameRequest) -> bool:
         for known in (self.shown, self.failed):
             if known is not None and order.shows_the_same(known):
                 return known is self.shown and order.share > known.share
         return True
 
-    def _give_up_for(self, order: Order, *, is_moving: bool) -> None:
+    def _give_up_for(self, order: FrameRequest, *, is_moving: bool) -> None:
         """End a sharp frame that nobody waits for any more; coarse ones come soon enough."""
         making = self._in_making
         assert making is not None
@@ -141,14 +141,14 @@ class Making:
             return
         self._worker.cancel()
 
-    def _begin(self, order: Order) -> None:
+    def _begin(self, order: FrameRequest) -> None:
         self._in_making, self._begun = order, time.monotonic()
         self._worker.submit(
             lambda cancel: self.maker.make(order.viewable, order.shot, order.pixels, cancel),
             lambda result: self._end(order, result),
         )
 
-    def _end(self, order: Order, result: Any) -> None:
+    def _end(self, order: FrameRequest, result: Any) -> None:
         self._in_making = None
         if isinstance(result, BaseException):
             self.failed = order

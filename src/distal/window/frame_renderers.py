@@ -1,6 +1,6 @@
 """Makes frames: on the CPU as pixels, on a GPU as a texture that never leaves it.
 
-Input: what is shown, a ``Shot``, a size. Output: a ``Made``, display values either
+Input: what is shown, a ``Shot``, a size. Output: a ``RenderedFrame``, display values either
 way. Runs in the worker's thread; knows no window.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from distal.devices.base import Cancelled
 from distal.images.png import quantise
-from distal.lang.runtime_hook import executor
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
+from distal.runtime.executor import DrawTarget
 from distal.window.session import Shot
 
 if TYPE_CHECKING:
@@ -29,7 +31,7 @@ _SMALLEST: Final = (8, 8)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Made:
+class RenderedFrame:
     """A frame.
 
     Attributes:
@@ -45,7 +47,7 @@ class Made:
     share: float = 1.0
 
 
-class Maker(Protocol):
+class FrameRenderer(Protocol):
     """Makes frames on one device.
 
     Attributes:
@@ -60,7 +62,7 @@ class Maker(Protocol):
 
     def make(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
-    ) -> Made:
+    ) -> RenderedFrame:
         """A frame of that width and height in pixels.
 
         Raises:
@@ -70,25 +72,30 @@ class Maker(Protocol):
         ...
 
 
-def picture(
-    viewable: Viewable, shot: Shot, size: tuple[int, int], device: str, **options: Any
-) -> Picture:
-    """What a shot shows, with all that a file has to tell about it."""
-    made: Picture = viewable.render(
-        view=shot.view,
-        steering=shot.steering,
+def render_options(shot: Shot, size: tuple[int, int], device: str) -> RenderOptions:
+    """How a shot is rendered.
+
+    Args:
+        shot: What is shown.
+        size: Width and height in pixels.
+        device: What renders.
+    """
+    return RenderOptions(
         size=size,
         time=shot.time,
         params=dict(shot.parameters),
         mouse=shot.mouse.pixels(size),
         index=shot.index,
         device=device,
-        **options,
     )
-    return made
 
 
-class PixelMaker:
+def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
+    """What a shot shows, with everything that its file says about it."""
+    return viewable.render(options, view=shot.view, steering=shot.steering)
+
+
+class PixelRenderer:
     """Makes pixels on any device that renders into memory."""
 
     def __init__(self, device: str) -> None:
@@ -96,11 +103,11 @@ class PixelMaker:
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs."""
-        picture(viewable, shot, _SMALLEST, self.device)
+        picture(viewable, shot, render_options(shot, _SMALLEST, self.device))
 
     def make(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
-    ) -> Made:
+    ) -> RenderedFrame:
         """A frame; ended early, how far it came and what that took."""
         done = 0.0
         begin = time.perf_counter()
@@ -111,17 +118,18 @@ class PixelMaker:
                 begin = time.perf_counter()
             done = share
 
+        options = render_options(shot, size, self.device)
         try:
-            made = picture(viewable, shot, size, self.device, cancel=cancel, progress=progress)
+            made = picture(viewable, shot, replace(options, cancel=cancel, progress=progress))
         except Cancelled:
-            return Made(seconds=time.perf_counter() - begin, share=min(done, 0.999))
+            return RenderedFrame(seconds=time.perf_counter() - begin, share=min(done, 0.999))
         begin = time.perf_counter()
         pixels = quantise(made.array)
         quantised = time.perf_counter() - begin
-        return Made(pixels, seconds=made.stats["render_s"] + quantised)
+        return RenderedFrame(pixels, seconds=made.stats["render_s"] + quantised)
 
 
-class TextureMaker:
+class TextureRenderer:
     """Draws into textures of a GPU, by its fragment path."""
 
     def __init__(self, device: str, gpu: Any, adapter: str | None) -> None:
@@ -143,7 +151,7 @@ class TextureMaker:
 
     def make(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
-    ) -> Made:
+    ) -> RenderedFrame:
         """A frame; a GPU ends what it has begun."""
         self.prepare(viewable, shot)
         # The window shows one while the other is drawn, and never asks for a third.
@@ -153,20 +161,14 @@ class TextureMaker:
         self._textures.append(texture)
         begin = time.perf_counter()
         self._draw(viewable, shot, texture, size)
-        return Made(texture=texture, seconds=time.perf_counter() - begin)
+        return RenderedFrame(texture=texture, seconds=time.perf_counter() - begin)
 
     def _draw(self, viewable: Viewable, shot: Shot, texture: Any, size: tuple[int, int]) -> None:
+        settings = viewable.settings(shot.steering) if shot.steering else {}
         executor().draw(
             viewable.image(shot.view, steered=shot.steering is not None, encoded=True),
-            texture.create_view(),
-            format=TEXTURE_FORMAT,
-            size=size,
-            time=shot.time,
-            params=dict(shot.parameters),
-            mouse=shot.mouse.pixels(size),
-            index=shot.index,
-            settings=viewable.settings(shot.steering) if shot.steering else {},
-            adapter=self._adapter,
+            DrawTarget(texture.create_view(), TEXTURE_FORMAT, self._adapter),
+            replace(render_options(shot, size, self.device), settings=settings),
         )
         self._wait_for(texture)
 

@@ -15,7 +15,7 @@ SHARES: Final = (1.0, 0.5, 0.25, 0.125)
 _ROOM: Final = 0.75
 
 
-class Pace:
+class ResolutionChooser:
     """Learns what a pixel costs."""
 
     def __init__(self) -> None:

@@ -1,0 +1,120 @@
+"""How a picture is rendered: each option with its default, its check and its meaning.
+
+Input: values from a caller. Output: a ``RenderOptions`` that is passed unchanged from
+``Image.render``, ``Scene.render``, videos, windows and the command line to the executor. Standard
+library only.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final, TypeAlias
+
+from distal.ir.limits import LARGEST_TIME
+
+LARGEST_SIDE_PX: Final = 16384
+
+# Called with the finished share, from 0 to 1.
+Progress: TypeAlias = Callable[[float], Any]
+# Set, or returns True, when the work is to end.
+Cancel: TypeAlias = Callable[[], bool] | threading.Event
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderOptions:
+    """The options of one rendering, checked when it is made.
+
+    Attributes:
+        size: Width and height in pixels.
+        time: Seconds; ``frame.time`` of an ``@image``.
+        params: Values of parameters by name; the others have their defaults.
+        device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
+            "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
+        threads: How many CPU threads to use; None for all that the process may use.
+        progress: Called with the finished share, from 0 to 1.
+        cancel: An event, or a function without arguments, that ends the work early.
+        mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
+        index: ``frame.index``, the frame's number; wraps at 32 bits.
+        seed: ``frame.seed``, where random numbers start; wraps at 32 bits.
+        freeze: Make constants of all numbers: slower to compile, a little faster to run.
+        settings: Values of a scene's numbers by name, for this picture only.
+
+    Raises:
+        TypeError: A value has the wrong type.
+        ValueError: A value is out of range.
+    """
+
+    size: tuple[int, int] = (640, 480)
+    time: float = 0.0
+    params: Mapping[str, Any] = field(default_factory=dict)
+    device: str = "cpu"
+    threads: int | None = None
+    progress: Progress | None = None
+    cancel: Cancel | None = None
+    mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0)
+    index: int = 0
+    seed: int = 0
+    freeze: bool = False
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, value in (
+            ("size", checked_size(self.size)),
+            ("time", checked_time(self.time)),
+            ("mouse", checked_mouse(self.mouse)),
+            ("index", _checked_int("index", self.index)),
+            ("seed", _checked_int("seed", self.seed)),
+        ):
+            object.__setattr__(self, name, value)
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    """Width and height in pixels."""
+    try:
+        width, height = map(operator.index, size)
+    except (TypeError, ValueError):
+        raise TypeError(f"size is (width, height) in pixels, not {size!r}") from None
+    if not (1 <= width <= LARGEST_SIDE_PX and 1 <= height <= LARGEST_SIDE_PX):
+        raise ValueError(f"each side has 1 to {LARGEST_SIDE_PX} pixels, not {width}x{height}")
+    return width, height
+
+
+def checked_time(seconds: Any) -> float:
+    """A time in seconds that 32 bits still tell from its neighbours."""
+    try:
+        value = float(seconds)
+    except (TypeError, ValueError):
+        raise TypeError(f"time is a number of seconds, not {seconds!r}") from None
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise ValueError(f"time is finite, not {value}")
+    if abs(value) > LARGEST_TIME:
+        raise ValueError(
+            f"time is within {LARGEST_TIME:.0f} seconds (12 days) of 0, not {value:g}: floats of "
+            "32 bits are too far apart there"
+        )
+    return value
+
+
+def checked_mouse(mouse: Any) -> tuple[float, float, float, float]:
+    """The four numbers of ``frame.mouse``."""
+    try:
+        x, y, click_x, click_y = (float(part) for part in mouse)
+    except (TypeError, ValueError):
+        x = y = click_x = click_y = math.nan
+    values = (x, y, click_x, click_y)
+    if not all(map(math.isfinite, values)):
+        raise ValueError(f"mouse is four finite numbers, not {mouse!r}")
+    return values
+
+
+def _checked_int(name: str, value: Any) -> int:
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is a whole number, not {value!r}") from None

@@ -1,0 +1,45 @@
+"""Access from ``lang`` to the parts of distal that compile and run scene code.
+
+``lang`` only records functions. The modules named here lie in higher layers: each is imported when
+it is first used, so that importing scene code loads none of them. Types are those of the real
+modules.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from distal.lang.lazy_module import LazyModule
+
+if TYPE_CHECKING:
+    from distal.compiler import constant_evaluation
+    from distal.export import registry as exports
+    from distal.frontend import python_expressions
+    from distal.notebook import widget
+    from distal.runtime import executor as runtime_executor
+    from distal.runtime.executor import PythonExecutor
+    from distal.video import recording
+else:
+    constant_evaluation = LazyModule("distal.compiler.constant_evaluation")
+    exports = LazyModule("distal.export.registry")
+    python_expressions = LazyModule("distal.frontend.python_expressions")
+    recording = LazyModule("distal.video.recording")
+    runtime_executor = LazyModule("distal.runtime.executor")
+    widget = LazyModule("distal.notebook.widget")
+
+
+@cache
+def executor() -> PythonExecutor:
+    """The executor of this process, made when first needed."""
+    return runtime_executor.PythonExecutor()
+
+
+__all__ = [
+    "constant_evaluation",
+    "executor",
+    "exports",
+    "python_expressions",
+    "recording",
+    "widget",
+]

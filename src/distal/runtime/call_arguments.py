@@ -1,0 +1,110 @@
+"""Which overload a call from Python means, and its arguments as the kernel takes them.
+
+Input: a function of scene code and the values of a call. Output: the parameter types, the values in
+their order, and these with one row for each point; or a ``TypeError`` that lists what the function
+takes. Knows no device.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from distal.frontend import lower
+from distal.frontend.signatures.matching import signature_of
+from distal.frontend.signatures.signatures import MISSING, read_header
+from distal.ir.types import Type
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.names import LangFunction
+from distal.runtime.call_values import bind, choose_types, rows_of
+
+
+def call_arguments(
+    function: Func | Composed | LangFunction,
+    args: Sequence[Any],
+    kwargs: Mapping[str, Any],
+    dtype: np.dtype[Any],
+) -> tuple[tuple[Type, ...], list[Any], list[Any]]:
+    """The overload that takes the arguments.
+
+    Args:
+        function: What is called.
+        args: Values by position.
+        kwargs: Values by name.
+        dtype: float32 or float64: what the points are converted to.
+
+    Returns:
+        The parameter types, the values in their order, and the same as arrays with one row for each
+        point.
+
+    Raises:
+        TypeError: No overload takes them.
+        CompileError: The signature is wrong, with the author's lines.
+    """
+    if isinstance(function, LangFunction):
+        if kwargs:
+            raise TypeError(f"{function.row.name}() takes no keyword arguments")
+        for signature in function.row.signatures:
+            for types, _ in signature.instances():
+                rows = rows_of(args, types, dtype) if len(types) == len(args) else None
+                if rows is not None:
+                    return types, list(args), rows
+    elif isinstance(function, Composed):
+        types = tuple(type for _, type in function.signature)
+        names = dict.fromkeys((name for name, _ in function.signature), MISSING)
+        values = bind(function.name, names, args, kwargs)
+        rows = rows_of(values, types, dtype)
+        if rows is not None:
+            return types, values, rows
+    else:
+        mistake: TypeError | None = None
+        for overload in function.overloads:
+            header = read_header(overload)
+            if header.problems:
+                lower(function)  # raises with the author's lines
+            try:
+                defaults = {slot.name: slot.default for slot in header.slots}
+                values = bind(header.name, defaults, args, kwargs)
+            except TypeError as error:
+                mistake = error
+                continue
+            found = choose_types(header, values, dtype)
+            if found is not None:
+                types, rows = found
+                return types, values, rows
+        if mistake is not None and len(function.overloads) == 1:
+            raise mistake
+    given = ", ".join(map(_described, [*args, *kwargs.values()]))
+    raise TypeError(f"{_name(function)}() does not take ({given}); {_takes(function)}")
+
+
+def _name(function: Func | Composed | LangFunction) -> str:
+    return function.row.name if isinstance(function, LangFunction) else function.name
+
+
+def _takes(function: Func | Composed | LangFunction) -> str:
+    if isinstance(function, LangFunction):
+        overloads = [
+            f"({', '.join(map(str, types))})"
+            for signature in function.row.signatures
+            for types, _ in signature.instances()
+        ]
+    elif isinstance(function, Composed):
+        params = ", ".join(f"{name}: {type}" for name, type in function.signature)
+        overloads = [f"({params}) -> {function.result}"]
+    else:
+        overloads = [signature_of(read_header(o)) for o in function.overloads]
+    return f"it takes {' or '.join(overloads)}, or arrays with a row for each point"
+
+
+def _described(value: Any) -> str:
+    try:
+        shape = np.shape(value) if not isinstance(value, str) else ()
+    except ValueError:
+        return f"a {type(value).__name__} whose parts differ in length"
+    if shape:
+        return f"an array of shape {shape}"
+    return repr(value) if isinstance(value, int | float | str) else type(value).__name__

@@ -1,0 +1,86 @@
+"""Compiled kernels, kept for the life of the process.
+
+Input: a lowered function, a device's name, a precision. Output: a ``Kernel``, the same one for
+functions that mean the same. Knows nothing of pictures and of values.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from distal.devices.base import Kernel
+from distal.ir.nodes import Module
+from distal.lang.lazy_module import LazyModule
+from distal.runtime.device_names import AUTO, CPU, DEVICE_NAMES, GPU, GPU_FRAGMENT, REFERENCE
+from distal.runtime.lowered import Lowered
+
+if TYPE_CHECKING:
+    from distal.devices import adapters, cpu, gpu, reference
+else:
+    adapters = LazyModule("distal.devices.adapters")
+    cpu = LazyModule("distal.devices.cpu")
+    gpu = LazyModule("distal.devices.gpu")
+    reference = LazyModule("distal.devices.reference")
+
+KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
+
+# Compiles a module for a precision in bits and, on a GPU, an adapter.
+Prepare: TypeAlias = Callable[[Module, int, str | None], Kernel]
+DEVICES: Final[Mapping[str, Prepare]] = {
+    CPU: lambda module, bits, _: cpu.prepare(module, precision=bits),
+    GPU: lambda module, bits, adapter: gpu.prepare(
+        module, precision=bits, path="compute", adapter=adapter
+    ),
+    GPU_FRAGMENT: lambda module, bits, adapter: gpu.prepare(
+        module, precision=bits, path="fragment", adapter=adapter
+    ),
+    REFERENCE: lambda module, bits, _: reference.prepare(module, precision=bits),
+}
+
+
+class KernelCache:
+    """The kernels that were used last, by what lowering gave, device and precision.
+
+    Scenes that differ in their numbers only share a kernel.
+    """
+
+    def __init__(self) -> None:
+        self._kernels: dict[tuple[str, str, int], Kernel] = {}
+        self._lock = threading.RLock()
+
+    def __len__(self) -> int:
+        return len(self._kernels)
+
+    def kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
+        """The kernel of a function, compiled now if it is not there.
+
+        Args:
+            lowered: The function.
+            device: A name of ``DEVICES``; for a GPU, an adapter may follow after a colon.
+            precision: Bits of a float, 32 or 64.
+
+        Raises:
+            ValueError: There is no such device.
+            DeviceError: The device is missing.
+        """
+        name, _, adapter = device.partition(":")
+        if name not in DEVICES or (adapter and not name.startswith("gpu")):
+            known = ", ".join(DEVICE_NAMES)
+            raise ValueError(f"there is no device '{device}'; devices: {known}")
+        key = (lowered.digest, device, precision)
+        with self._lock:
+            kernel = self._kernels.pop(key, None)
+            if kernel is None:
+                kernel = DEVICES[name](lowered.module, precision, adapter or None)
+            self._kernels[key] = kernel  # the last used is at the end
+            if len(self._kernels) > KERNELS_KEPT:
+                self._kernels.pop(next(iter(self._kernels)), None)
+            return kernel
+
+
+def automatic_device() -> str:
+    """What "auto" means on this machine."""
+    found = adapters.resolve(AUTO)
+    return f"{found.device}:{found.adapter}" if found.adapter else str(found.device)
