@@ -57,7 +57,7 @@ def loaded_from(obj: object) -> LoadedFrom | None:
 
 
 def hand_on(origin: object, made: object) -> None:
-    """Say that an object shows what another does, so that it comes from the same file."""
+    """Record that an object shows what another does, so that it comes from the same file."""
     known = loaded_from(origin)
     if known is not None:
         _loaded[made] = known
@@ -197,13 +197,13 @@ def _neighbour(folder: Path, place: str) -> bytes:
 
 
 def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:
-    """Let the next scene import its own neighbours, and edited ones anew; their files, sorted.
+    """Let the next scene import its own neighbours, and edited ones again; their files, sorted.
 
     Python keeps imported modules by name alone: the ``shapes`` of one folder would serve the scenes
     of another. What the scene imported stays alive in its globals.
     """
     tops = {name.partition(".")[0] for name in set(sys.modules) - known}
-    near = {top for top in tops if _stands_in(sys.modules.get(top), folder)}
+    near = {top for top in tops if _is_directly_in(sys.modules.get(top), folder)}
     files: set[Path] = set()
     for name in set(sys.modules) - known:
         if name.partition(".")[0] in near:
@@ -213,7 +213,7 @@ def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:
     return sorted(files)
 
 
-def _stands_in(module: types.ModuleType | None, folder: Path) -> bool:
+def _is_directly_in(module: types.ModuleType | None, folder: Path) -> bool:
     """Whether a module's file, or a package's folder, is directly in a folder."""
     places = list(getattr(module, "__path__", ())) or [getattr(module, "__file__", None)]
     return any(place is not None and Path(place).parent == folder for place in places)
@@ -270,15 +270,15 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
         return found[name]
     pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
     shapes = {key: value for key, value in found.items() if isinstance(value, Composed)}
-    asked, what = (pictures, "pictures") if pictures else (shapes, "shapes")
-    if len(set(map(id, asked.values()))) == 1:
-        return next(iter(asked.values()))
+    offered, what = (pictures, "pictures") if pictures else (shapes, "shapes")
+    if len(set(map(id, offered.values()))) == 1:
+        return next(iter(offered.values()))
     for wanted in _DEFAULT_NAMES:
-        if wanted in asked:
-            return asked[wanted]
-    if not asked:
+        if wanted in offered:
+            return offered[wanted]
+    if not offered:
         raise LoadError(f"{file} defines no scene and no @image; {_listed(found)}")
-    raise LoadError(f"{file} defines several {what}; say which: {file}:NAME; {_listed(asked)}")
+    raise LoadError(f"{file} defines several {what}; say which: {file}:NAME; {_listed(offered)}")
 
 
 def _is_own_picture(value: SceneCode, module: types.ModuleType) -> bool:

@@ -73,7 +73,7 @@ PACKAGES: Final = (
     Package("fonttools", "text", "letters of fonts", "fontTools"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}
-# What loaders and libraries say where memory is short; the error's own kind does not tell.
+# What loaders and libraries say where memory is short; the error's class does not.
 _NO_MEMORY: Final = ("failed to map segment", "cannot allocate memory", "out of memory")
 
 
@@ -101,7 +101,7 @@ def loading(module: str) -> Iterator[None]:
     except PackageError:
         raise
     except Exception as error:
-        raise _told(error, _missing(error) or _BY_MODULE[module]) from error
+        raise _reported(error, _missing(error) or _BY_MODULE[module]) from error
 
 
 def explained(error: BaseException) -> PackageError | MemoryError | None:
@@ -120,7 +120,7 @@ def explained(error: BaseException) -> PackageError | MemoryError | None:
         package = _BY_MODULE.get((error.name or "").partition(".")[0])
     if package is None and isinstance(error, AttributeError) and isinstance(error.obj, ModuleType):
         package = _BY_MODULE.get(error.obj.__name__.partition(".")[0])
-    return None if package is None else _told(error, package)
+    return None if package is None else _reported(error, package)
 
 
 def raised_in(error: BaseException, module: str) -> bool:
@@ -157,7 +157,7 @@ def _top(at: TracebackType) -> str:
     return str(at.tb_frame.f_globals.get("__name__", "")).partition(".")[0]
 
 
-def _told(error: Exception, package: Package) -> PackageError | MemoryError:
+def _reported(error: Exception, package: Package) -> PackageError | MemoryError:
     if _missing(error) is package:
         return PackageError(f"{package.name} is missing: {package.remedy}", is_missing=True)
     causes = list(_causes(error))

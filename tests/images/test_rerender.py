@@ -16,7 +16,7 @@ import distal
 from distal.cli.application import application
 from distal.images.metadata import read
 from distal.lang.render_options import RenderOptions
-from distal.scene.rerender import difference, planned, rerender
+from distal.scene.rerender import difference, plan_rerender, rerender
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
 
@@ -110,7 +110,7 @@ def test_frame_mouse_seed_and_index_of_python_are_kept(run):
     picture.save("a.png")
     origin = read(Path("a.png")).provenance
     assert (origin.index, origin.seed, origin.mouse) == (7, 9, (25.0, 1.0, 0.0, 0.0))
-    again = rerender(planned(Path("a.png")))
+    again = rerender(plan_rerender(Path("a.png")))
     assert np.array_equal(again.array, picture.array)
 
 
@@ -120,7 +120,7 @@ def test_camera_that_was_moved_by_hand_is_kept(run):
     options = RenderOptions(size=(24, 16))
     picture = shown.render(options, steering=moved)
     picture.save("a.png")
-    again = rerender(planned(Path("a.png")))
+    again = rerender(plan_rerender(Path("a.png")))
     assert np.array_equal(again.array, picture.array)
     assert not np.array_equal(again.array, shown.render(options).array)
 
@@ -129,7 +129,7 @@ def test_stage_is_as_large_as_it_was_when_the_shape_was_shown(run):
     shown = viewable(distal.load("scene.py", "ball"))  # staged for the default size
     picture = shown.render(RenderOptions(size=(24, 16), params={"size": 0.3}))
     picture.save("a.png")
-    again = rerender(planned(Path("a.png")))
+    again = rerender(plan_rerender(Path("a.png")))
     assert np.array_equal(again.array, picture.array)
 
 
@@ -174,7 +174,7 @@ def test_check_writes_nothing_and_measures_the_difference(run):
     result = run("rerender", "b.png", "--check")
     assert result.exit_code == 1
     assert result.stdout == f"b.png: 0.26 % of the pixels differ, by up to {largest:.3g}\n"
-    found = difference(planned(Path("b.png")), rerender(planned(Path("b.png"))))
+    found = difference(plan_rerender(Path("b.png")), rerender(plan_rerender(Path("b.png"))))
     assert (found.largest, found.share) == (pytest.approx(largest), 1 / 384)
 
 

@@ -12,7 +12,7 @@ import pytest
 from distal.backends import emit, get_target
 from distal.compiler.driver import run_passes
 from distal.devices import gpu as gpu_device
-from distal.export.payload import Programs
+from distal.export.payload import PagePrograms
 from distal.frontend import lower
 from distal.lang import Frame, array, func, image, ivec2, mat2, struct, uint, vec2, vec3, vec4
 from distal.scene.viewing.viewable import viewable
@@ -190,7 +190,7 @@ def test_a_table_is_read_once_a_frame(name: str) -> None:
 
 
 def test_a_page_carries_the_tables_once() -> None:
-    programs = Programs(viewable(floats))
+    programs = PagePrograms(viewable(floats))
     programs.add("color")
     programs.add("color")
     (program,) = programs.made

@@ -40,11 +40,11 @@ def test_pieces_stay_for_the_same_video_and_half_ones_go(tmp_path):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"size": [64, 48]}, "begins anew: size was [640, 480], is [64, 48]"),
-        ({"program": "b"}, "begins anew: the scene has changed"),
+        ({"size": [64, 48]}, "starts again: size was [640, 480], is [64, 48]"),
+        ({"program": "b"}, "starts again: the scene has changed"),
         (
             {"parameters": {"glow": 1.0}, "quality": 60.0},
-            "begins anew: quality was 80.0, is 60.0; parameters have changed",
+            "starts again: quality was 80.0, is 60.0; parameters have changed",
         ),
     ],
 )

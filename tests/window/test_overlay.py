@@ -10,13 +10,15 @@ from distal.window import lettering, overlay
 from distal.window.layout import Table, time_track
 from distal.window.lettering import plain_font, shortened, shortened_inside, width
 from distal.window.overlay import Overlay, Panel
-from distal.window.reading import Reading, Row
+from distal.window.overlay_content import OverlayContent, ParameterRow
 
 ROWS = (
-    Row("Softness", "0.054", 0.27, is_moved=True),
-    Row("Paint r", "0.5", 0.5, is_moved=False),
-    Row("Spot x", "-1.25", None, is_moved=False),
-    Row("A label that is far too long for its column", "a long choice's name", 1.0, is_moved=False),
+    ParameterRow("Softness", "0.054", 0.27, is_moved=True),
+    ParameterRow("Paint r", "0.5", 0.5, is_moved=False),
+    ParameterRow("Spot x", "-1.25", None, is_moved=False),
+    ParameterRow(
+        "A label that is far too long for its column", "a long choice's name", 1.0, is_moved=False
+    ),
 )
 MISTAKE = """error: there is no function 'lenght'
   --> scene.py:12:12
@@ -24,7 +26,7 @@ MISTAKE = """error: there is no function 'lenght'
 12 |     return lenght(p) - 1.0
    |            ^^^^^^
    = hint: did you mean 'length'?"""
-FULL = Reading(
+FULL = OverlayContent(
     status="raymarcher   color   60 fps   12.3 ms   640x480   cpu",
     rows=ROWS,
     chosen=1,
@@ -60,13 +62,13 @@ def test_what_says_the_same_is_the_same_panel() -> None:
     assert [a is b for a, b in zip(first, again, strict=True)].count(False) == 1
     resized = drawn.panels(FULL, (800, 480), 1.0)
     assert not any(a is b for a, b in zip(first, resized, strict=True))
-    assert drawn.panels(Reading(), (640, 480), 1.0) == []
+    assert drawn.panels(OverlayContent(), (640, 480), 1.0) == []
 
 
 @pytest.mark.parametrize("ratio", [1, 2])
 def test_bars_end_where_the_pointer_finds_them(ratio: int) -> None:
     size = (640 * ratio, 480 * ratio)
-    read = Reading(rows=ROWS, chosen=0, time=(2.5, 0.0, 10.0))
+    read = OverlayContent(rows=ROWS, chosen=0, time=(2.5, 0.0, 10.0))
     picture = composed(Overlay().panels(read, size, ratio), size)
     table = Table.of(640, 480, len(ROWS), 0)
     ends = [(table.track(n), row.share) for n, row in enumerate(ROWS) if row.share is not None]
@@ -94,7 +96,7 @@ def test_a_caret_stands_under_what_it_means(
     if not has_fixed_font:
         monkeypatch.setattr(overlay, "fixed_font", lettering.plain_font)
     lines = ["12 |     ######     after", "   |     ^^^^^^"]
-    (panel,) = Overlay().panels(Reading(trouble="\n".join(lines)), (640, 480), 1.0)
+    (panel,) = Overlay().panels(OverlayContent(trouble="\n".join(lines)), (640, 480), 1.0)
     pixels = panel.pixels[..., :3].astype(float)
     line = round(13 * 1.45)
     source = marks(pixels, slice(12, 12 + line))
@@ -126,7 +128,7 @@ def test_words_go_on_below_whole() -> None:
 
 def test_a_mistake_of_many_lines_is_cut_with_a_sign() -> None:
     text = "\n".join(f"line {n}" for n in range(200))
-    panels = Overlay().panels(Reading(trouble=text), (400, 300), 1.0)
+    panels = Overlay().panels(OverlayContent(trouble=text), (400, 300), 1.0)
     composed(panels, (400, 300))
 
 
@@ -151,8 +153,8 @@ def test_rows_that_are_not_shown_are_marked() -> None:
     """A mark at the right edge stands as far down as the rows stand among all."""
 
     def mark(count: int, chosen: int) -> NDArray[np.intp]:
-        rows = tuple(Row(f"row {i}", "1", None, is_moved=False) for i in range(count))
-        (panel,) = Overlay().panels(Reading(rows=rows, chosen=chosen), (640, 480), 1.0)
+        rows = tuple(ParameterRow(f"row {i}", "1", None, is_moved=False) for i in range(count))
+        (panel,) = Overlay().panels(OverlayContent(rows=rows, chosen=chosen), (640, 480), 1.0)
         return np.flatnonzero(panel.pixels[:, -2, :3].min(axis=1) > 100)
 
     assert mark(5, 0).size == 0
@@ -165,7 +167,7 @@ def test_rows_that_are_not_shown_are_marked() -> None:
 
 @pytest.mark.parametrize("size", [(120, 90), (300, 200), (640, 480)])
 def test_lines_of_help_never_lie_over_each_other(size: tuple[int, int]) -> None:
-    (panel,) = Overlay().panels(Reading(help=True), size, 1.0)
+    (panel,) = Overlay().panels(OverlayContent(help=True), size, 1.0)
     accent = (np.abs(panel.pixels[..., :3].astype(int) - overlay._ACCENT[:3]) < 40).all(axis=2)
     lines = np.flatnonzero(np.diff(accent.any(axis=1).astype(int)) == 1).size
     assert lines >= min(len(overlay.HELP), int((size[1] - 20) // 21))

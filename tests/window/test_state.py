@@ -22,7 +22,7 @@ from distal.window.dials import Dial, dials
 from distal.window.gestures import Mouse, orbited, panned, zoomed
 from distal.window.keys import Action, action_of_character, action_of_key
 from distal.window.layout import BAR_HEIGHT, Table, time_track
-from distal.window.reload import Watch, files_in
+from distal.window.reload import FileWatcher, files_in
 from distal.window.resolution import BUDGET_S, ResolutionChooser
 from distal.window.session import Session
 from distal.window.worker import Worker
@@ -334,7 +334,7 @@ def test_a_value_at_its_default_follows_the_edited_default() -> None:
 def test_a_save_is_noticed_once_and_only_at_rest(tmp_path: Path) -> None:
     file, other = tmp_path / "a.py", tmp_path / "b.py"
     file.write_text("1")
-    watch = Watch([file, other])
+    watch = FileWatcher([file, other])
     assert not watch.has_changed()
     file.write_text("12")
     assert not watch.has_changed()  # still being written, for all we know
@@ -352,7 +352,7 @@ def test_a_save_is_noticed_once_and_only_at_rest(tmp_path: Path) -> None:
 def test_an_editor_that_saves_by_renaming_is_noticed(tmp_path: Path) -> None:
     file, fresh = tmp_path / "a.py", tmp_path / "a.tmp"
     file.write_text("1")
-    watch = Watch([file])
+    watch = FileWatcher([file])
     fresh.write_text("2")
     stamp = file.stat().st_mtime_ns
     fresh.replace(file)
@@ -364,7 +364,7 @@ def test_watching_anew_misses_nothing_that_was_saved_meanwhile(tmp_path: Path) -
     file, other = tmp_path / "a.py", tmp_path / "b.py"
     file.write_text("1")
     other.write_text("1")
-    watch = Watch([file])
+    watch = FileWatcher([file])
     file.write_text("saved while the scene was loaded")
     watch.watch([file, other])
     assert [watch.has_changed(), watch.has_changed()] == [False, True]

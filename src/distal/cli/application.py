@@ -26,7 +26,7 @@ from distal.version import __version__
 
 # Importing them is what adds their commands.
 COMMANDS = (render, check, probe, export, video, rerender, view)
-# As --help lists them: what a newcomer asks for first.
+# As --help lists them: what a newcomer needs first.
 _ORDER = (
     *("render", "view", "video", "export", "rerender"),
     *("check", "probe", "compile", "examples", "doctor"),
@@ -108,13 +108,13 @@ def examples() -> None:
 @application.command()
 @reporting
 def doctor() -> None:
-    """Tell what this machine can do, and how to mend what is missing."""
+    """Show what this machine can do, and how to install what is missing."""
     from distal.cli.doctor import State, examine
     from distal.cli.doctor_report import show
 
-    findings = examine()
-    show(findings)
-    if any(finding.state is State.BROKEN for finding in findings):
+    facts = examine()
+    show(facts)
+    if any(fact.state is State.BROKEN for fact in facts):
         raise typer.Exit(1)
 
 
@@ -126,7 +126,7 @@ application.registered_commands.sort(key=_place)
 
 
 def _file_name(scene: str) -> str:
-    """The name of the author's file, as FILE[:NAME] or example:NAME tell it."""
+    """The name of the author's file, of FILE[:NAME] or example:NAME."""
     path = read_scene(scene)[0]
     if path.startswith(EXAMPLE_PREFIX):
         return f"{path.removeprefix(EXAMPLE_PREFIX)}.py"

@@ -1,4 +1,4 @@
-"""What the commands share: the application they belong to, arguments, and how mistakes are told.
+"""What the commands share: the application they belong to, arguments, error reports.
 
 Input: words of the command line. Output: a loaded scene; an author's mistake as its
 message and exit code. Knows no command.
@@ -39,7 +39,7 @@ application = typer.Typer(
     help="Scenes and shaders written as Python: render them, compile them.",
     no_args_is_help=True,
     add_completion=False,
-    # A traceback is a fault of ours; it is shown as Python shows it, with nothing hidden.
+    # A traceback is an error of distal; it is shown as Python shows it, with nothing hidden.
     pretty_exceptions_enable=False,
 )
 
@@ -71,7 +71,7 @@ def prepare_for_arrays() -> None:
 
 
 def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
-    """Turn an author's mistake into its message and exit code; anything else is our fault."""
+    """Turn an author's mistake into its message and exit code; other errors stay as they are."""
 
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
@@ -193,7 +193,7 @@ def load_picture(
 
 
 def check_view(seen: Viewable, view: str) -> None:
-    """Refuse a view that there is not."""
+    """Refuse a view that does not exist."""
     try:
         seen.image(view)
     except ValueError as error:
@@ -206,5 +206,7 @@ def check_processor() -> None:
 
     try:
         chosen_level()
-    except ValueError as error:  # a processor too old, or a wish in DISTAL_CPU it cannot grant
+    except (
+        ValueError
+    ) as error:  # a processor too old, or a level in DISTAL_CPU that it does not have
         raise UsageError(str(error)) from None

@@ -1,7 +1,7 @@
-"""``distal check``: what a scene's shapes claim, where slope comes from, whether it all holds.
+"""``distal check``: what a scene's shapes guarantee, where slope comes from, and what is violated.
 
 Input: parsed words. Output: a tree of shapes and findings with their lines, or the
-same as JSON for editors; exit code 1 when a claim was found violated.
+same as JSON for editors; exit code 1 when a guarantee is violated.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ def check(
         bool, typer.Option("--json", help="Plain values for editors, on one line.")
     ] = False,
 ) -> None:
-    """Tell what shapes promise, where slope comes from, and which promises do not hold."""
-    from distal.scene.checks.validation import check as look_over
+    """Show what shapes guarantee, where slope comes from, and which guarantees do not hold."""
+    from distal.scene.checks.validation import check as run_checks
     from distal.scene.objects.field import Field
     from distal.scene.scene import Scene
 
@@ -58,17 +58,17 @@ def check(
         raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())
     shape = obj.shape if isinstance(obj, Scene) else obj
-    checkup = look_over(shape, values, seconds, seed)
+    checkup = run_checks(shape, values, seconds, seed)
     if as_json:
         answer(json.dumps({**checkup.as_json(), "name": obj.name}))
     else:
-        answer("\n".join(told(checkup)))
+        answer("\n".join(report_lines(checkup)))
     if not checkup.holds:
         raise typer.Exit(1)
 
 
-def told(checkup: Checkup) -> Iterator[str]:
-    """A checkup as people read it."""
+def report_lines(checkup: Checkup) -> Iterator[str]:
+    """The report as text."""
     yield from _tree(checkup)
     yield ""
     yield from _slope(checkup)

@@ -1,7 +1,7 @@
-"""What this machine can do for distal, and what would mend what is missing.
+"""What this machine can do for distal, and how to install what is missing.
 
-Input: nothing but the machine. Output: ``Finding`` rows. Nothing here fails: what
-cannot be found out becomes a finding too. Knows nothing of how findings are shown.
+Input: the machine. Output: a list of ``MachineFact``. Nothing here fails: an error becomes a fact
+too. Knows nothing of how they are shown.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from distal.version import __version__
 
 
 class State(Enum):
-    """How a finding stands."""
+    """Whether something works."""
 
     READY = "ready"
     OPTIONAL = "optional"  # missing, and only some things need it
@@ -35,15 +35,15 @@ class State(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class MachineFact:
     """One fact about the machine.
 
     Attributes:
-        area: The heading it stands under.
+        area: The heading that it is listed under.
         subject: What was looked at.
-        state: How it stands.
+        state: Whether it works.
         detail: What was found.
-        remedy: The command or setting that mends it, or "".
+        remedy: The command or setting that repairs it, or "".
     """
 
     area: str
@@ -76,7 +76,7 @@ for module in sys.argv[1:]:
 """
 
 
-def examine() -> list[Finding]:
+def examine() -> list[MachineFact]:
     """Look at everything; takes a few seconds where a GPU driver has to start."""
     return [
         finding
@@ -85,43 +85,45 @@ def examine() -> list[Finding]:
     ]
 
 
-def _safely(look: Callable[[], Iterator[Finding]]) -> Iterator[Finding]:
+def _safely(look: Callable[[], Iterator[MachineFact]]) -> Iterator[MachineFact]:
     try:
         yield from look()
     except Exception as error:  # whatever a broken installation throws is the finding
         area = look.__name__.strip("_")
-        yield Finding(area, "examination", State.BROKEN, f"{type(error).__name__}: {error}")
+        yield MachineFact(area, "examination", State.BROKEN, f"{type(error).__name__}: {error}")
 
 
-def _python() -> Iterator[Finding]:
+def _python() -> Iterator[MachineFact]:
     version = platform.python_version()
     supported = sys.version_info >= (3, 11)
-    yield Finding(
+    yield MachineFact(
         "python",
         platform.python_implementation(),
         State.READY if supported else State.BROKEN,
         version,
         "" if supported else "install Python 3.11 or newer",
     )
-    yield Finding("python", "distal", State.READY, f"{__version__} in {Path(__file__).parents[1]}")
-    yield Finding("python", "system", State.READY, platform.platform())
+    yield MachineFact(
+        "python", "distal", State.READY, f"{__version__} in {Path(__file__).parents[1]}"
+    )
+    yield MachineFact("python", "system", State.READY, platform.platform())
 
 
-def _cpu() -> Iterator[Finding]:
-    yield Finding("cpu", "model", State.READY, _cpu_model())
+def _cpu() -> Iterator[MachineFact]:
+    yield MachineFact("cpu", "model", State.READY, _cpu_model())
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    yield Finding("cpu", "threads", State.READY, f"{usable} usable of {os.cpu_count()}")
+    yield MachineFact("cpu", "threads", State.READY, f"{usable} usable of {os.cpu_count()}")
     from distal.devices.features import FEATURES_VARIABLE, chosen_level, host_levels
 
     possible = ", ".join(level.name for level in host_levels())
     try:
         level = chosen_level()
-    except ValueError as error:  # an old processor, or a wish that it cannot grant
+    except ValueError as error:  # an old processor, or a level that it does not have
         remedy = f"unset {FEATURES_VARIABLE}" if FEATURES_VARIABLE in os.environ else ""
-        yield Finding("cpu", "feature level", State.BROKEN, str(error), remedy)
+        yield MachineFact("cpu", "feature level", State.BROKEN, str(error), remedy)
     else:
         detail = f"{level.name} of {possible}; {level.lanes(32).count} lanes"
-        yield Finding("cpu", "feature level", State.READY, detail)
+        yield MachineFact("cpu", "feature level", State.READY, detail)
 
 
 def _cpu_model() -> str:
@@ -133,17 +135,17 @@ def _cpu_model() -> str:
     return next(named, platform.machine())
 
 
-def _cache() -> Iterator[Finding]:
+def _cache() -> Iterator[MachineFact]:
     """The kernel cache: tried by storing something, since many things can forbid it."""
     from distal.devices.cache import FOLDER_VARIABLE, Cache, default_folder
 
     folder = default_folder()
     if folder is None:
-        detail = "off: every start compiles anew"
-        yield Finding("cache", "folder", State.OPTIONAL, detail, f"unset {FOLDER_VARIABLE}")
+        detail = "off: every start compiles again"
+        yield MachineFact("cache", "folder", State.OPTIONAL, detail, f"unset {FOLDER_VARIABLE}")
         return
     if not folder.exists():
-        yield Finding("cache", "folder", State.READY, f"{folder} (the first render makes it)")
+        yield MachineFact("cache", "folder", State.READY, f"{folder} (the first render makes it)")
         return
     cache = Cache(folder)
     with warnings.catch_warnings(record=True) as complaints:
@@ -153,14 +155,14 @@ def _cache() -> Iterator[Finding]:
     cache.discard(_PROBE)
     if usable:
         detail = f"{folder}: {kernels} kernels, {size / 2**20:.1f} MiB"
-        yield Finding("cache", "folder", State.READY, detail)
+        yield MachineFact("cache", "folder", State.READY, detail)
     else:
         reason = str(complaints[0].message) if complaints else f"{folder} cannot be written"
         remedy = f"chmod go-w '{folder}', or set {FOLDER_VARIABLE} to a folder of your own"
-        yield Finding("cache", "folder", State.OPTIONAL, reason, remedy)
+        yield MachineFact("cache", "folder", State.OPTIONAL, reason, remedy)
 
 
-def _packages() -> Iterator[Finding]:
+def _packages() -> Iterator[MachineFact]:
     """What is installed, and what of that cannot be loaded."""
     faults = _faults([package.imported_as for package in PACKAGES])
     for package in PACKAGES:
@@ -171,14 +173,14 @@ def _packages() -> Iterator[Finding]:
         except importlib.metadata.PackageNotFoundError:
             state = State.OPTIONAL if package.extra else State.BROKEN
             detail = f"missing ({package.purpose})"
-            yield Finding(area, package.name, state, detail, package.remedy)
+            yield MachineFact(area, package.name, state, detail, package.remedy)
         else:
             if not fault:
-                yield Finding(area, package.name, State.READY, version)
+                yield MachineFact(area, package.name, State.READY, version)
                 continue
             state = State.OPTIONAL if package.extra else State.BROKEN
             what, _, remedy = fault.rpartition("; ")
-            yield Finding(area, package.name, state, f"{version}: {what or fault}", remedy)
+            yield MachineFact(area, package.name, state, f"{version}: {what or fault}", remedy)
 
 
 def _faults(modules: list[str]) -> dict[str, str]:
@@ -212,7 +214,7 @@ def _text(output: str | bytes | None) -> str:
     return output.decode("utf-8", "replace") if isinstance(output, bytes) else output or ""
 
 
-def _gpu() -> Iterator[Finding]:
+def _gpu() -> Iterator[MachineFact]:
     """The adapters with their numbers for ``--adapter``, and what "auto" makes of them."""
     if importlib.util.find_spec("wgpu") is None:
         return
@@ -221,22 +223,22 @@ def _gpu() -> Iterator[Finding]:
     found, complaint = adapters.asked_apart()
     best = adapters.hardware()
     for row in found:
-        told = (row.kind, row.backend, row.driver, "taken by auto" if row == best else "")
-        detail = ", ".join(part for part in told if part)
-        yield Finding("gpu", f"{row.number}: {row.name}", State.READY, detail)
+        facts = (row.kind, row.backend, row.driver, "taken by auto" if row == best else "")
+        detail = ", ".join(filter(None, facts))
+        yield MachineFact("gpu", f"{row.number}: {row.name}", State.READY, detail)
     remedy = "install the GPU's driver"
     if not found:
         remedy += ", or in software: apt-get install mesa-vulkan-drivers"
-        yield Finding("gpu", "adapters", State.OPTIONAL, complaint or "none", remedy)
+        yield MachineFact("gpu", "adapters", State.OPTIONAL, complaint or "none", remedy)
     elif best is None:
         reason = adapters.resolve("auto").reason
-        yield Finding("gpu", "auto", State.OPTIONAL, f"takes the CPU; {reason}", remedy)
+        yield MachineFact("gpu", "auto", State.OPTIONAL, f"takes the CPU; {reason}", remedy)
 
 
-def _system() -> Iterator[Finding]:
+def _system() -> Iterator[MachineFact]:
     for library, package in (("EGL", "libegl1"), ("GL", "libgl1"), ("vulkan", "libvulkan1")):
         found = ctypes.util.find_library(library)
-        yield Finding(
+        yield MachineFact(
             "system",
             f"lib{library}",
             State.READY if found else State.OPTIONAL,
@@ -244,7 +246,7 @@ def _system() -> Iterator[Finding]:
             "" if found else f"apt-get install {package}",
         )
     validator = shutil.which("glslangValidator")
-    yield Finding(
+    yield MachineFact(
         "system",
         "glslangValidator",
         State.READY if validator else State.OPTIONAL,

@@ -1,6 +1,6 @@
-"""How ``distal doctor`` looks.
+"""Prints the report of ``distal doctor``.
 
-Input: findings. Output: a table on stdout. Knows no machine.
+Input: facts about the machine. Output: a table on stdout.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from distal.cli.doctor import Finding, State
+from distal.cli.doctor import MachineFact, State
 
 _MARKS: Final = {
     State.READY: Text("ok", "green"),
@@ -22,16 +22,16 @@ _MARKS: Final = {
 }
 
 
-def show(findings: Iterable[Finding]) -> None:
+def show(facts: Iterable[MachineFact]) -> None:
     """Print one table: a heading for each area, a remedy under what is missing."""
     table = Table(box=None, show_header=False, pad_edge=False)
     for _ in range(3):
         table.add_column(overflow="fold")
-    for area, rows in groupby(findings, key=lambda finding: finding.area):
+    for area, rows in groupby(facts, key=lambda fact: fact.area):
         table.add_row("", Text(area, "bold"), "")
         for row in rows:
             # Text, not markup: "distal[gpu]" is no style.
             table.add_row(_MARKS[row.state], Text(row.subject), Text(row.detail))
             if row.remedy:
-                table.add_row("", "", Text(f"mend: {row.remedy}", "cyan"))
+                table.add_row("", "", Text(f"fix: {row.remedy}", "cyan"))
     Console().print(table)

@@ -1,7 +1,7 @@
 """``distal export``: a scene as a page, or as a shader for another place.
 
-Input: parsed words. Output: a file, and a line that says what it is made of. What
-a page or a text holds is the library's matter; here stands only what goes with which.
+Input: parsed words. Output: a file, and a line that says what it is made of. Only
+which options go together is decided here.
 """
 
 from __future__ import annotations
@@ -66,7 +66,9 @@ def export(
     ] = None,
     duration: Annotated[
         str | None,
-        typer.Option(metavar="S", help="Of a page: when the time begins anew.", show_default=False),
+        typer.Option(
+            metavar="S", help="Of a page: when the time starts again.", show_default=False
+        ),
     ] = None,
     title: Annotated[
         str | None, typer.Option(help="Of a page: what it is called.", show_default=False)

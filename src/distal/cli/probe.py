@@ -48,7 +48,7 @@ def probe(
         bool, typer.Option("--json", help="Plain values for editors, on one line.")
     ] = False,
 ) -> None:
-    """Tell what one pixel saw: its ray, the march, the shape and its material."""
+    """Show what one pixel saw: its ray, the march, the shape and its material."""
     from distal.lang.functions import Func
     from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.scene.checks.probe import probe as look
@@ -67,11 +67,11 @@ def probe(
     if as_json:
         answer(json.dumps({**found.as_json(), "time": seconds}))
     else:
-        answer("\n".join(told(found, seconds)))
+        answer("\n".join(report_lines(found, seconds)))
 
 
-def told(found: Probed, seconds: float) -> Iterator[str]:
-    """What a pixel saw, as people read it."""
+def report_lines(found: Probed, seconds: float) -> Iterator[str]:
+    """What a pixel saw, as text."""
     (x, y), (width, height), seen = found.pixel, found.size, found.seen
     yield f"pixel     {x},{y} of {width}x{height} at {seconds:g} s"
     yield f"ray       from {_point(seen.origin)} along {_point(seen.direction)}"
@@ -102,15 +102,15 @@ def _shape(found: Probed) -> Iterator[str]:
 def _material(found: Probed) -> Iterator[str]:
     surface, call = found.seen.surface, found.material.call
     color = tuple(surface.color)
-    told = [f"{call.what}: color {_point(color)} {hex_of(color)}"]
-    told += [
+    parts = [f"{call.what}: color {_point(color)} {hex_of(color)}"]
+    parts += [
         f"{name} {value:.3g}"
         for name in ("diffuse", "specular", "transmission", "roughness", "metal")
         if (value := getattr(surface, name)) > 0.0
     ]
     if any(c > 0.0 for c in surface.emission):
-        told.append(f"emission {_point(surface.emission)}")
-    yield f"material  {', '.join(told)}"
+        parts.append(f"emission {_point(surface.emission)}")
+    yield f"material  {', '.join(parts)}"
     if call.place is not None and call.place != found.path[-1].place:
         yield from excerpt(call.place)
 

@@ -1,7 +1,7 @@
 """``distal render``: a picture of a scene, a shape or an image, in color or as another view.
 
-Input: parsed words. Output: a picture's file, and how long it took. What a view
-shows is the library's matter; here stands only which options go with what.
+Input: parsed words. Output: a picture's file, and how long it took. Only
+which options go together is decided here.
 """
 
 from __future__ import annotations
@@ -187,7 +187,7 @@ def read_view(
 
 
 def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
-    """The layers that a file of a suffix is to hold: those that were asked for, else all."""
+    """The layers that a file of a suffix is to hold: those that were given, else all."""
     from distal.scene.lowering.layers import NAMES, checked_layers
 
     if given is None:

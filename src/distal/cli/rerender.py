@@ -39,7 +39,7 @@ def rerender(
         typer.Option(
             "-o",
             "--output",
-            help="The new file; PICTURE.rerendered.png beside it without.",
+            help="The new file; without it PICTURE.rerendered.png in the same folder.",
             show_default=False,
         ),
     ] = None,
@@ -54,9 +54,7 @@ def rerender(
     ] = None,
     source: Annotated[
         str | None,
-        typer.Option(
-            metavar="FILE[:NAME]", help="The scene, where it stands now.", show_default=False
-        ),
+        typer.Option(metavar="FILE[:NAME]", help="The scene, where it is now.", show_default=False),
     ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Render a scene that has changed as it is now.")
@@ -64,7 +62,7 @@ def rerender(
     check: Annotated[
         bool,
         typer.Option(
-            "--check", help="Tell how the two differ; exit code 1 if they do. No file without -o."
+            "--check", help="Show how the two differ; exit code 1 if they do. No file without -o."
         ),
     ] = False,
     device: Annotated[
@@ -80,7 +78,7 @@ def rerender(
     from distal.images.metadata import ReadError
     from distal.images.picture import check_savable
     from distal.lang.render_options import LARGEST_SIDE_PX
-    from distal.scene import rerender as room
+    from distal.scene import rerender as library
 
     if check and (size is not None or samples is not None):
         raise UsageError("--check compares with the picture as it was: no --size, no --samples")
@@ -88,8 +86,8 @@ def rerender(
         raise UsageError("--adapter goes with --device")
     width_height = None if size is None else read_size(size, LARGEST_SIDE_PX)
     try:
-        plan = room.planned(picture, source=source, force=force)
-        target = output or (None if check else room.default_output(picture))
+        plan = library.plan_rerender(picture, source=source, force=force)
+        target = output or (None if check else library.default_output(picture))
         if target is not None:
             bits = bits or _kept_bits(plan.record.format, plan.record.bits, target)
             check_savable(target, bits)
@@ -99,7 +97,7 @@ def rerender(
         for note in plan.notes:
             say(f"note: {note}")
         with ProgressBar() as progress:
-            made = room.rerender(
+            made = library.rerender(
                 plan,
                 size=width_height,
                 samples=samples,
@@ -111,21 +109,21 @@ def rerender(
             made.save(target, bits)
             say(f"{target}: {made.width}x{made.height}, {plan.source}")
         if check:
-            found = room.difference(plan, made)
-            answer(printable_lines(_told(picture, found)))
+            found = library.difference(plan, made)
+            answer(printable_lines(_difference_line(picture, found)))
             if not found.is_none:
                 raise typer.Exit(1)
-    except (ReadError, room.RerenderError) as error:
+    except (ReadError, library.RerenderError) as error:
         say(f"error: {error}")
         raise typer.Exit(1) from None
 
 
 def _kept_bits(kind: str, bits: int, target: Path) -> int | None:
-    """The bits of then where the new file is of the same kind."""
+    """The recorded bits, where the new file is of the same kind."""
     return bits if target.suffix.lower() == f".{kind}" else None
 
 
-def _told(picture: Path, found: Difference) -> str:
+def _difference_line(picture: Path, found: Difference) -> str:
     if found.is_none:
         return f"{picture}: identical"
     largest, percent = found.largest, 100.0 * found.share

@@ -1,7 +1,7 @@
 """``distal video``: a scene that moves, as a video or as numbered pictures.
 
-Input: parsed words. Output: the file, and one line about it. When work is broken
-off, the line says how it goes on.
+Input: parsed words. Output: the file, and one line about it. When work was
+interrupted, the line says how to continue.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def video(
     samples: Annotated[int, typer.Option(min=1, max=65536, help="Rays for each pixel.")] = 1,
     loop: Annotated[
         bool,
-        typer.Option("--loop", help="Play gif, apng and webp again and again; say if it jumps."),
+        typer.Option("--loop", help="Repeat gif, apng and webp without end; say if it jumps."),
     ] = False,
     quality: Annotated[
         str | None,
@@ -73,7 +73,7 @@ def video(
         typer.Option(metavar="DIR", help="Write every frame there as PNG besides."),
     ] = None,
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="Render all again after work was broken off.")
+        bool, typer.Option("--fresh", help="Render all frames again after an interrupted run.")
     ] = False,
 ) -> None:
     """Render a scene that moves to a video or to numbered pictures."""

@@ -37,15 +37,15 @@ def view(
     assignments: SetOption = None,
     at: TimeOption = "0",
     first_view: Annotated[
-        str, typer.Option("--view", help="How it is looked at first; V goes through all.")
+        str, typer.Option("--view", help="The first view; V shows the others.")
     ] = "color",
     scale: Annotated[
         float,
         typer.Option(min=0.05, max=4.0, help="Rendered pixels for each of the window's, a side."),
     ] = 1.0,
-    paused: Annotated[bool, typer.Option("--paused", help="Begin with the time standing.")] = False,
+    paused: Annotated[bool, typer.Option("--paused", help="Begin with the time paused.")] = False,
 ) -> None:
-    """Show a scene in a window; saving its file shows it anew. H in the window tells the keys."""
+    """Show a scene in a window, and again whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
     from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display

@@ -1,4 +1,4 @@
-"""A scene as a page: one file that asks for nothing, or a fragment for other people's pages.
+"""A scene as a page: one file that needs no network, or a fragment for other pages.
 
 Input: something to be seen. Output: HTML with the player, the programs and a poster
 inside. The page's own policy forbids it every request. Knows nothing of how the player draws.
@@ -41,7 +41,7 @@ _UNPACK: Final = (
 TOO_OLD: Final = "This picture moves and turns in a browser of 2024 or younger."
 NO_SCRIPT: Final = "This picture moves and turns where JavaScript is allowed."
 
-# The colors are those of the player's own sheet, so that nothing flashes before it stands.
+# The colors are those of the player's own sheet, so that nothing flashes before it is ready.
 _STYLE: Final = (
     ":root{color-scheme:dark light}"
     "html,body{height:100%;margin:0}"
@@ -51,7 +51,7 @@ _STYLE: Final = (
     ".distal>img{display:block;width:100%;height:100%;object-fit:contain}"
     "noscript{position:absolute;inset:auto 0 0;padding:.6em;text-align:center;background:Canvas}"
 )
-# A circle with a ring around it, so that no browser asks for /favicon.ico.
+# A circle with a ring around it, so that no browser requests /favicon.ico.
 _ICON: Final = (
     "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E"
     "%3Ccircle cx='8' cy='8' r='6.5' fill='none' stroke='%23888'/%3E"
@@ -65,25 +65,25 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
         seen.image(name)  # there must be such a view
     player = player_script()
     omitted: dict[str, str] = {}
-    told = payload(
+    content = payload(
         seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
     )
     shown = poster(seen, options) if options.poster else b""
-    stage = _stage(told, shown)
-    text = _fragment(stage, player) if options.embed else _document(stage, told, player)
+    stage = _stage(content, shown)
+    text = _fragment(stage, player) if options.embed else _document(stage, content, player)
     with replacement(path) as file:
         file.write(text.encode("utf-8"))
     parts = {
         "player": len(player.text),
-        "shaders": len(json.dumps(told["programs"])),
-        "textures": len(json.dumps(told["resources"])) if told["resources"] else 0,
+        "shaders": len(json.dumps(content["programs"])),
+        "textures": len(json.dumps(content["resources"])) if content["resources"] else 0,
         "poster": len(base64.b64encode(shown)),
     }
     return Exported(path, parts, (), omitted)
 
 
 @dataclass(frozen=True, slots=True)
-class Script:
+class PlayerScript:
     """The player as a page carries it.
 
     Attributes:
@@ -96,7 +96,7 @@ class Script:
 
 
 @cache
-def player_script() -> Script:
+def player_script() -> PlayerScript:
     """The player, packed: a page of 60 kB becomes one of 36.
 
     What unpacks it is younger than nothing else that the player needs of a browser.
@@ -105,7 +105,7 @@ def player_script() -> Script:
     press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
     packed = press.compress(player.encode("utf-8")) + press.flush()
     text = _UNPACK % (base64.b64encode(packed).decode("ascii"), TOO_OLD)
-    return Script(text, (_hash(text), _hash(player)))
+    return PlayerScript(text, (_hash(text), _hash(player)))
 
 
 def _hash(text: str) -> str:
@@ -114,7 +114,7 @@ def _hash(text: str) -> str:
 
 
 def json_text(value: Any) -> str:
-    """JSON that can stand in a script element: no text in it can end the element."""
+    """JSON for a script element: no text in it can end the element."""
     text = json.dumps(value, separators=(",", ":"), ensure_ascii=False)
     # A lone surrogate is no text in UTF-8; as an escape it survives.
     text = "".join(c if not "\ud800" <= c <= "\udfff" else f"\\u{ord(c):04x}" for c in text)
@@ -125,41 +125,41 @@ def _escaped(text: str) -> str:
     return html.escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
-def _stage(told: Mapping[str, Any], poster: bytes) -> str:
-    """The element that the player takes over, and what it is told."""
-    width, height = told["size"]
-    description = _escaped(told["description"])
+def _stage(content: Mapping[str, Any], poster: bytes) -> str:
+    """The element that the player takes over, and its data."""
+    width, height = content["size"]
+    description = _escaped(content["description"])
     shown = ""
     if poster:
         data = base64.b64encode(poster).decode("ascii")
         fill = ' style="display:block;width:100%;height:100%;object-fit:contain"'
         shown = (
             f'<img src="data:image/webp;base64,{data}" width="{width}" height="{height}"'
-            f' alt="{description}"{fill if told["embed"] else ""}>'
+            f' alt="{description}"{fill if content["embed"] else ""}>'
         )
     own = unseen = ""
-    if told["embed"]:
+    if content["embed"]:
         unseen = _UNSEEN
-        # As wide as what it stands in; as high too, where that has a height of its own.
+        # As wide as its container; as high too, where that has a height of its own.
         place = (
             f"display:block;position:relative;width:100%;height:100%;aspect-ratio:{width}/{height}"
         )
         own = f' style="{place}"'
     return (
         f'<div data-distal class="distal"{own}>{shown}<noscript>{NO_SCRIPT}</noscript></div>\n'
-        f'<script type="application/distal+json"{unseen}>{json_text(told)}</script>\n'
+        f'<script type="application/distal+json"{unseen}>{json_text(content)}</script>\n'
     )
 
 
-def _fragment(stage: str, player: Script) -> str:
+def _fragment(stage: str, player: PlayerScript) -> str:
     return (
         f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
         f'{stage}<script type="module"{_UNSEEN}>{player.text}</script>\n'
     )
 
 
-def _document(stage: str, told: Mapping[str, Any], player: Script) -> str:
-    name, description = _escaped(told["name"]), _escaped(told["description"])
+def _document(stage: str, content: Mapping[str, Any], player: PlayerScript) -> str:
+    name, description = _escaped(content["name"]), _escaped(content["description"])
     scripts = " ".join(f"'{digest}'" for digest in player.hashes)
     policy = (
         f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; "

@@ -33,7 +33,7 @@ class PageOptions(TextOptions):
 
     Attributes:
         size: Width and height of the author's picture in pixels.
-        duration: Seconds after which the time begins anew; None: never.
+        duration: Seconds after which the time starts again; None: never.
         title: What a person reads; None for the scene's own name.
         embed: Whether it is the bare canvas: a fragment for other pages.
         panel: Whether there are controls beside it; never where it is embedded.

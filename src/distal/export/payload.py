@@ -1,4 +1,4 @@
-"""What a page's player is told of a scene: its programs, parameters and data, as plain JSON values.
+"""The data of a page's player: a scene's programs, parameters and data, as plain JSON values.
 
 Input: something that can be looked at. Output: the payload, a dictionary that JSON
 can carry. Knows no HTML. The player's side of the format is ``web/src/payload.ts``.
@@ -58,7 +58,7 @@ def payload(
         CompileError: WebGL 2 cannot show the first view.
         ValueError: There is no such view or parameter, or a value is out of range.
     """
-    programs = Programs(seen)
+    programs = PagePrograms(seen)
     names = list(dict.fromkeys(options.views or seen.views))
     if options.view not in names:
         names.insert(0, options.view)
@@ -115,7 +115,7 @@ def description_of(seen: Viewable, name: str) -> str:
 
 
 def _documentation(seen: Viewable) -> str:
-    """The docstring of an image's function, else that of the file it stands in."""
+    """The docstring of an image's function, else that of its file."""
     image = seen.image(COLOR)
     if isinstance(image, Image) and image.python_function.__doc__:
         return image.python_function.__doc__
@@ -169,7 +169,7 @@ def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
     return {"encoding": "plain", "data": programs}
 
 
-class Programs:
+class PagePrograms:
     """The programs of a scene's views; what they share is there once.
 
     Attributes:
@@ -201,26 +201,26 @@ class Programs:
 
     def _program(self, artifact: Artifact, module: Module) -> dict[str, Any]:
         assert artifact.vertex is not None
-        told = artifact.interface
+        interface = artifact.interface
         names = {r.name: self._resource(r.name, r.source, r.type) for r in module.resources}
-        names |= {e["name"]: self._table(e) for e in told["buffers"] if "values" in e}
+        names |= {e["name"]: self._table(e) for e in interface["buffers"] if "values" in e}
         fragment, lines = self._lean(artifact.text, artifact.lines)
         vertex, vertex_lines = self._lean(artifact.vertex, artifact.vertex_lines)
         return {
             "vertex": vertex,
             "fragment": fragment,
-            "uniforms": [_uniform(entry) for entry in told["uniforms"]],
+            "uniforms": [_uniform(entry) for entry in interface["uniforms"]],
             "textures": [
                 {key: entry[key] for key in ("uniform", "type", "wrap", "filter")}
                 | {"name": names[entry["name"]]}
-                for entry in told["textures"]
+                for entry in interface["textures"]
             ],
             "buffers": [
                 {key: entry[key] for key in ("uniform", "count", "element")}
                 | {"name": names[entry["name"]]}
-                for entry in told["buffers"]
+                for entry in interface["buffers"]
             ],
-            "trust": told["trust"],
+            "trust": interface["trust"],
             "lines": lines,
             "vertex_lines": vertex_lines,
         }

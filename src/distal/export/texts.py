@@ -94,7 +94,7 @@ def _broken(text: str) -> list[str]:
 
 
 def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Exported:
-    """Write the text, what it needs beside it, and its interface where a host has to be told.
+    """Write the text, the files it needs, and its interface where a host has to set inputs.
 
     Args:
         seen: What it shows.
@@ -121,7 +121,7 @@ def write_files(
     """Write a text, and what belongs to it: its vertex stage, its interface.
 
     Returns:
-        The files that stand beside it.
+        The further files.
 
     Raises:
         SaveError: The file system refuses.

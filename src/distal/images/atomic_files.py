@@ -23,7 +23,7 @@ def check_destination(path: Path) -> None:
     """Refuse a destination that no file can take, before any work is spent on it.
 
     Raises:
-        SaveError: The folder is missing or cannot be written, or a non-file stands at the path.
+        SaveError: The folder is missing or cannot be written, or the path is no plain file.
     """
     target = Path(os.path.realpath(path))
     folder = target.parent

@@ -28,7 +28,7 @@ _ROWS: Final = {0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 2
 
 
 @dataclass(slots=True)
-class Header:
+class ExrHeader:
     """What the head of a file says.
 
     Attributes:
@@ -42,7 +42,7 @@ class Header:
     texts: dict[str, str] = field(default_factory=dict)
 
 
-def read_header(path: Path) -> Header:
+def read_header(path: Path) -> ExrHeader:
     """Read the head, and see that every row is there.
 
     Raises:
@@ -56,7 +56,7 @@ def read_header(path: Path) -> Header:
         if version & ~0xFF & ~_LONG_NAMES:
             raise ValueError("it has tiles, depths or several parts")
         values = _attributes(file)
-        header = Header(size=_size(values), bits=_channels(values))
+        header = ExrHeader(size=_size(values), bits=_channels(values))
         if "R" not in header.bits:
             raise ValueError("it has no channel R")
         header.texts = {

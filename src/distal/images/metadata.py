@@ -1,8 +1,8 @@
 """Where a picture came from, as texts in its file, and back.
 
 Input: a ``Provenance``, or a file that ``Picture.save`` wrote. Output: texts by
-key, or the ``Record`` they stand for. Knows file formats by their heads only; pixels are others'
-matter.
+key, or the ``Record`` that they describe. Knows file formats by their first bytes only, and no
+pixels.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class ReadError(Exception):
     """A picture's file that cannot be read, or does not say where it came from, in one line."""
 
     def __init__(self, message: str) -> None:
-        # It quotes what stands in files that others made.
+        # It quotes the content of files that others made.
         super().__init__(printable(message, LONGEST_MESSAGE))
 
 
@@ -46,7 +46,7 @@ class Provenance:
         source: ``FILE[:NAME]`` or ``example:NAME`` as the author gave it; of what no file was
             loaded for, the name of the scene or function; may be empty.
         source_hash: SHA-256 of the text of that file and of the modules beside it that it imports;
-            of what no file was loaded for, of the files that its functions stand in; may be empty.
+            of what no file was loaded for, of the files of its functions; may be empty.
         neighbours: The places of these modules beside the file.
         parameters: The value of each parameter by name, as plain JSON values.
         time: Seconds.
@@ -57,8 +57,8 @@ class Provenance:
         view: What is shown.
         plane: The plane of the view "slice": normal and offset.
         transparent: Whether alpha is 0 where nothing is met.
-        exposure: The factor on all light that was asked for; None: the scene's own.
-        tone_map: The tone map that was asked for; None: the scene's own.
+        exposure: The factor on all light that was given; None: the scene's own.
+        tone_map: The tone map that was given; None: the scene's own.
         steering: How the camera was moved by hand: yaw, pitch, zoom, pan x and y; None: not.
         stage: The parameters and the time that a lone shape's stage was made for; None of a scene
             of its own.
@@ -110,7 +110,7 @@ class Record:
 
 
 def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
-    """The texts that a file carries. What was not asked for has none."""
+    """The texts that a file carries; an option at its default has none."""
     found = {
         "Software": f"distal {__version__}",
         "distal:version": __version__,
@@ -148,10 +148,10 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
 
 
 def provenance(found: Mapping[str, str]) -> Provenance:
-    """What texts stand for; what they do not say has its default.
+    """The record that texts describe; what they do not mention has its default.
 
     Raises:
-        ReadError: A text is not what stands there.
+        ReadError: A text is invalid.
     """
 
     def json_of(key: str, otherwise: Any) -> Any:

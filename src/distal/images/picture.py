@@ -41,7 +41,7 @@ class Picture:
             and straight alpha. Read-only. Values outside 0 to 1, infinities and NaN stay as the
             scene made them; saving clamps them, and makes NaN 0.
         provenance: Where the picture came from; it travels in the file's metadata.
-        stats: What rendering took: times in seconds and how the work was done.
+        stats: What rendering took: times in seconds and how it was done.
         light: The same pixels before they were encoded, where the renderer has them.
         layers: What else is known of each pixel's middle, by name: "depth" (float32, scene units
             along the ray, infinite where nothing is met), "normal" (float32, (height, width, 3),
@@ -156,7 +156,7 @@ def _decoded(array: NDArray[np.float32]) -> NDArray[np.float32]:
     """Light from values encoded in sRGB."""
     linear = array.copy()
     color = array[..., :3]
-    # The reference device: no machine code is made for what is asked once.
+    # The reference device: machine code would take longer for a single call.
     light = executor().call(decode_srgb, (color.reshape(-1, 3),), {}, device="reference")
     linear[..., :3] = light.reshape(color.shape)
     return linear
@@ -170,7 +170,7 @@ def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
 
     Raises:
         SaveError: The suffix is unknown, it has no such bits, its package is missing or broken, or
-            no file can stand there.
+            no file can be written there.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:

@@ -122,7 +122,7 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
         with PngImageFile(path) as image:
             if max(image.size) > LARGEST_SIDE_PX:
                 raise ValueError(f"it claims {image.width}x{image.height} pixels")
-            image.load()  # finds what is cut off, and texts that stand behind the pixels
+            image.load()  # finds what is cut off, and texts after the pixels
             texts = {str(key): str(value) for key, value in image.info.items()}
             size = image.size
         with path.open("rb") as file:

@@ -79,7 +79,7 @@ class LangForm:
         raise TypeError(f"{self.name} works in scene code only: call it in a @func")
 
 
-class Select(LangForm):
+class SelectForm(LangForm):
     """``select``: of plain numbers it is known without a device."""
 
     def __call__(self, *args: Any) -> Any:
@@ -91,7 +91,7 @@ class Select(LangForm):
         return LangForm.__call__(self, *args)
 
 
-select = Select(
+select = SelectForm(
     "select",
     "select(condition, yes, no)",
     "yes where the condition holds, else no; a bvec picks each component.",

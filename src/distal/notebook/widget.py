@@ -41,7 +41,7 @@ class LiveView(anywidget.AnyWidget):
         playing: Whether the time runs.
         view: What is shown: "color", "normal", "depth" …
         steering: How the camera was moved: ``yaw``, ``pitch``, ``zoom``, ``pan``.
-        error: What the browser's driver said of the shader, or "".
+        error: The browser driver's message about the shader, or "".
     """
 
     _esm = PLAYER
@@ -74,7 +74,7 @@ class LiveView(anywidget.AnyWidget):
             time: Seconds at the start.
             playing: Whether the time runs; None: if the picture depends on it.
             view: What is shown first.
-            panel: Whether controls stand beside the picture.
+            panel: Whether there are controls beside the picture.
 
         Raises:
             CompileError: The scene code has mistakes, or says what WebGL cannot do.

@@ -1,7 +1,7 @@
 """Python values as arguments of scene functions, and results as Python values.
 
-Input: what a person passes to a ``@func``: numbers, vectors, lists, arrays of points. What
-flows out: an overload's types, and arrays with one row for each point; and back. Knows no device.
+Input: what a person passes to a ``@func``: numbers, vectors, lists, arrays of points. Output: an
+overload's types, and arrays with one row for each point; and back. Knows no device.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ from distal.runtime.call_values import count, empty, is_double, is_many, single,
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
 from distal.runtime.kernels import KernelCache, automatic_device
 from distal.runtime.lowered import Lowered, Types
-from distal.runtime.uniform_values import Declared, frame_values
+from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 if TYPE_CHECKING:
     from distal.devices.gpu import GpuKernel
@@ -47,7 +47,7 @@ class _Parts:
     """What is run one after the other: a function, and what encodes its pixels for display."""
 
     parts: tuple[Lowered, ...]
-    declared: Declared
+    declared: DeclaredUniforms
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +207,7 @@ class PythonExecutor:
         lowered = self._lower(function, types)
         module = lowered.module
         result_type = module.function(module.entry).result
-        uniforms = _all_values(Declared([module]), params or {}, seconds)
+        uniforms = _all_values(DeclaredUniforms([module]), params or {}, seconds)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
         kernel: Kernel
@@ -221,7 +221,7 @@ class PythonExecutor:
     def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
         """The value of an expression of parameters and time."""
         lowered = Lowered.of(_ValueOf(expression), None)
-        uniforms = _all_values(Declared([lowered.module]), params, checked_time(time))
+        uniforms = _all_values(DeclaredUniforms([lowered.module]), params, checked_time(time))
         result = self.kernels.kernel(lowered, REFERENCE, 64).evaluate([], uniforms, {})
         return single(result, expression.type)
 
@@ -233,7 +233,7 @@ class PythonExecutor:
             parts = (first,) if display is None else (first, self._lower(display, (VEC4,)))
             known = self._together.get(function)
             if known is None or known.parts != parts:
-                declared = Declared([p.module for p in parts])
+                declared = DeclaredUniforms([p.module for p in parts])
                 known = self._together[function] = _Parts(parts, declared)
             return known
 
@@ -263,13 +263,17 @@ class _ValueOf(Composed):
         return name
 
 
-def _uniforms(declared: Declared, options: RenderOptions) -> tuple[dict[str, Any], dict[str, Any]]:
+def _uniforms(
+    declared: DeclaredUniforms, options: RenderOptions
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """The values of the parameters, and those of the frame and of the numbers."""
     values = declared.parameter_values(options.params)
     return values, {**declared.number_values(options.settings), **frame_values(options)}
 
 
-def _all_values(declared: Declared, params: Mapping[str, Any], seconds: float) -> dict[str, Any]:
+def _all_values(
+    declared: DeclaredUniforms, params: Mapping[str, Any], seconds: float
+) -> dict[str, Any]:
     """The uniforms of a function that is called from Python."""
     others = {**declared.numbers, "time": seconds}
     return declared.for_kernel(0, declared.parameter_values(params), others)

@@ -1,4 +1,4 @@
-"""Functions as the front end lowers them, told apart by what they mean.
+"""Functions as the front end lowers them, identified by what they mean.
 
 Input: recorded functions and composed objects. Output: their IR, a digest under
 which a kernel is kept, and whether what they captured has changed since. Runs nothing.
@@ -32,8 +32,8 @@ class Lowered:
         module: The IR.
         digest: Hash of the printed IR without numbers' values: equal for functions that mean the
             same but for these.
-        source_hash: Hash of the text of every file that its functions stand in.
-        captured: Tells whether the module still stands for the function.
+        source_hash: Hash of the text of every file that contains its functions.
+        captured: Says whether the function still means the same.
     """
 
     module: Module

@@ -1,8 +1,7 @@
 """The value of every uniform of a run: the frame's, the parameters', a scene's numbers.
 
-Input: modules, and what a caller gave: time, parameters by name, settings. What flows out:
-checked plain numbers by the names that kernels know. A mistake of the caller's is a ``TypeError``
-or ``ValueError`` that names it. Knows no device.
+Input: modules, and what a caller gave: time, parameters by name, settings. Output: checked plain
+numbers by the names that kernels know. Knows no device.
 """
 
 from __future__ import annotations
@@ -19,10 +18,10 @@ from distal.lang.render_options import RenderOptions
 from distal.passes.entry import renamed_parameters
 
 
-class Declared:
-    """What modules that are run together ask for, sorted out once.
+class DeclaredUniforms:
+    """The parameters and numbers of modules that are run together.
 
-    A scene of a thousand numbers is rendered frame by frame: no frame goes through them again.
+    They are collected once: a scene of a thousand numbers is rendered frame by frame.
 
     Attributes:
         parameters: The parameters that they read, by first use.

@@ -1,7 +1,7 @@
 """A saved picture, rendered again from what its file says.
 
-Input: the file of a picture. Output: the same picture, and what is not as it was
-then. Nothing of a scene's file is run before its text is known to be the one of then.
+Input: the file of a picture. Output: the same picture, and notes on what has
+changed. A scene's file is run only after its text was compared with the recorded one.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class RerenderError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RerenderPlan:
     """A picture's file, and the scene that it is rendered of again.
 
     Attributes:
@@ -49,7 +49,7 @@ class Plan:
         file: Where the scene was found: a file or ``example:NAME``.
         name: Which object of the file; None for its only one.
         named: The same as the new picture says it: as it was written, without a folder of ours.
-        notes: What is not as it was, one line each.
+        notes: What has changed, one line each.
     """
 
     path: Path
@@ -84,8 +84,8 @@ class Difference:
         return self.share == 0.0
 
 
-def planned(path: Path, *, source: str | None = None, force: bool = False) -> Plan:
-    """Find what a picture is rendered of, and hold it against what it was then.
+def plan_rerender(path: Path, *, source: str | None = None, force: bool = False) -> RerenderPlan:
+    """Find what a picture was rendered of, and compare it with the recorded text.
 
     Args:
         path: A PNG or EXR that ``Picture.save`` wrote.
@@ -115,11 +115,11 @@ def planned(path: Path, *, source: str | None = None, force: bool = False) -> Pl
     if record.version != __version__:
         version = printable(record.version, _LONGEST_PART)
         notes.append(f"{path} was made by distal {version}, this is {__version__}")
-    return Plan(path, record, file, name, source or origin.source, tuple(notes))
+    return RerenderPlan(path, record, file, name, source or origin.source, tuple(notes))
 
 
 def rerender(
-    plan: Plan,
+    plan: RerenderPlan,
     *,
     size: tuple[int, int] | None = None,
     samples: int | None = None,
@@ -191,12 +191,12 @@ def _rendered(
     return render_scene(scene, view, replace(options, freeze=origin.freeze))
 
 
-def difference(plan: Plan, picture: Picture) -> Difference:
+def difference(plan: RerenderPlan, picture: Picture) -> Difference:
     """How a picture differs from what its file holds; NaN is equal to NaN.
 
     Raises:
         RerenderError: They are not of one size.
-        ReadError: The file is broken, or another program wrote its pixels anew.
+        ReadError: The file is broken, or another program wrote its pixels again.
     """
     if plan.record.stored_size != (picture.width, picture.height):
         stored, made = plan.record.stored_size, (picture.width, picture.height)
@@ -214,8 +214,8 @@ def difference(plan: Plan, picture: Picture) -> Difference:
     return Difference(largest, float(differs.mean()))
 
 
-def _channels(plan: Plan, picture: Picture) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
-    """Each channel as it was and as it is, as both files hold it."""
+def _channels(plan: RerenderPlan, picture: Picture) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
+    """Each channel of the recorded picture and of the new one, as files hold it."""
     bits = plan.record.bits
     try:
         stored = plan.path.read_bytes()
@@ -235,7 +235,7 @@ def _channels(plan: Plan, picture: Picture) -> Iterator[tuple[NDArray[Any], NDAr
 
 
 def default_output(path: Path) -> Path:
-    """Where a picture that is rendered again goes: beside the first one."""
+    """Where a picture that is rendered again goes: into the folder of the first one."""
     return path.with_name(f"{path.stem}{MARK}{path.suffix}")
 
 
@@ -293,7 +293,7 @@ def _refused(file: str, shown: str) -> str | None:
 
 
 def _inside(folder: Path, file: str) -> bool | None:
-    """Whether a file stands in a folder; None if it is none, False if links lead out of it."""
+    """Whether a file is in a folder; None if it is no file, False if links lead out of it."""
     try:
         real = (folder / file).resolve(strict=True)
         if not real.is_file():

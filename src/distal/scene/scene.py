@@ -137,8 +137,8 @@ class Scene(Composed, Presentable):
             stride=stride,
             stride_growth=stride_growth,
         )
-        self.display = Display(self)
-        # What pictures tell: what ``developed`` was asked for, and what ``stage`` made it for.
+        self.display = DisplayEncoding(self)
+        # Recorded in pictures: the arguments of ``developed``, and those of ``stage``.
         self.asked_display: Mapping[str, Any] = {}
         self.staged: tuple[Mapping[str, Any], float] | None = None
         self._pictures: dict[tuple[Any, ...], Composed] = {}
@@ -289,7 +289,7 @@ class Scene(Composed, Presentable):
             made.numbers = {**self.numbers, "exposure": checked_exposure(exposure, self.place)}
         if tone_map is not None:
             made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
-        made.display = Display(made)
+        made.display = DisplayEncoding(made)
         given = {"exposure": exposure, "tone_map": tone_map}
         said = {name: value for name, value in given.items() if value is not None}
         made.asked_display = {**self.asked_display, **said}
@@ -354,7 +354,7 @@ class View(Composed):
         return self._scene.functions()
 
 
-class Display(Composed):
+class DisplayEncoding(Composed):
     """What makes display values of a scene's linear light."""
 
     signature = (("color", VEC4),)

@@ -112,7 +112,7 @@ def checked_camera(camera: Any, place: Span | None) -> BaseCamera:
 
 
 def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
-    """The lights that the author gave; one light may stand for a list of one."""
+    """The lights that the author gave; one light is a list of one."""
     if lights is None:
         return ()
     given = tuple(listed(lights))

@@ -1,4 +1,4 @@
-"""Animated pictures: GIF, APNG and WebP of frames that stand in files.
+"""Animated pictures: GIF, APNG and WebP of frames in files.
 
 Input: the frames' PNG files, in order. Output: one file. Only a few frames are in
 memory at a time. Knows nothing of scenes.
@@ -38,7 +38,7 @@ class Animation:
         files: PNG files of one size, in order.
         rate: Frames a second.
         quality: Of webp: 0 to 100, or "lossless".
-        loop: Whether it is played again and again; else once.
+        loop: Whether it is repeated without end; else played once.
         texts: Metadata: title, comment and the like.
     """
 
@@ -52,7 +52,7 @@ class Animation:
         """When each frame begins, and when the last ends, in a clock of so many ticks a second.
 
         Each is the nearest tick, so that no error adds up: frames of one video may differ by one
-        tick in how long they stand.
+        tick in how long they are shown.
         """
         exact = (i * ticks / self.rate for i in range(len(self.files) + 1))
         return [math.floor(time + Fraction(1, 2)) for time in exact]
@@ -179,7 +179,7 @@ def _mux(
             frame.pts, frame.time_base = times[i], how.clock
             frame.duration = times[i + 1] - times[i]
             packets = stream.encode(frame)
-            if how.encoder == "libwebp":  # it forgets how long the last frame stands
+            if how.encoder == "libwebp":  # it forgets how long the last frame is shown
                 for packet in packets:
                     packet.duration = frame.duration
             container.mux(packets)

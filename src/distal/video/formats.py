@@ -27,7 +27,7 @@ _NUMBERED: Final = re.compile(r"%(0\d+|)d")
 
 
 class VideoError(ValueError):
-    """What was asked for has no sense, or a kind of file cannot have it; in one line."""
+    """An option of a video is invalid, or this kind of file cannot have it; in one line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +100,8 @@ def _check_pattern(path: Path) -> None:
         return
     if "%" in path.name:
         raise SaveError(f"cannot write {path}: a name has one number, like %05d.png")
-    mend = path.with_name(f"{path.stem}-%05d.png")
-    raise SaveError(f"cannot write {path}: every frame needs its number in the name: {mend}")
+    better = path.with_name(f"{path.stem}-%05d.png")
+    raise SaveError(f"cannot write {path}: every frame needs its number in the name: {better}")
 
 
 def numbered(pattern: Path, index: int) -> Path:

@@ -48,7 +48,7 @@ from distal.video.store import Store, Tell
 from distal.video.timing import Timing, timing
 
 Item = TypeVar("Item")
-# Told (frames done, all frames, "rendering" or "encoding").
+# Called with (frames done, all frames, "rendering" or "encoding").
 Progress = Callable[[int, int, str], Any]
 # Larger frames are rendered one by one: each takes 16 bytes a pixel.
 MOST_PIXELS_AT_ONCE: Final = 2**24
@@ -124,17 +124,17 @@ def video(
         params: Values of parameters by name.
         view: What to show; see ``Scene.render``.
         samples: Rays for each pixel of a scene.
-        loop: Whether gif, apng and webp are played again and again; else once.
+        loop: Whether gif, apng and webp are repeated without end; else played once.
         quality: "low", "medium", "high", a number from 0 to 100, or "lossless".
         device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
             "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
         threads: CPU threads that render; all when None.
         keep_frames: A folder for every frame as a PNG file besides; it is made.
         fresh: Render all again, even where an earlier call was broken off.
-        progress: Told how many frames are done, of how many, and what is being done with them.
-        cancel: An event, or a function without arguments, that ends the work early; it is asked by
+        progress: Called with the frames done, all frames, and what is being done with them.
+        cancel: An event, or a function without arguments, that ends the work early; it is called by
             the threads that render.
-        tell: Told in words where the work goes on, and why it begins anew.
+        tell: Called with a line of text: where an interrupted run continues, why it starts again.
 
     Raises:
         SaveError: The file cannot be written, or PyAV is missing.
@@ -215,7 +215,7 @@ class _RecordingJob:
                 self._encoded(store, kept) if self.format.encoded else self._animated(store, kept)
             )
         except BaseException:
-            self._tell_kept(store)
+            self._report_kept(store)
             raise
         finally:
             store.close()
@@ -366,7 +366,7 @@ class _RecordingJob:
             "software": f"distal {__version__}",
         }
 
-    def _tell_kept(self, store: Store) -> None:
+    def _report_kept(self, store: Store) -> None:
         if self.format.encoded:
             there = [f for f in self.timing.pieces if store.path(piece_name(f)).exists()]
             kept = sum(map(len, there))

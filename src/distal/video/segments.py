@@ -25,7 +25,7 @@ class Piece:
     """One piece while it is encoded.
 
     Args:
-        path: Where it stands when it is whole.
+        path: Its file once it is complete.
         codec: How it is encoded.
         size: Width and height in pixels.
         rate: Frames a second.
@@ -101,7 +101,7 @@ def join(
             out.metadata.update(texts)
             _copy(pieces, out, rate)
         except BaseException:
-            with suppress(Exception):  # what broke off is told, not that the end is missing
+            with suppress(Exception):  # the first error is reported, not that the end is missing
                 out.close()
             raise
         out.close()

@@ -19,7 +19,7 @@ from distal.images.atomic_files import SaveError, check_destination, move_into_p
 
 try:
     import fcntl
-except ImportError:  # Windows: two that write one output are not told apart there
+except ImportError:  # Windows: two that write one output are not kept apart there
     fcntl = None  # type: ignore[assignment]
 
 MANIFEST: Final = "manifest.json"
@@ -41,8 +41,8 @@ class Store:
 
         Args:
             manifest: What the frames depend on, as JSON values.
-            fresh: Begin anew in any case.
-            tell: Told why work begins anew.
+            fresh: Start again in any case.
+            tell: Called with the reason why work starts again.
 
         Raises:
             SaveError: The folder cannot be made, or another process uses it.
@@ -62,7 +62,7 @@ class Store:
             changed = [] if known is None else _changed(known, manifest)
             if known is None or fresh or changed:
                 if changed and not fresh and self.items():
-                    tell(f"begins anew: {'; '.join(changed)}")
+                    tell(f"starts again: {'; '.join(changed)}")
                 self._empty()
             for pattern in ("*.partial*", ".distal-*.tmp"):
                 for path in self.folder.glob(pattern):
@@ -77,7 +77,7 @@ class Store:
             raise
 
     def path(self, name: str) -> Path:
-        """Where a piece stands."""
+        """The file of a piece."""
         return self.folder / name
 
     def items(self) -> list[Path]:
@@ -135,15 +135,15 @@ class Store:
 
 def _changed(known: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
     """What differs, in words."""
-    told = []
+    changes = []
     for name, value in wanted.items():
         if known.get(name) == value:
             continue
         if name == "program":
-            told.append("the scene has changed")
+            changes.append("the scene has changed")
         elif name == "parameters":
-            told.append("parameters have changed")
+            changes.append("parameters have changed")
         else:
             was = printable(known.get(name), 80)
-            told.append(f"{name.replace('_', ' ')} was {was}, is {value}")
-    return told
+            changes.append(f"{name.replace('_', ' ')} was {was}, is {value}")
+    return changes

@@ -63,10 +63,15 @@ class Timing:
 
 
 def timing(start: object, duration: object, rate: object) -> Timing:
-    """The timing that a caller asks for.
+    """The timing of a video, checked.
+
+    Args:
+        start: Seconds of the first frame.
+        duration: Seconds.
+        rate: Frames a second, as for ``frame_rate``.
 
     Raises:
-        VideoError: A number is none, or has no sense.
+        VideoError: A value is no number, or out of range.
     """
     made = Timing(_seconds("start", start), _seconds("duration", duration), frame_rate(rate))
     if made.duration <= 0:

@@ -1,8 +1,7 @@
-"""The window: joins what a person does, what is made, and what is on the screen.
+"""The window: connects a person's input, the frames and what is on the screen.
 
-Input: events of a canvas, timers, what the worker has done. Output: orders to the
-worker, drawings. The parts that can be thought about alone stand in the other modules; here is the
-order of things.
+Input: events of a canvas, timers, finished jobs of the worker. Output: jobs for the worker,
+drawings. Each part has a module of its own; this one decides the request in which they run.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ from distal.window.frame_scheduler import FrameRequest, FrameScheduler
 from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
 from distal.window.log import Log
 from distal.window.overlay import Overlay
-from distal.window.reading import Reading, reading
-from distal.window.reload import PERIOD_S, Loaded, Watch, files_in, load_again
+from distal.window.overlay_content import OverlayContent, overlay_content
+from distal.window.reload import PERIOD_S, FileWatcher, ReloadedScene, files_in, load_again
 from distal.window.screen import set_full_screen
 from distal.window.screenshots import free_name
 from distal.window.session import Session
@@ -38,10 +37,10 @@ if TYPE_CHECKING:
 
 _NOTE_S: Final = 4.0
 _FIGURES_S: Final = 0.25  # digits that change faster cannot be read
-_SLOW_S: Final = 0.4  # after which a person is told what is being waited for
+_SLOW_S: Final = 0.4  # after which a note says what the window waits for
 _REPEAT_AFTER_S: Final = 0.35
 _REPEAT_S: Final = 1 / 15
-_KIND_MISTAKES: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
+_EXPECTED: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,39 +65,39 @@ class SceneSource:
 
 
 class Application:
-    """A window at work."""
+    """An open window."""
 
     def __init__(
         self,
         session: Session,
-        origin: SceneSource,
-        maker: FrameRenderer,
+        source: SceneSource,
+        renderer: FrameRenderer,
         canvas: Any,
         surface: WindowSurface,
         loop: Any,
         *,
         scale: float,
     ) -> None:
-        self._session, self._origin, self._canvas = session, origin, canvas
+        self._session, self._source, self._canvas = session, source, canvas
         self._surface, self._loop, self._scale = surface, loop, scale
         self._log = Log()
         self._worker = Worker(loop.call_soon_threadsafe)
-        self._making = FrameScheduler(maker, self._worker, self._finished, self._failing)
+        self._scheduler = FrameScheduler(renderer, self._worker, self._finished, self._failed)
         self._overlay = Overlay()
-        self._watch = Watch(origin.files)
+        self._watch = FileWatcher(source.files)
         self._is_loading = False
         self._busy_since: float | None = None
         self._trouble_of_file = self._trouble_of_frame = ""
-        self._told = ""
+        self._last_report = ""
         self._note, self._note_until = "", 0.0
         self._status, self._status_at = "", float("-inf")
-        self._read: Reading | None = None
+        self._shown_content: OverlayContent | None = None
         self._wake_at: float | None = None
         self._held: Action | None = None
         self._full_screen_from: tuple[int, ...] | None = None
         self._listen()
 
-    # The order of things
+    # The loop
 
     def start(self) -> None:
         """Begin, once the loop runs."""
@@ -111,14 +110,14 @@ class Application:
         return self._worker.stop(patience_s)
 
     def wake(self) -> None:
-        """Look at everything once; called whenever something has happened."""
+        """Update everything once; called whenever something has happened."""
         if self._canvas.get_closed():
             return
         now = time.monotonic()
         self._wake_at = None
         shot = self._session.shot(now)
         moving = self._session.is_moving(now)
-        again = self._making.want(
+        again = self._scheduler.request_frame(
             self._session.viewable,
             shot,
             self._frame_size(),
@@ -130,9 +129,9 @@ class Application:
             self._wake_in(self._session.settles_in(now) or PERIOD_S)
         if self._note and now < self._note_until:
             self._wake_in(self._note_until - now)
-        if self._wait(now) is not None:
+        if self._waiting_note(now) is not None:
             self._wake_in(_SLOW_S)
-        if self._reading(now) != self._read:
+        if self._content(now) != self._shown_content:
             self._canvas.request_draw()
 
     def _wake_in(self, seconds: float) -> None:
@@ -153,43 +152,43 @@ class Application:
 
     def _draw(self) -> None:
         now = time.monotonic()
-        self._read = self._reading(now)
+        self._shown_content = self._content(now)
         size, ratio = self._canvas.get_physical_size(), self._canvas.get_pixel_ratio()
-        self._surface.draw(self._overlay.panels(self._read, size, ratio))
-        shown = self._making.shown
+        self._surface.draw(self._overlay.panels(self._shown_content, size, ratio))
+        shown = self._scheduler.shown
         if shown is not None:
             self._log("drawn", size=size, shown=_facts(shown), trouble=self._trouble)
 
-    # What is made
+    # Frames
 
-    def _finished(self, order: FrameRequest, made: RenderedFrame) -> None:
+    def _finished(self, request: FrameRequest, made: RenderedFrame) -> None:
         if made.share == 1.0:
             self._trouble_of_frame = ""
             self._surface.show(made)
-            if order.shot.mouse == self._session.mouse:
+            if request.shot.mouse == self._session.mouse:
                 self._session.frame_begun()
-            self._log("frame", **_facts(order), ms=made.seconds * 1000)
+            self._log("frame", **_facts(request), ms=made.seconds * 1000)
             self._canvas.request_draw()
         self.wake()
 
-    def _failing(self, order: FrameRequest, error: BaseException) -> None:
-        self._trouble_of_frame = self._tell(error)
+    def _failed(self, request: FrameRequest, error: BaseException) -> None:
+        self._trouble_of_frame = self._report(error)
         self.wake()
 
-    # What is read
+    # Text over the picture
 
     @property
     def _trouble(self) -> str:
         return self._trouble_of_file or self._trouble_of_frame
 
-    def _reading(self, now: float) -> Reading:
-        note = self._note if now < self._note_until else self._wait(now) or ""
-        return reading(
+    def _content(self, now: float) -> OverlayContent:
+        note = self._note if now < self._note_until else self._waiting_note(now) or ""
+        return overlay_content(
             self._session, now, status=self._figures(now), trouble=self._trouble, note=note
         )
 
-    def _wait(self, now: float) -> str | None:
-        """What takes so long, where something does."""
+    def _waiting_note(self, now: float) -> str | None:
+        """What the window waits for: "" until it is slow, None where nothing is being done."""
         if not self._worker.waiting:
             self._busy_since = None
             return None
@@ -197,37 +196,37 @@ class Application:
             self._busy_since = now
         if self._is_loading:
             what = "loading the saved file …"
-        elif self._making.shown is None:
+        elif self._scheduler.shown is None:
             what = "compiling …"
-        elif self._making.is_busy:
+        elif self._scheduler.is_busy:
             what = "rendering …"
         else:
             what = "saving the picture …"
         return what if now - self._busy_since > _SLOW_S else ""
 
     def _figures(self, now: float) -> str:
-        session, made, shown = self._session, self._making.made, self._making.shown
-        words = [self._origin.title, view_label(session.view)]
+        session, made, shown = self._session, self._scheduler.made, self._scheduler.shown
+        words = [self._source.title, view_label(session.view)]
         if session.clock.speed != 1.0:
             words.append(f"{number_text(session.clock.speed)}x")
         if session.playing and now - self._status_at < _FIGURES_S and self._status:
             return self._status
         if made is not None and shown is not None:
             if session.playing or session.is_moving(now):
-                words.append(f"{self._making.frames_per_s:.0f} fps")
+                words.append(f"{self._scheduler.frames_per_s:.0f} fps")
             words.append(f"{made.seconds * 1000:.1f} ms")
             words.append("{}x{}".format(*shown.pixels))
-        words.append(self._making.maker.device)
+        words.append(self._scheduler.renderer.device)
         words.append("H: help")
         self._status, self._status_at = "   ".join(words), now
         return self._status
 
-    def _say(self, text: str) -> None:
+    def _notify(self, text: str) -> None:
         self._note, self._note_until = text, time.monotonic() + _NOTE_S
 
-    def _tell(self, error: BaseException) -> str:
-        """A mistake's text; it is also told on the terminal, once."""
-        if isinstance(error, _KIND_MISTAKES):
+    def _report(self, error: BaseException) -> str:
+        """A mistake's text; it is also printed on the terminal, once."""
+        if isinstance(error, _EXPECTED):
             text = str(error)
         else:
             text = f"{type(error).__name__}: {error}"
@@ -235,10 +234,10 @@ class Application:
         if isinstance(error, LoadError | SaveError | DeviceError):
             text = f"error: {text}"
         text = printable_lines(text)
-        if text != self._told:
+        if text != self._last_report:
             print(text, file=sys.stderr, flush=True)
             self._log("trouble", text=text)
-        self._told = text
+        self._last_report = text
         return text
 
     # The scene's files
@@ -252,29 +251,29 @@ class Application:
 
     def _load(self) -> None:
         self._is_loading = True
-        origin, session = self._origin, self._session
-        shot, maker = session.shot(time.monotonic()), self._making.maker
+        source, session = self._source, self._session
+        shot, renderer = session.shot(time.monotonic()), self._scheduler.renderer
 
-        def job(_: object) -> Loaded:
-            return load_again(origin.path, origin.name, shot, maker)
+        def job(_: object) -> ReloadedScene:
+            return load_again(source.path, source.name, shot, renderer)
 
         self._worker.submit(job, self._loaded)
         self.wake()
 
-    def _loaded(self, result: Loaded | BaseException) -> None:
+    def _loaded(self, result: ReloadedScene | BaseException) -> None:
         self._is_loading = False
         if isinstance(result, BaseException):
-            self._trouble_of_file = self._tell(result)
-            self._watch.watch([*self._origin.files, *files_in(result, self._origin.files[0])])
+            self._trouble_of_file = self._report(result)
+            self._watch.watch([*self._source.files, *files_in(result, self._source.files[0])])
         else:
-            self._trouble_of_file = self._trouble_of_frame = self._told = ""
-            self._origin = SceneSource(self._origin.path, self._origin.name, result.files)
+            self._trouble_of_file = self._trouble_of_frame = self._last_report = ""
+            self._source = SceneSource(self._source.path, self._source.name, result.files)
             self._watch.watch(result.files)
             self._session.adopt(result.viewable, time.monotonic(), animated=result.animated)
             self._log("loaded", files=[str(file) for file in result.files])
         self.wake()
 
-    # What a person does
+    # Input
 
     def _listen(self) -> None:
         handlers: Mapping[str, Callable[[dict[str, Any]], None]] = {
@@ -360,7 +359,7 @@ class Application:
         """Save what is wanted now, as sharp as the window is large."""
         session, size = self._session, self._frame_size()
         shot, viewable = session.shot(time.monotonic()), session.viewable
-        device, title = self._making.maker.device, self._origin.title
+        device, title = self._scheduler.renderer.device, self._source.title
 
         def job(_: object) -> Path:
             path = free_name(Path.cwd(), title, shot)
@@ -369,9 +368,9 @@ class Application:
 
         def done(result: Path | BaseException) -> None:
             if isinstance(result, BaseException):
-                self._say(self._tell(result).splitlines()[0])
+                self._notify(self._report(result).splitlines()[0])
             else:
-                self._say(f"saved {result.name}")
+                self._notify(f"saved {result.name}")
                 print(printable_lines(f"saved {result}"), file=sys.stderr, flush=True)
                 self._log("saved", path=str(result))
             self.wake()
@@ -382,14 +381,14 @@ class Application:
         self._full_screen_from = set_full_screen(self._canvas, self._full_screen_from)
 
 
-def _facts(order: FrameRequest) -> dict[str, Any]:
-    shot, steering = order.shot, order.shot.steering
+def _facts(request: FrameRequest) -> dict[str, Any]:
+    shot, steering = request.shot, request.shot.steering
     return {
         "time": shot.time,
         "view": shot.view,
         "parameters": dict(shot.parameters),
         "steering": steering.settings if steering is not None else None,
-        "mouse": shot.mouse.pixels(order.pixels),
-        "pixels": order.pixels,
-        "share": order.share,
+        "mouse": shot.mouse.pixels(request.pixels),
+        "pixels": request.pixels,
+        "share": request.share,
     }

@@ -1,7 +1,7 @@
-"""Makes frames: on the CPU as pixels, on a GPU as a texture that never leaves it.
+"""Renders frames: on the CPU as pixels, on a GPU as a texture that never leaves it.
 
-Input: what is shown, a ``Shot``, a size. Output: a ``RenderedFrame``, display values either
-way. Runs in the worker's thread; knows no window.
+Input: what is shown, a ``Shot``, a size. Output: a ``RenderedFrame`` of display values. Runs in the
+worker's thread; knows no window.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _SMALLEST: Final = (8, 8)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RenderedFrame:
-    """A frame.
+    """A frame of display values.
 
     Attributes:
         pixels: uint8, (height, width, 4), the top row first; None where it is a texture.
@@ -48,7 +48,7 @@ class RenderedFrame:
 
 
 class FrameRenderer(Protocol):
-    """Makes frames on one device.
+    """Renders frames on one device.
 
     Attributes:
         device: Its name, as ``render`` takes it.
@@ -60,7 +60,7 @@ class FrameRenderer(Protocol):
         """Compile what a shot needs, so that mistakes show before anything is replaced."""
         ...
 
-    def make(
+    def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
         """A frame of that width and height in pixels.
@@ -96,7 +96,7 @@ def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
 
 
 class PixelRenderer:
-    """Makes pixels on any device that renders into memory."""
+    """Renders pixels on any device that renders into memory."""
 
     def __init__(self, device: str) -> None:
         self.device = device
@@ -105,7 +105,7 @@ class PixelRenderer:
         """Compile what a shot needs."""
         picture(viewable, shot, render_options(shot, _SMALLEST, self.device))
 
-    def make(
+    def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
         """A frame; ended early, how far it came and what that took."""
@@ -149,7 +149,7 @@ class TextureRenderer:
         self._draw(viewable, shot, self._texture(_SMALLEST), _SMALLEST)
         self._ready = (viewable, {shot.view, *(views if known is viewable else ())})
 
-    def make(
+    def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
         """A frame; a GPU ends what it has begun."""

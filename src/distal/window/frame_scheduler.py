@@ -1,7 +1,7 @@
-"""Keeps the picture up with what a person wants to see: which frame is made next, and how sharp.
+"""Decides which frame is rendered next, and at which resolution.
 
-Input: shots, sizes, finished frames. Output: jobs for the worker, the frame to
-show, the figures. Knows neither window nor keys.
+Input: shots, sizes, finished frames. Output: jobs for the worker, the frame to show, the figures.
+Knows neither window nor keys.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ _FIGURES_S: Final = 1.0  # frames are counted over the last second
 
 @dataclass(frozen=True, slots=True)
 class FrameRequest:
-    """A frame that is wanted, in making, or shown.
+    """A frame that is wanted, being rendered, or shown.
 
     Attributes:
         viewable: What it shows.
-        shot: How.
+        shot: Time, parameters, view and camera.
         size: Width and height of the window's picture in pixels.
         share: The part of them that is rendered.
     """
@@ -47,42 +47,42 @@ class FrameRequest:
         return max(round(width * self.share), 1), max(round(height * self.share), 1)
 
     def shows_the_same(self, other: FrameRequest) -> bool:
-        """Whether only sharpness sets them apart."""
+        """Whether they differ in their resolution at most."""
         mine, its = (self.viewable, self.shot, self.size), (other.viewable, other.shot, other.size)
         return mine == its
 
 
 class FrameScheduler:
-    """One frame at a time, always of what is wanted when it begins.
+    """Renders one frame at a time, of what is wanted when it begins.
 
     Attributes:
         shown: The last frame that was finished.
-        failed: The order that could not be made; it is not tried again.
-        made: Its figures.
+        failed: The request that could not be rendered; it is not tried again.
+        made: What was rendered for ``shown``.
     """
 
     def __init__(
         self,
-        maker: FrameRenderer,
+        renderer: FrameRenderer,
         worker: Worker,
-        finished: Callable[[FrameRequest, RenderedFrame], None],
-        failing: Callable[[FrameRequest, BaseException], None],
+        on_finished: Callable[[FrameRequest, RenderedFrame], None],
+        on_failure: Callable[[FrameRequest, BaseException], None],
     ) -> None:
-        self.maker = maker
+        self.renderer = renderer
         self.shown: FrameRequest | None = None
         self.made: RenderedFrame | None = None
         self.failed: FrameRequest | None = None
         self._worker = worker
-        self._finished, self._failing = finished, failing
-        self._pace = ResolutionChooser()
-        self._in_making: FrameRequest | None = None
+        self._on_finished, self._on_failure = on_finished, on_failure
+        self._resolution = ResolutionChooser()
+        self._in_progress: FrameRequest | None = None
         self._begun = float("-inf")
         self._times: deque[float] = deque(maxlen=240)
 
     @property
     def is_busy(self) -> bool:
-        """Whether a frame is being made."""
-        return self._in_making is not None
+        """Whether a frame is being rendered."""
+        return self._in_progress is not None
 
     @property
     def frames_per_s(self) -> float:
@@ -93,70 +93,78 @@ class FrameScheduler:
             return float(len(recent))
         return (len(recent) - 1) / max(recent[-1] - recent[0], 1e-6)
 
-    def want(
+    def request_frame(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], *, is_moving: bool
     ) -> float | None:
-        """Make a frame if what is shown is another.
+        """Render a frame if what is shown is another.
+
+        Args:
+            viewable: What is to be seen.
+            shot: Time, parameters, view and camera.
+            size: Width and height of the window's picture in pixels.
+            is_moving: Whether a frame is wanted soon rather than sharp.
 
         Returns:
-            Seconds after which to ask again; None where a finished frame will be the occasion, or
-            nothing is left to do.
+            Seconds after which to call again; None where the call after a finished frame is soon
+            enough, or nothing is left to do.
         """
         if self.shown is not None and (
             self.shown.viewable is not viewable or self.shown.shot.view != shot.view
         ):
             self._forget(viewable, shot)
-        share = self._pace.share(size, is_moving=is_moving)
-        order = FrameRequest(viewable, shot, size, share)
-        if self._in_making is not None:
-            self._give_up_for(order, is_moving=is_moving)
+        share = self._resolution.share(size, is_moving=is_moving)
+        request = FrameRequest(viewable, shot, size, share)
+        if self._in_progress is not None:
+            self._cancel_for(request, is_moving=is_moving)
             return None
-        if not self._is_wanted(order):
+        if not self._is_wanted(request):
             return None
         wait = self._begun + _LEAST_GAP_S - time.monotonic()
         if wait > 0:
             return wait
-        self._begin(order)
+        self._begin(request)
         return None
 
     def _forget(self, viewable: Viewable, shot: Shot) -> None:
         assert self.shown is not None
-        making = self._in_making
-        if making is None or making.viewable is not viewable or making.shot.view != shot.view:
-            self._pace.forget()
+        current = self._in_progress
+        if current is None or current.viewable is not viewable or current.shot.view != shot.view:
+            self._resolution.forget()
 
-    def _is_wanted(self, order: FrameRequest) -> bool:
+    def _is_wanted(self, request: FrameRequest) -> bool:
         for known in (self.shown, self.failed):
-            if known is not None and order.shows_the_same(known):
-                return known is self.shown and order.share > known.share
+            if known is not None and request.shows_the_same(known):
+                return known is self.shown and request.share > known.share
         return True
 
-    def _give_up_for(self, order: FrameRequest, *, is_moving: bool) -> None:
-        """End a sharp frame that nobody waits for any more; coarse ones come soon enough."""
-        making = self._in_making
-        assert making is not None
-        if making.shows_the_same(order):
+    def _cancel_for(self, request: FrameRequest, *, is_moving: bool) -> None:
+        """Cancel a frame that is not wanted any more; a coarse one is left to finish."""
+        current = self._in_progress
+        assert current is not None
+        if current.shows_the_same(request):
             return
-        if is_moving and making.share <= order.share:
+        if is_moving and current.share <= request.share:
             return
         self._worker.cancel()
 
-    def _begin(self, order: FrameRequest) -> None:
-        self._in_making, self._begun = order, time.monotonic()
+    def _begin(self, request: FrameRequest) -> None:
+        self._in_progress, self._begun = request, time.monotonic()
         self._worker.submit(
-            lambda cancel: self.maker.make(order.viewable, order.shot, order.pixels, cancel),
-            lambda result: self._end(order, result),
+            lambda cancel: self.renderer.render(
+                request.viewable, request.shot, request.pixels, cancel
+            ),
+            lambda result: self._end(request, result),
         )
 
-    def _end(self, order: FrameRequest, result: Any) -> None:
-        self._in_making = None
+    def _end(self, request: FrameRequest, result: Any) -> None:
+        self._in_progress = None
         if isinstance(result, BaseException):
-            self.failed = order
-            self._failing(order, result)
+            self.failed = request
+            self._on_failure(request, result)
             return
-        width, height = order.pixels
-        self._pace.learn(result.seconds, width * height * result.share)
+        width, height = request.pixels
+        self._resolution.learn(result.seconds, width * height * result.share)
         if result.share == 1.0:
-            self.shown, self.made, self.failed = order, result, None
+            self.shown, self.made, self.failed = request, result, None
             self._times.append(time.monotonic())
-        self._finished(order, result)
+        self._on_finished(request, result)

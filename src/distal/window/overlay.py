@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw
 from distal.scene.viewing.key_bindings import HELP
 from distal.window import layout
 from distal.window.lettering import fixed_font, plain_font, shortened, shortened_inside, width
-from distal.window.reading import Reading, Row
+from distal.window.overlay_content import OverlayContent, ParameterRow
 
 _TEXT_SIZE: Final = 13
 _BACK: Final = (16, 18, 24, 196)
@@ -50,12 +50,12 @@ class Panel:
 
 
 class Overlay:
-    """Draws readings; keeps each part while it says the same."""
+    """Draws the overlay's content; keeps each part while its text is the same."""
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[Hashable, Panel]] = {}
 
-    def panels(self, read: Reading, size: tuple[int, int], ratio: float) -> list[Panel]:
+    def panels(self, read: OverlayContent, size: tuple[int, int], ratio: float) -> list[Panel]:
         """The parts, the lowest first.
 
         Args:
@@ -218,7 +218,7 @@ def _sign(canvas: _Canvas, x: float, middle: float, is_paused: bool) -> None:
     canvas.draw.polygon([canvas._local(*corner) for corner in corners], _TEXT)
 
 
-def _rows(rows: tuple[Row, ...], chosen: int, place: _Place) -> Panel:
+def _rows(rows: tuple[ParameterRow, ...], chosen: int, place: _Place) -> Panel:
     table = layout.Table.of(place.width, place.height, len(rows), chosen)
     canvas = _Canvas(table.frame, place)
     if not rows:

@@ -30,7 +30,7 @@ PERIOD_S: Final = 0.25
 Signature: TypeAlias = "tuple[tuple[int, ...] | None, ...]"
 
 
-class Watch:
+class FileWatcher:
     """Watches a set of files, and folders whose lists of names may change."""
 
     def __init__(self, files: Iterable[Path]) -> None:
@@ -40,7 +40,7 @@ class Watch:
         self.watch(files)
 
     def watch(self, files: Iterable[Path]) -> None:
-        """Watch these from now on.
+        """FileWatcher these from now on.
 
         A file that was watched before keeps its last known state: what was saved while the scene
         was being loaded is not missed.
@@ -73,7 +73,7 @@ def _state(path: Path) -> tuple[int, ...] | None:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Loaded:
+class ReloadedScene:
     """A scene that was loaded again, and can be shown.
 
     Attributes:
@@ -87,7 +87,7 @@ class Loaded:
     files: tuple[Path, ...]
 
 
-def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) -> Loaded:
+def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) -> ReloadedScene:
     """Load a scene and compile what is looked at.
 
     Raises:
@@ -105,7 +105,7 @@ def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) ->
     maker.prepare(shown, replace(shot, parameters=parameters, view=view, steering=steering))
     # Asked for here, so that the window's thread finds it computed.
     _ = shown.elevation
-    return Loaded(shown, shown.animated, origin.files)
+    return ReloadedScene(shown, shown.animated, origin.files)
 
 
 def files_in(error: BaseException, scene: Path) -> list[Path]:

@@ -1,7 +1,7 @@
-"""How sharp a frame may be to come in time.
+"""Chooses the resolution at which a frame is finished in time.
 
-Input: how long frames took. Output: the share of the window's width and height
-that the next one has. Reads no clock.
+Input: how long frames took. Output: the share of the window's width and height that the next one
+has. Reads no clock.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ _ROOM: Final = 0.75
 
 
 class ResolutionChooser:
-    """Learns what a pixel costs."""
+    """Learns how long a pixel takes, and chooses the share of the window's size."""
 
     def __init__(self) -> None:
         self._seconds_per_pixel: float | None = None
         self._share = SHARES[-1]
 
     def learn(self, seconds: float, pixels: float) -> None:
-        """A frame of so many pixels took so long. A part of a frame says as much."""
+        """Record how long a frame, or a part of one, took."""
         if pixels < 1:
             return
         found = seconds / pixels
@@ -31,13 +31,13 @@ class ResolutionChooser:
         self._seconds_per_pixel = found if known is None else 0.5 * (found + known)
 
     def forget(self) -> None:
-        """Another scene, or another view: what was learned means nothing."""
+        """Start again for another scene or view."""
         self._seconds_per_pixel, self._share = None, SHARES[-1]
 
     def share(self, size: tuple[int, int], *, is_moving: bool) -> float:
         """The next frame's part of the window's size.
 
-        A first frame is coarse: nobody knows how long a sharp one takes.
+        A first frame is coarse: how long a sharp one takes is not known yet.
         """
         if self._seconds_per_pixel is None:
             return SHARES[-1]

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import distal
 from distal.cli.application import application
-from distal.cli.doctor import Finding, State
+from distal.cli.doctor import MachineFact, State
 from distal.diagnostics import CompileError, LoadError, Span
 from distal.images.picture import Picture
 from distal.lang import func
@@ -239,9 +239,9 @@ def test_examples_are_listed(scene, run):
 
 @pytest.mark.parametrize(("state", "code"), [(State.OPTIONAL, 0), (State.BROKEN, 1)])
 def test_doctor_shows_each_finding_and_its_remedy(run, monkeypatch, state, code):
-    missing = Finding("packages [gpu]", "wgpu", state, "missing", "pip install 'distal[gpu]'")
+    missing = MachineFact("packages [gpu]", "wgpu", state, "missing", "pip install 'distal[gpu]'")
     monkeypatch.setattr("distal.cli.doctor.examine", lambda: [missing])
     result = run("doctor")
     assert result.exit_code == code
-    for word in ("packages [gpu]", "wgpu", "missing", "mend: pip install 'distal[gpu]'"):
+    for word in ("packages [gpu]", "wgpu", "missing", "fix: pip install 'distal[gpu]'"):
         assert word in result.stdout

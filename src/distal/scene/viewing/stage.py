@@ -64,7 +64,7 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
     )
     hand_on(given, scene)
     said = checked_values(given.parameters(), params)
-    object.__setattr__(scene, "staged", (said, float(time)))  # its pictures tell it
+    object.__setattr__(scene, "staged", (said, float(time)))  # recorded in its pictures
     return scene
 
 

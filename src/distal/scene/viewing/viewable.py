@@ -1,4 +1,4 @@
-"""What windows, pages, notebooks and films show: a scene, a shape or an image, under one interface.
+"""What windows, pages, notebooks and videos show: one interface to scenes, shapes and images.
 
 Input: any object that is a picture. Output: its programs by view, with a camera
 that can be moved where it has one, and its parameters. Knows no window and no page.
@@ -69,7 +69,7 @@ class Viewable:
 
     @cached_property
     def elevation(self) -> float:
-        """How high the camera stands above what it looks at, at the start, in radians."""
+        """The camera's first elevation above what it looks at, in radians."""
         if self.scene is None:
             return 0.0
         return float(executor().call(_Elevation(self.scene), (), {}))
@@ -137,7 +137,7 @@ class Viewable:
 
 
 class _Elevation(Composed):
-    """How high a scene's camera stands above what it looks at."""
+    """The elevation of a scene's camera above what it looks at."""
 
     name = "elevation"
     signature = ()

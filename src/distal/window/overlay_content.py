@@ -1,6 +1,6 @@
-"""What a person is to read over the picture, as plain values: equal readings look the same.
+"""The text over the picture as plain values: equal ones look the same.
 
-Input: a ``Session``, and words about frames and mistakes. Output: a ``Reading``.
+Input: a ``Session``, and text about frames and mistakes. Output: an ``OverlayContent``.
 Knows nothing of how it is drawn.
 """
 
@@ -12,13 +12,13 @@ from distal.window.session import Session
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """A parameter's row.
+class ParameterRow:
+    """The line of a parameter.
 
     Attributes:
-        label: Whose.
+        label: The parameter's label.
         words: Its value.
-        share: Where its bar stands, or None.
+        share: The position of its bar from 0 to 1, or None.
         is_moved: Whether it is not at its default.
     """
 
@@ -29,12 +29,12 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """All that is to be read over a picture.
+class OverlayContent:
+    """All text over a picture.
 
     Attributes:
         status: One line about what is seen, and how fast it is.
-        rows: The parameters; None while they are not asked for.
+        rows: The parameters; None while they are hidden.
         chosen: Which row keys move.
         time: Seconds, and the ends of the strip; None where nothing depends on them.
         is_paused: Whether the time stands.
@@ -44,7 +44,7 @@ class Reading:
     """
 
     status: str = ""
-    rows: tuple[Row, ...] | None = None
+    rows: tuple[ParameterRow, ...] | None = None
     chosen: int = 0
     time: tuple[float, float, float] | None = None
     is_paused: bool = False
@@ -53,16 +53,24 @@ class Reading:
     note: str = ""
 
 
-def reading(
+def overlay_content(
     session: Session, now: float, *, status: str = "", trouble: str = "", note: str = ""
-) -> Reading:
-    """What is to be read now; a mistake is told even where nothing else is."""
+) -> OverlayContent:
+    """The text to show now; a mistake is shown even where the overlay is hidden.
+
+    Args:
+        session: What the person has done.
+        now: The reading of a steady clock, in seconds.
+        status: One line about what is seen, and how fast it is.
+        trouble: A mistake's text, or "".
+        note: A short message, or "".
+    """
     if not session.shows_overlay:
-        return Reading(trouble=trouble, note=note)
+        return OverlayContent(trouble=trouble, note=note)
     rows = None
     if session.shows_parameters:
         rows = tuple(
-            Row(
+            ParameterRow(
                 dial.label,
                 dial.words(session.value(dial)),
                 dial.share(session.value(dial)),
@@ -72,7 +80,7 @@ def reading(
         )
     # Hundredths: what is written, and finer than a pixel of the strip.
     seconds = round(session.clock.time(now), 2)
-    return Reading(
+    return OverlayContent(
         status=status,
         rows=rows,
         chosen=session.chosen,
