@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 import distal
 from distal.images.metadata import read
+from distal.lang.render_options import RenderOptions
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
 from tests.pictures.comparison import difference
@@ -59,13 +60,9 @@ def told(shown: dict[str, Any]) -> Steering:
 def expected(path: str, shown: dict[str, Any], size: tuple[int, int]) -> NDArray[np.float32]:
     """What the CPU says should be seen."""
     scene = viewable(distal.load(path))
-    pixels: NDArray[np.float32] = scene.render(
-        size=size,
-        time=shown["time"],
-        params=shown["parameters"],
-        view=shown["view"],
-        steering=told(shown) if shown["steering"] else None,
-    ).array
+    options = RenderOptions(size=size, time=shown["time"], params=shown["parameters"])
+    moved = told(shown) if shown["steering"] else None
+    pixels: NDArray[np.float32] = scene.render(options, view=shown["view"], steering=moved).array
     return pixels
 
 

@@ -1,4 +1,4 @@
-"""Names that stand in annotations only: arrays, fields and generic types."""
+"""Names that are used in annotations only: arrays, fields and generic types."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What a caller chose for parameters, held against what they take.
+"""Values that a caller chose for parameters, checked.
 
-Input: parameters, and values by name from Python. Output: plain values by the
-parameters' names, each checked. Texts of a command line are ``distal.cli.arguments``' matter.
+Input: parameters, and values by name from Python. Output: plain values by the parameters' names.
+``distal.cli.arguments`` reads texts of a command line.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from distal.lang.parameters import Parameter
 def checked_values(
     parameters: Iterable[Parameter], chosen: Mapping[str, Any] | None
 ) -> dict[str, Value]:
-    """The chosen values, checked; what is not chosen is not among them.
+    """The chosen values, checked; parameters that were not chosen are left out.
 
     Args:
         parameters: All that there are.

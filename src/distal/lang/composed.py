@@ -1,8 +1,7 @@
-"""Objects that stand for a function of scene code without being written as one.
+"""Objects that are functions of scene code without a ``def``: shapes, scenes, their views.
 
-A shape is a distance, a scene a picture, though no ``def`` says so: each makes its function of the
-IR itself when a program asks for it. The compiler, the executor and scene code take such an object
-wherever they take a ``Func``.
+Input: an object. Output: a function of the IR, which the object builds itself when it is compiled.
+The compiler, the executor and scene code take such an object wherever they take a ``Func``.
 """
 
 from __future__ import annotations
@@ -22,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class Composed(Unchanging, ABC):
-    """A function that an object makes itself. It never changes once it is made.
+    """A function of the IR that an object builds itself. It never changes once it is made.
 
     Attributes:
-        name: What messages call it.
-        kind: How it is run: over points, or as a picture.
+        name: Its name in messages.
+        kind: Whether it is run over points, or as a picture.
         signature: Its parameters, by name and type.
-        result: What it gives.
+        result: The type of its result.
         display: For a picture whose pixels are linear light: the function ``(vec4) -> vec4`` that
             encodes them for display; None where they are encoded already.
     """

@@ -42,7 +42,7 @@ class Func:
     """A function of scene code: callable from scene code, and from Python through the executor.
 
     Attributes:
-        overloads: One entry, or several told apart by their parameters' types.
+        overloads: One entry, or several that differ in their parameters' types.
     """
 
     def __init__(self, overload: Overload) -> None:

@@ -17,7 +17,7 @@ from distal.lang.values import MatrixValue, VectorValue
 
 @dataclass(frozen=True, slots=True)
 class LangFunction:
-    """A built-in: a row of the table. Called from Python it computes through the executor."""
+    """A built-in, with its intrinsic. Called from Python it computes through the executor."""
 
     row: Intrinsic
 

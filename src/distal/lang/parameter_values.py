@@ -29,7 +29,7 @@ TOGGLE_WORDS: Final = {
 
 
 def read_number(label: str, text: str, read: Callable[[str], object], expected: str) -> object:
-    """The number a text stands for; ``expected`` says in words what it should be."""
+    """The number in a text; ``expected`` says in words what it should be."""
     try:
         return read(text)
     except ValueError:
@@ -65,7 +65,7 @@ def as_int(label: str, value: object) -> int:
 
 
 def as_bool(label: str, value: object) -> bool:
-    """A truth value; no number stands for one."""
+    """A truth value; a number is refused."""
     value = _plain(value)
     if not isinstance(value, bool):
         raise TypeError(f"'{label}' takes True or False, not {_kind_of(value)}")
@@ -95,7 +95,7 @@ def as_color(label: str, value: object) -> tuple[float, ...]:
 
 
 def _decode_hex(label: str, text: str) -> tuple[float, ...]:
-    # Found when asked for: it is scene code, and imports what imports this module.
+    # Imported when needed: it is scene code, and imports what imports this module.
     srgb = importlib.import_module("distal.lang.srgb")
     linear: tuple[float, ...] | None = srgb.linear_of(text)
     if linear is None:

@@ -35,7 +35,7 @@ from distal.lang.parameter_values import (
 
 
 class ParameterKind(Enum):
-    """What is asked of a person; the value is the word in the interface."""
+    """The kind of control; the value is the word in the interface."""
 
     SLIDER = "slider"
     INTEGER = "integer"
@@ -52,14 +52,14 @@ class Parameter(Symbolic):
     Attributes:
         name: Identifier made from the label: the uniform's name and what ``--set`` takes.
         label: What a person reads.
-        kind: What is asked of a person.
+        kind: The kind of control.
         default: float, int, bool, the option's number for a choice, a tuple of linear red, green,
             blue for a color, or a tuple of 2 or 3 coordinates for a point.
         low: Smallest value of a slider or integer, else None.
         high: Largest value of a slider or integer, else None.
         step: Distance between positions of a slider or integer; None for a continuous slider.
         log: Whether the slider's positions are spread by ratio instead of by difference.
-        group: Heading the parameter stands under, or "".
+        group: The heading that it is listed under, or "".
         help: One sentence about its effect, or "".
         options: Names of a choice's options, else empty.
     """
@@ -139,10 +139,10 @@ class Parameter(Symbolic):
                 assert_never(self.kind)
 
     def parse(self, text: str) -> Value:
-        """The value that a text stands for, as ``--set`` gives it.
+        """The value of a text, as ``--set`` gives it.
 
         Raises:
-            ValueError: The text does not stand for a value of this kind and range.
+            ValueError: The text is no value of this kind and range.
         """
         text = text.strip()
         try:
@@ -222,7 +222,7 @@ def slider(
         high: Largest value.
         step: Distance between positions; None for a continuous slider.
         log: Spread the positions by ratio; ``low`` must then be above 0.
-        group: Heading to stand under.
+        group: The heading that it is listed under.
         help: One sentence about its effect.
 
     Raises:
@@ -324,7 +324,7 @@ def color(
     Args:
         label: What a person reads.
         default: "#rrggbb" in sRGB, decoded here, or three linear numbers from 0 to 1.
-        group: Heading to stand under.
+        group: The heading that it is listed under.
         help: One sentence about its effect.
 
     Raises:

@@ -84,7 +84,7 @@ def checked_size(size: Any) -> tuple[int, int]:
 
 
 def checked_time(seconds: Any) -> float:
-    """A time in seconds that 32 bits still tell from its neighbours."""
+    """A time in seconds, within the range where floats of 32 bits are close enough together."""
     try:
         value = float(seconds)
     except (TypeError, ValueError):

@@ -1,7 +1,7 @@
 """Textures and buffers: read-only data that scene code reads.
 
 Declared in the author's module; in scene code the name is the resource. Only the shape of the data
-is looked at here. Loading a file, and checking what is in it, is done by whoever runs the program.
+is looked at here. Loading a file, and checking what is in it, is done by what runs the program.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _WRAPS = ("repeat", "clamp")
 
 
 def _beside(file: str, data: Any) -> Any:
-    """The names of files made whole where such a file stands beside ``file``."""
+    """The names of files with the folder of ``file``, where they are in it."""
     if isinstance(data, list | tuple) and len(data) == 6:  # a cube's faces
         return [_beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
     if not isinstance(data, str | PathLike):

@@ -22,6 +22,6 @@ class Unchanging:
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            f"{self!r:.60} cannot be pickled; make it anew in the other process, or load its file "
+            f"{self!r:.60} cannot be pickled; make it again in the other process, or load its file "
             "there: distal.load(file)"
         )

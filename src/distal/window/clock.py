@@ -1,4 +1,4 @@
-"""The scene's time: it runs, stands, jumps, and goes faster or slower.
+"""The scene's time: it runs, pauses, jumps, and goes faster or slower.
 
 Input: readings of a steady wall clock, in seconds. Output: the scene's seconds at
 each. Reads no clock itself.
@@ -28,12 +28,12 @@ class Clock:
         return interaction.advanced(self._time, passed, self._time, None)
 
     def run(self, running: bool, now: float) -> None:
-        """Go on or stand still; the time stays what it is."""
+        """Run or pause; the time itself does not change."""
         self.jump(self.time(now), now)
         self.running = running
 
     def jump(self, time: float, now: float) -> None:
-        """Go on from another time."""
+        """Continue from another time."""
         self._time, self._since = time, now
 
     def change_speed(self, steps: int, now: float) -> None:

@@ -59,7 +59,7 @@ class Dial:
                 assert_never(self.parameter.kind)
 
     def share(self, value: Value) -> float | None:
-        """Where its bar stands, from 0 to 1; None for what has no ends."""
+        """The position of its bar, from 0 to 1; None for what has no ends."""
         number = self._number(value)
         match self.parameter.kind:
             case ParameterKind.SLIDER | ParameterKind.INTEGER:

@@ -154,7 +154,7 @@ class TextureRenderer:
     ) -> RenderedFrame:
         """A frame; a GPU ends what it has begun."""
         self.prepare(viewable, shot)
-        # The window shows one while the other is drawn, and never asks for a third.
+        # The window shows one while the other is drawn, and never needs a third.
         texture = self._textures.pop(0) if len(self._textures) > 1 else None
         if texture is None or texture.size[:2] != size:
             texture = self._texture(size)
@@ -175,7 +175,7 @@ class TextureRenderer:
     def _wait_for(self, texture: Any) -> None:
         """Until it is drawn: frames must not pile up in the driver, and figures must be true.
 
-        One texel is read; wgpu 0.32 for Python breaks when the queue itself is asked.
+        One texel is read; wgpu 0.32 for Python breaks when the queue itself is waited for.
         """
         if self._texel is None:
             self._texel = self._gpu.create_buffer(size=256, usage="COPY_DST|MAP_READ")

@@ -1,8 +1,8 @@
 """What the pointer's motion means: for a camera, and for an ``@image``'s ``frame.mouse``.
 
-Input: distances in parts of the picture's height, places in parts of the picture. What
-flows out: five numbers of a ``Steering``, or Shadertoy's four of the mouse. Knows no camera: what
-the numbers do is scene code; how far a hand moves them stands in ``scene/viewing/interaction.py``.
+Input: distances in parts of the picture's height, places in parts of the picture. Output:
+five numbers of a ``Steering``, or Shadertoy's four of the mouse. Knows no camera: what
+the numbers do is scene code; ``scene/viewing/interaction.py`` says how far a hand moves them.
 """
 
 from __future__ import annotations

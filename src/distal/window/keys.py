@@ -13,7 +13,7 @@ from distal.scene.viewing.key_bindings import BINDINGS
 
 
 class Action(Enum):
-    """What a key asks for: an action of ``BINDINGS``."""
+    """The action of a key: one of ``BINDINGS``."""
 
     LEFT = "left"
     RIGHT = "right"
@@ -41,7 +41,7 @@ class Action(Enum):
     QUIT = "quit"
 
 
-# Typed characters, not keys: brackets stand elsewhere on every keyboard. Space is a key.
+# Typed characters, not keys: brackets are elsewhere on every keyboard. Space is a key.
 _KEYS: Final = {
     key: Action(binding.action)
     for binding in BINDINGS

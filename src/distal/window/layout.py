@@ -1,7 +1,7 @@
-"""Where things stand on the window, in its own units (not pixels), y down.
+"""The layout of the window, in its own units (not pixels), y down.
 
-Input: the window's size. Output: rectangles, for what draws them and for what asks
-what a pointer is on. Draws nothing.
+Input: the window's size. Output: rectangles, for drawing and for finding what a pointer is on.
+Draws nothing.
 """
 
 from __future__ import annotations

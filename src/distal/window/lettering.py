@@ -25,7 +25,7 @@ def plain_font(size_px: int) -> Font:
 
 @lru_cache(maxsize=32)
 def fixed_font(size_px: int) -> Font:
-    """For source code; where no font of one width is found, letters still stand in columns."""
+    """For source code; where no font of one width is found, letters are in columns all the same."""
     return _first(_FIXED, size_px)
 
 

@@ -1,7 +1,7 @@
-"""Tells what a window showed, one line of JSON for each event, where somebody asks for it.
+"""Logs what a window showed, one line of JSON for each event.
 
-Input: events. Output: a file that ``DISTAL_VIEW_LOG`` names; nothing without that.
-It is for tests, and for reports of what went wrong.
+Input: events. Output: the file that ``DISTAL_VIEW_LOG`` names; nothing without that. It is for
+tests and for error reports.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from distal.window.app import Application, SceneSource
 from distal.window.screen import check_display, open_canvas, open_surface
 from distal.window.session import Session
 
-# What is in the middle of compiling is not waited for any longer than a person would.
+# How long the end of a running compilation is waited for.
 _PATIENCE_S: Final = 0.5
 
 
@@ -84,14 +84,14 @@ def _run(application: Application, canvas: Any, loop: Any) -> bool:
 
     def interrupt(_signal: int, _frame: object) -> None:
         nonlocal interrupted
-        if interrupted:  # asked twice: whatever it is that does not end
+        if interrupted:  # a second ctrl-C: something does not end
             raise KeyboardInterrupt
         interrupted = True
         # Not closed here: this may be in the middle of drawing on it.
         loop.call_soon_threadsafe(canvas.close)
 
     def begin() -> None:
-        # The loop has set its own by now, which would tell of it on the terminal.
+        # The loop has set its own by now, which would report it on the terminal.
         signal.signal(signal.SIGINT, interrupt)
         application.start()
 

@@ -1,7 +1,7 @@
 """What is drawn over the picture: figures, parameters, help, a mistake, the time.
 
 Input: what a person is to read, as plain values, and the window's size and pixel ratio.
-Output: small pictures and where they stand, in pixels; a part that did not change is the
+Output: small pictures and their places, in pixels; a part that did not change is the
 same object again. Knows no window and no GPU.
 """
 
@@ -209,7 +209,7 @@ def _time(time: tuple[float, float, float], is_paused: bool, place: _Place) -> P
 
 
 def _sign(canvas: _Canvas, x: float, middle: float, is_paused: bool) -> None:
-    """Two bars for a time that stands, a triangle for one that runs."""
+    """Two bars while the time is paused, a triangle while it runs."""
     if is_paused:
         canvas.box(x, middle - 5, 3, 10, _DIM, 0)
         canvas.box(x + 5, middle - 5, 3, 10, _DIM, 0)
@@ -245,7 +245,7 @@ def _rows(rows: tuple[ParameterRow, ...], chosen: int, place: _Place) -> Panel:
         right = place_of.x + place_of.width
         canvas.text(right, middle, row.words, color, room=room, anchor="rm")
     if table.count < len(rows):
-        # Where these rows stand among all.
+        # Which part of all rows is shown.
         part = table.handle(len(rows))
         canvas.box(part.x, part.y, part.width, part.height, _DIM, part.width / 2)
     return canvas.panel()
@@ -279,7 +279,7 @@ def _note(text: str, place: _Place) -> Panel:
 
 
 def _trouble(text: str, place: _Place) -> Panel:
-    """The text in columns, so that a caret stands under what it means; long lines are folded."""
+    """The text in columns, so that a caret is under what it means; long lines are folded."""
     font = fixed_font(place.text_px)
     cell = width(font, "M")
     line_px = round(place.text_px * 1.45)

@@ -37,7 +37,7 @@ class OverlayContent:
         rows: The parameters; None while they are hidden.
         chosen: Which row keys move.
         time: Seconds, and the ends of the strip; None where nothing depends on them.
-        is_paused: Whether the time stands.
+        is_paused: Whether the time is paused.
         help: Whether the keys are explained.
         trouble: A mistake's text, or "".
         note: A short message, or "".

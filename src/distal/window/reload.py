@@ -1,9 +1,9 @@
 """Notices that a scene's files were saved, and loads it again.
 
-Input: paths, and what is looked at. Output: whether files are other than they
-were, and have come to rest; a scene that is compiled and ready to take the old one's place.
+Input: paths, and what is looked at. Output: whether files have changed, and are not being written
+any more; a scene that is compiled and ready to replace the old one.
 
-Files are asked for their times four times a second, which costs a few microseconds for each and
+The times of files are read four times a second, which costs a few microseconds for each and
 works on every file system; notices of the operating system do not reach shared folders, and an
 editor that saves by renaming needs the folder watched as well.
 """

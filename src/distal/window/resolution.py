@@ -11,7 +11,7 @@ from typing import Final
 # While something moves a frame should come within this; twenty in a second look fluid.
 BUDGET_S: Final = 0.05
 SHARES: Final = (1.0, 0.5, 0.25, 0.125)
-# A sharper share must fit with room to spare, or two would alternate.
+# A sharper share must be finished well in time, or two would alternate.
 _ROOM: Final = 0.75
 
 

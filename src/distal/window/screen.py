@@ -74,11 +74,11 @@ def open_surface(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer
 
 
 def _on_gpu(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer]:
-    wish = device.partition(":")[2] or None
-    gpu = opened(chosen(wish))
-    name = f"gpu-fragment:{wish}" if wish else "gpu-fragment"
+    adapter = device.partition(":")[2] or None
+    gpu = opened(chosen(adapter))
+    name = f"gpu-fragment:{adapter}" if adapter else "gpu-fragment"
     try:
-        return WindowSurface(canvas, gpu.device), TextureRenderer(name, gpu.device, wish)
+        return WindowSurface(canvas, gpu.device), TextureRenderer(name, gpu.device, adapter)
     except (RuntimeError, ValueError, wgpu_module().GPUError) as error:
         raise DeviceError(
             f"{_NO_WINDOW}: {gpu.adapter.name} cannot draw on it ({_first_line(error)});"

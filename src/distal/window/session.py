@@ -1,8 +1,8 @@
-"""What a person has done with a window so far, and so what it has to show.
+"""The state of a window: time, camera, parameters, view and what the pointer holds.
 
-Input: a ``Viewable``, actions of keys, the pointer, readings of a steady clock. What flows
-out: a ``Shot``: two that are equal look the same, so no frame is drawn twice. Knows no display, no
-device and no thread.
+Input: a ``Viewable``, actions of keys, the pointer, readings of a steady clock. Output: a ``Shot``:
+two that are equal look the same, so no frame is drawn twice. Knows no display, no device and no
+thread.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ class Session:
             self.view = viewable.views[0]
         if not viewable.steers:
             self.steering = STILL
-        # What it held may be gone: the hand takes hold anew.
+        # What the pointer held may be gone.
         self._grab = None
         self.clock.run(self._wants_time and self.animated, now)
 
@@ -175,13 +175,13 @@ class Session:
 
     @property
     def table(self) -> Table:
-        """Where the rows stand."""
+        """The place of the rows."""
         return Table.of(*self.size, len(self.dials), self.chosen)
 
     # Keys
 
     def act(self, action: Action, now: float, *, shift: bool = False) -> None:
-        """Do what a key asks for; what concerns the window itself is not known here."""
+        """Perform the action of a key; those of the window itself do nothing here."""
         match action:
             case Action.PAUSE:
                 self._pause(now)

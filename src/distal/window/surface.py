@@ -1,7 +1,7 @@
-"""Puts a frame and what is drawn over it onto a window.
+"""Draws a frame, and the panels over it, on a window.
 
 Input: a canvas of rendercanvas, a device of wgpu, a frame, panels. Output: pixels
-on the screen that are exactly the frame's where the sizes agree. No formula of color stands here:
+on the screen that are exactly the frame's where the sizes agree. It has no formula of color:
 where a surface encodes what is written to it, textures have the format that is read decoded.
 """
 

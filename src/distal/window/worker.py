@@ -33,7 +33,7 @@ class Worker:
         self._jobs: queue.SimpleQueue[tuple[Job, Done] | None] = queue.SimpleQueue()
         self._cancel = threading.Event()
         self._ended = False
-        # A daemon: what runs inside a compiler cannot be asked to end.
+        # A daemon: a compiler cannot be interrupted.
         self._thread = threading.Thread(target=self._run, name="distal-window", daemon=True)
         self._thread.start()
 
@@ -43,7 +43,7 @@ class Worker:
         self._jobs.put((job, done))
 
     def cancel(self) -> None:
-        """Ask the running job to end early; jobs that are not asked often end as they would."""
+        """Request that the running job ends early; it is free to finish."""
         self._cancel.set()
 
     def stop(self, patience_s: float) -> bool:
@@ -62,7 +62,7 @@ class Worker:
                 return
             try:
                 result = job(self._cancel)
-            except BaseException as error:  # whatever it is: the window tells it
+            except BaseException as error:  # whatever it is: the window reports it
                 result = error
             if not self._ended:
                 self._post(functools.partial(self._finish, done, result))
