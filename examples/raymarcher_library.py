@@ -28,12 +28,13 @@ from distal.lang import (
     vec4,
 )
 from distal.render.ambient import hemisphere_light
-from distal.render.bounce import Look, seen_plain
+from distal.render.bounce import seen_plain
 from distal.render.camera import look_at
 from distal.render.lights import LightSample, distant_light
 from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
 from distal.render.settings import march_numbers
+from distal.render.shade import Look
 from distal.render.tonemap import ACES, decode_srgb, display
 
 softness = slider("Softness", 0.05, high=0.2, help="How far sphere and torus melt.")

@@ -11,6 +11,7 @@ from distal.render import (
     march,
     material,
     patterns,
+    shade,
     sky,
     tonemap,
     views,
@@ -82,7 +83,7 @@ def everywhere() -> Bounds:
 def plain(frame: Frame) -> vec4:
     seen = bounce.seen_plain(
         ray_of(frame), field, surface, lights, ambient, background,
-        everywhere(), numbers(), bounce.Look(0.4, vec3(0.5), 0.02), STEPS, 2, 48,
+        everywhere(), numbers(), shade.Look(0.4, vec3(0.5), 0.02), STEPS, 2, 48,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
 
@@ -91,7 +92,7 @@ def plain(frame: Frame) -> vec4:
 def mirrored(frame: Frame) -> vec4:
     seen = bounce.seen_mirrored(
         ray_of(frame), field, surface, lights, ambient, background,
-        everywhere(), numbers(), bounce.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 4,
+        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 4,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
 
@@ -100,7 +101,7 @@ def mirrored(frame: Frame) -> vec4:
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
         ray_of(frame), field, surface, lights, ambient, background,
-        everywhere(), numbers(), bounce.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 6,
+        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 

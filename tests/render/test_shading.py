@@ -15,7 +15,8 @@ import pytest
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, max, min, vec2, vec3
 from distal.lang.runtime_access import executor
-from distal.render import ambient, bounce, lights, material, shade, sky
+from distal.render import ambient, lights, material, shade, sky, trace
+from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
 from distal.render.material import Surface
@@ -382,23 +383,21 @@ def lit(weights: vec3, occlusion: float, shadow_steps: int) -> vec3:
     """A floor, a wall 0.3 away; a light from above and one from below it."""
     surface = Surface(emission=vec3(0.01, 0.02, 0.03), roughness=weights.z)
     parts = material.Shares(vec3(weights.x), vec3(weights.y), vec3(0.0))
+    hit = trace.SurfacePoint(4.5, False, vec3(0.3, 0.0, 0.0), vec3(0.0, 1.0, 0.0), surface, parts)
     return shade.direct_light(
+        Ray(vec3(3.0, 3.6, 0.0), vec3(-0.6, -0.8, 0.0)),
+        hit,
         lambda p: min(p.y, p.x),
         lambda i, p: lights.distant_light(
             p, vec3(3.0, 4.0, 0.0) if i == 0 else vec3(0.0, -1.0, 0.0), 2.0, vec3(1.0, 0.5, 0.25)
         ),
         lambda n: vec3(0.1) + 0.2 * max(n, 0.0),
-        surface,
-        parts,
-        vec3(0.3, 0.0, 0.0),
-        1e-3,
-        vec3(0.0, 1.0, 0.0),
-        vec3(0.6, 0.8, 0.0),
         Bounds(vec3(-1e18), vec3(1e18)),
         March(1.0, 0.0, 50.0, 1e-4),
+        shade.Look(occlusion, vec3(0.0), 0.0),
         2,
         shadow_steps,
-        occlusion,
+        False,
     )
 
 
@@ -426,8 +425,7 @@ def test_only_what_is_rough_mirrors_what_is_around_here():
 
 @func
 def start_of_rays(threshold: float, t: float, hybrid: bool) -> float:
-    hit = bounce.Hit(t, True, 1, 1.0)
-    return bounce.lift_above(March(1.0, 0.0, 50.0, threshold), hit, hybrid)
+    return trace.ray_offset(March(1.0, 0.0, 50.0, threshold), t, hybrid)
 
 
 def test_rays_begin_above_what_a_march_may_be_off():

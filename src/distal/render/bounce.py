@@ -1,7 +1,8 @@
-"""What a ray brings back: one surface, a chain of mirrors, or a tree of mirrors and glass.
+"""The light along a ray: of one surface, of a chain of mirrors, or of a tree of mirrors and glass.
 
-Three renderers, of which a scene takes the cheapest that shows all its materials. The last follows
-both the mirrored and the refracted ray, by an explicit stack.
+Input: a ray, the functions of a scene and its numbers. Output: linear light and alpha. A scene
+takes the cheapest of the three renderers that shows all its materials. The last one follows both
+the mirrored and the refracted ray, with an explicit stack.
 """
 
 from __future__ import annotations
@@ -9,57 +10,20 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
-from distal.lang import Field3, dot, exp, func, max, reflect, refract, struct, vec3, vec4
+from distal.lang import Field3, exp, func, reflect, refract, vec3, vec4
 from distal.render.camera import Ray
-from distal.render.heightfield_march import ENOUGH, STRIDE, Stride
+from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.lights import LightSample
-from distal.render.march import Hit, March, march
-from distal.render.material import Surface, brightest, shares
-from distal.render.normals import EXACT, normal
-from distal.render.shade import direct_light, fogged
-from distal.render.trace import first_surface
+from distal.render.march import March
+from distal.render.material import Surface, brightest
+from distal.render.normals import EXACT
+from distal.render.shade import Look, direct_light
+from distal.render.trace import first_surface, ray_offset, surface_point
 
-# Alpha of a ray that begins inside a solid and finds no way out of it.
+# Alpha of a ray that begins inside a solid and does not leave it.
 ALL_INSIDE = -1.0
 STACK = 12
-DIMMEST = 0.004  # rays that would add less than a display's step are not followed
-
-
-@struct
-class Look:
-    """The numbers of shading: how far occlusion looks (0: none), and fog."""
-
-    occlusion: float
-    fog_color: vec3
-    fog_density: float
-
-
-@func
-def place_on(ray: Ray, hit: Hit) -> vec3:
-    """Where a ray ended."""
-    return ray.origin + hit.t * ray.direction
-
-
-@func
-def just_before(ray: Ray, hit: Hit, numbers: March) -> vec3:
-    """Where normals are asked: on the surface itself many fields have no direction in 32 bits.
-
-    (The length of a vector to the nearest edge, with a sign, say.)
-    """
-    return ray.origin + hit.t * (1.0 - 0.5 * numbers.threshold) * ray.direction
-
-
-@func
-def differences_step(hit: Hit, normal_step: float) -> float:
-    """How far away normals' differences are taken: like pixels, and what 32 bits tell, with t."""
-    return normal_step * max(hit.t, 1.0)
-
-
-@func
-def lift_above(numbers: March, hit: Hit, hybrid: bool) -> float:
-    """How far above a surface its rays begin: beyond what a march may be off, above or below."""
-    off = 1.0 + ENOUGH if hybrid else 1.0
-    return (1.0 + off) * numbers.threshold * hit.t + 1e-4
+DIMMEST = 0.004  # rays that would add less than one step of a display are not followed
 
 
 @func
@@ -81,33 +45,38 @@ def seen_plain(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """Direct light on the first surface; alpha is 0 where there is none."""
+    """Direct light on the first surface.
+
+    Args:
+        ray: Ray.
+        field: Signed distance.
+        surface: The material at a point.
+        lights: The light of a number, from 0, as a point receives it.
+        ambient: Light from all around on a white surface, by its normal.
+        background: Light from a direction in which there is no surface.
+        bounds: Box that the surface lies in.
+        numbers: The numbers of the march.
+        look: Ambient occlusion and fog.
+        steps: The largest number of steps of a ray.
+        light_count: How many lights there are.
+        shadow_steps: The largest number of steps of a shadow ray; 0 for no shadows.
+        normals: How normals are found; a constant of ``normals``.
+        normal_step: Step of the normals' differences, in scene units at distance 1.
+        hybrid: Whether to march as over terrain and water; a constant.
+        stride: How the hybrid march steps.
+
+    Returns:
+        Linear light; alpha is 1 on a surface, 0 where there is none, ``ALL_INSIDE`` where the ray
+        does not leave a solid.
+    """
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
-    p = place_on(ray, hit)
-    n = hit.side * normal(
-        field, just_before(ray, hit, numbers), normals, differences_step(hit, normal_step)
-    )
-    lift = lift_above(numbers, hit, hybrid)
-    material = surface(p)
+    point = surface_point(ray, hit, field, surface, numbers, normals, normal_step)
     color = direct_light(
-        field,
-        lights,
-        ambient,
-        material,
-        shares(material, -dot(n, ray.direction), hit.side < 0.0),
-        p,
-        lift,
-        n,
-        -ray.direction,
-        bounds,
-        numbers,
-        light_count,
-        shadow_steps,
-        look.occlusion,
+        ray, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps, hybrid
     )
-    return vec4(fogged(color, hit.t, look.fog_color, look.fog_density), 1.0)
+    return vec4(color, 1.0)
 
 
 @func
@@ -130,7 +99,7 @@ def seen_mirrored(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """As ``seen_plain``, and what mirrors show: one ray goes on."""
+    """As ``seen_plain``, and what mirrors show: one ray continues, ``bounces`` times at most."""
     color = vec3(0.0)
     throughput = vec3(1.0)
     alpha = 0.0
@@ -140,44 +109,25 @@ def seen_mirrored(
         here = Ray(origin, direction)
         hit = first_surface(field, here, bounds, numbers, steps, hybrid, stride)
         if hit.side < 0.0 and alpha > 0.0:
-            break  # mirrored into a crevice: what is there hides the rest
+            break  # mirrored into a crevice: the surface in front hides the rest
         if not hit.found:
             color += throughput * background(direction)
             if hit.side < 0.0:
                 alpha = ALL_INSIDE
             break
         alpha = 1.0
-        p = place_on(here, hit)
-        n = hit.side * normal(
-            field, just_before(here, hit, numbers), normals, differences_step(hit, normal_step)
-        )
-        lift = lift_above(numbers, hit, hybrid)
-        material = surface(p)
-        parts = shares(material, -dot(n, direction), hit.side < 0.0)
-        direct = direct_light(
-            field,
-            lights,
-            ambient,
-            material,
-            parts,
-            p,
-            lift,
-            n,
-            -direction,
-            bounds,
-            numbers,
-            light_count,
-            shadow_steps,
-            look.occlusion,
-        )
-        color += throughput * fogged(direct, hit.t, look.fog_color, look.fog_density)
-        clear = exp(-look.fog_density * hit.t)
-        throughput = throughput * parts.mirrored * ((1.0 - material.roughness) * clear)
+        point = surface_point(here, hit, field, surface, numbers, normals, normal_step)
+        color += throughput * direct_light(
+            here, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
+            hybrid,
+        )  # fmt: skip
+        clear = exp(-look.fog_density * point.t)
+        throughput = throughput * point.shares.mirrored * ((1.0 - point.surface.roughness) * clear)
         if brightest(throughput) < DIMMEST:
             break
-        # Mirrored rays begin lower: grazing ones would see another wave.
-        origin = p + lift_above(numbers, hit, False) * n
-        direction = reflect(direction, n)
+        # Mirrored rays begin lower than shadow rays: grazing ones would meet another wave.
+        origin = point.p + ray_offset(numbers, hit.t, False) * point.n
+        direction = reflect(direction, point.n)
     return vec4(color, alpha)
 
 
@@ -199,12 +149,12 @@ def seen_refracted(
     normals: int = EXACT,
     normal_step: float = 1e-3,
 ) -> vec4:
-    """As ``seen_mirrored``, and what glass shows: mirrored and refracted rays both go on."""
+    """As ``seen_mirrored``, and what glass shows: the mirrored and the refracted ray continue."""
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
     depths = [0] * STACK
-    insides = [True] * STACK  # whether a ray may begin inside; the eye may
+    insides = [True] * STACK  # whether a ray may begin inside; the one from the camera may
     waiting = 1
     color = vec3(0.0)
     alpha = 0.0
@@ -216,62 +166,44 @@ def seen_refracted(
         throughput = throughputs[waiting]
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
-        hit = march(field, here, bounds, numbers, steps)
+        hit = first_surface(field, here, bounds, numbers, steps, False, STRIDE)
         if hit.side < 0.0 and not insides[waiting]:
-            continue  # mirrored into a crevice: what is there hides the rest
+            continue  # mirrored into a crevice: the surface in front hides the rest
         if not hit.found:
             color += throughput * background(direction)
             if hit.side < 0.0 and depth == 0:
                 alpha = ALL_INSIDE
             continue
         alpha = 1.0
-        p = place_on(here, hit)
-        n = hit.side * normal(
-            field, just_before(here, hit, numbers), normals, differences_step(hit, normal_step)
-        )
-        lift = lift_above(numbers, hit, False)
-        material = surface(p)
-        parts = shares(material, -dot(n, direction), hit.side < 0.0)
-        if hit.side < 0.0:
-            throughput = throughput * exp(-material.absorption * hit.t)
+        point = surface_point(here, hit, field, surface, numbers, normals, normal_step)
+        if point.inside:
+            throughput = throughput * exp(-point.surface.absorption * point.t)
         else:
-            direct = direct_light(
-                field,
-                lights,
-                ambient,
-                material,
-                parts,
-                p,
-                lift,
-                n,
-                -direction,
-                bounds,
-                numbers,
-                light_count,
-                shadow_steps,
-                look.occlusion,
-            )
-            color += throughput * fogged(direct, hit.t, look.fog_color, look.fog_density)
-            throughput = throughput * exp(-look.fog_density * hit.t)
+            color += throughput * direct_light(
+                here, point, field, lights, ambient, bounds, numbers, look, light_count,
+                shadow_steps, False,
+            )  # fmt: skip
+            throughput = throughput * exp(-look.fog_density * point.t)
         if depth >= bounces:
             continue
-        eta = material.ior if hit.side < 0.0 else 1.0 / material.ior
-        # Where all is mirrored there is no bent ray, and nothing for it to carry.
-        bent = refract(direction, n, eta)
-        mirror_share = throughput * parts.mirrored * (1.0 - material.roughness)
-        through_share = throughput * parts.transmitted
+        eta = point.surface.ior if point.inside else 1.0 / point.surface.ior
+        # Beyond the critical angle there is no refracted ray, and its share is 0.
+        bent = refract(direction, point.n, eta)
+        mirror_share = throughput * point.shares.mirrored * (1.0 - point.surface.roughness)
+        through_share = throughput * point.shares.transmitted
+        offset = ray_offset(numbers, hit.t, False)
         if brightest(mirror_share) >= DIMMEST and waiting < STACK:
-            origins[waiting] = p + lift * n
-            directions[waiting] = reflect(direction, n)
+            origins[waiting] = point.p + offset * point.n
+            directions[waiting] = reflect(direction, point.n)
             throughputs[waiting] = mirror_share
             depths[waiting] = depth + 1
-            insides[waiting] = hit.side < 0.0
+            insides[waiting] = point.inside
             waiting += 1
         if brightest(through_share) >= DIMMEST and waiting < STACK:
-            origins[waiting] = p - lift * n
+            origins[waiting] = point.p - offset * point.n
             directions[waiting] = bent
             throughputs[waiting] = through_share
             depths[waiting] = depth + 1
-            insides[waiting] = hit.side > 0.0
+            insides[waiting] = not point.inside
             waiting += 1
     return vec4(color, alpha)

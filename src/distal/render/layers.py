@@ -11,13 +11,12 @@ from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, dot, func, gradient, vec2, vec3, vec4
-from distal.render.bounce import differences_step, just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.march import FORGIVING, Hit, March
 from distal.render.material import Surface
-from distal.render.normals import EXACT, normal
-from distal.render.trace import first_surface
+from distal.render.normals import EXACT
+from distal.render.trace import facing_normal, first_surface, hit_point
 
 NOTHING = vec4(0.0)
 # The largest error of a depth of 4 (a sphere, 160x120, where it is not grazed) after 0, 1 and 2
@@ -86,8 +85,7 @@ def layer_normal(
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
-    step = differences_step(hit, normal_step)
-    return vec4(hit.side * normal(field, just_before(ray, hit, numbers), normals, step), 1.0)
+    return vec4(facing_normal(field, ray, hit, numbers, normals, normal_step), 1.0)
 
 
 @func
@@ -105,7 +103,7 @@ def layer_albedo(
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
-    return vec4(surface(place_on(ray, hit)).color, 1.0)
+    return vec4(surface(hit_point(ray, hit)).color, 1.0)
 
 
 @func
@@ -123,7 +121,7 @@ def layer_material(
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
-    return vec4(identity(place_on(ray, hit)), 0.0, 0.0, 1.0)
+    return vec4(identity(hit_point(ray, hit)), 0.0, 0.0, 1.0)
 
 
 LAYERS = {

@@ -9,13 +9,12 @@ from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, func, gradient, length, struct, vec2, vec3
-from distal.render.bounce import just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import Stride
 from distal.render.march import March, crossing
 from distal.render.material import Surface
 from distal.render.normals import exact_normal
-from distal.render.trace import first_surface
+from distal.render.trace import first_surface, hit_point, point_before
 
 
 @struct
@@ -60,7 +59,7 @@ def look_along(
     """What the ray through a place in a picture meets."""
     ray = camera((2.0 * coord - resolution) / resolution.y)
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
-    p = place_on(ray, hit)
+    p = hit_point(ray, hit)
     return Seen(
         ray.origin,
         ray.direction,
@@ -71,7 +70,7 @@ def look_along(
         hit.side,
         p,
         field(p),
-        exact_normal(field, just_before(ray, hit, numbers)),
+        exact_normal(field, point_before(ray, hit, numbers)),
         length(gradient(field, p)),
         part(p),
         paint(p),

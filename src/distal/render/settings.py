@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from distal.fields.guarantees import Bounds
 from distal.lang import clamp, func, max, vec2, vec3
-from distal.render.bounce import Look
 from distal.render.heightfield_march import Stride
 from distal.render.march import March
+from distal.render.shade import Look
 
 
 @func

@@ -9,15 +9,31 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
-from distal.lang import Field3, abs, clamp, dot, exp, func, max, min, mix, reflect, vec3
+from distal.lang import Field3, abs, clamp, dot, exp, func, max, min, mix, reflect, struct, vec3
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March, crossing
-from distal.render.material import Shares, Surface, highlight
+from distal.render.material import highlight
+from distal.render.trace import SurfacePoint, ray_offset
 
 SHARPEST = 0.003  # tangent of the smallest half angle a light fills: sharper is noise
 HURRY = 0.04  # the least stride of a shadow ray late on its way, as a share of the way
 OCCLUSION_TAPS = 5
+
+
+@struct
+class Look:
+    """How surfaces are shaded besides their lights.
+
+    Attributes:
+        occlusion: Reach of ambient occlusion, in scene units; 0 for none.
+        fog_color: Linear color.
+        fog_density: Share of the light that fog takes, per scene unit.
+    """
+
+    occlusion: float
+    fog_color: vec3
+    fog_density: float
 
 
 @func
@@ -61,47 +77,61 @@ def ambient_occlusion(field: Field3, p: vec3, n: vec3, reach: float, divisor: fl
 
 
 @func
+def fogged(color: vec3, t: float, fog_color: vec3, fog_density: float) -> vec3:
+    """A color seen through fog of a density per scene unit, ``t`` units away."""
+    return mix(fog_color, color, exp(-fog_density * t))
+
+
+@func
 def direct_light(
+    ray: Ray,
+    point: SurfacePoint,
     field: Field3,
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
-    surface: Surface,
-    parts: Shares,
-    p: vec3,
-    lift: float,
-    n: vec3,
-    view: vec3,
     bounds: Bounds,
     numbers: March,
+    look: Look,
     light_count: int,
     shadow_steps: int,
-    occlusion: float,
+    hybrid: bool,
 ) -> vec3:
-    """What a place sends to the eye by itself and from the lights, without mirrored surroundings.
+    """What a surface emits and sends back from the lights, seen through fog; no reflections.
 
-    What a rough surface mirrors of its surroundings is blurred: that share is taken from the
-    ambient light. Shadows are looked for from ``lift`` above the surface, lights at it.
+    A rough surface mirrors a blurred picture of its surroundings: that share comes from the ambient
+    light.
+
+    Args:
+        ray: The ray that met the surface.
+        point: Where it met it.
+        field: Signed distance.
+        lights: The light of a number, from 0, as a point receives it.
+        ambient: Light from all around on a white surface, by its normal.
+        bounds: Box that the surface lies in.
+        numbers: The numbers of the march.
+        look: Ambient occlusion and fog.
+        light_count: How many lights there are.
+        shadow_steps: The largest number of steps of a shadow ray; 0 for no shadows.
+        hybrid: Whether the hybrid march found the surface; a constant.
     """
-    lifted = p + lift * n
-    around = parts.diffuse * ambient(n)
-    if surface.roughness > 0.0:
-        around += parts.mirrored * surface.roughness * ambient(reflect(-view, n))
-    if occlusion > 0.0:
-        around = around * ambient_occlusion(field, lifted, n, occlusion, numbers.divisor)
-    color = surface.emission + around
+    n = point.n
+    view = -ray.direction
+    # Shadow rays begin above the surface; the light's direction is that at the surface.
+    lifted = point.p + ray_offset(numbers, point.t, hybrid) * n
+    around = point.shares.diffuse * ambient(n)
+    if point.surface.roughness > 0.0:
+        around += point.shares.mirrored * point.surface.roughness * ambient(reflect(-view, n))
+    if look.occlusion > 0.0:
+        around = around * ambient_occlusion(field, lifted, n, look.occlusion, numbers.divisor)
+    color = point.surface.emission + around
     for i in range(light_count):
-        light = lights(i, p)
+        light = lights(i, point.p)
         facing = dot(n, light.direction)
         if facing > 0.0:
             shadow = 1.0
             if shadow_steps > 0:
                 shadow = soft_shadow(field, lifted, light, bounds, numbers, shadow_steps)
-            shine = highlight(surface, n, view, light.direction, light.radius)
-            color += light.radiance * shadow * (parts.diffuse * facing + parts.mirrored * shine)
-    return color
-
-
-@func
-def fogged(color: vec3, t: float, fog_color: vec3, fog_density: float) -> vec3:
-    """A color seen through fog."""
-    return mix(fog_color, color, exp(-fog_density * t))
+            shine = highlight(point.surface, n, view, light.direction, light.radius)
+            scattered = point.shares.diffuse * facing + point.shares.mirrored * shine
+            color += light.radiance * shadow * scattered
+    return fogged(color, point.t, look.fog_color, look.fog_density)

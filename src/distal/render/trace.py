@@ -1,12 +1,42 @@
-"""Which march follows a ray: sphere tracing, or the hybrid one for terrain and water."""
+"""From a ray to what it meets: the one place where a march, a normal and a material come together.
+
+Input: a ray, a field, the material at each point, and the numbers of the march. Output: a ``Hit``
+(how far the ray went) or a ``SurfacePoint`` (the surface there, ready for shading). Direct light,
+mirrors, glass, views, layers and the probe all start here. Does not depend on lights or cameras.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from distal.fields.guarantees import Bounds
-from distal.lang import Field3, func
+from distal.lang import Field3, dot, func, max, struct, vec3
 from distal.render.camera import Ray
-from distal.render.heightfield_march import Stride, march_heightfield
+from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
 from distal.render.march import Hit, March, march
+from distal.render.material import Shares, Surface, shares
+from distal.render.normals import normal
+
+
+@struct
+class SurfacePoint:
+    """The surface that a ray met.
+
+    Attributes:
+        t: Distance along the ray, in scene units.
+        inside: Whether the ray began inside a solid.
+        p: The point on the surface.
+        n: The unit normal there, on the side that the ray came from.
+        surface: The material there.
+        shares: How much of the light is scattered, mirrored and let through.
+    """
+
+    t: float
+    inside: bool
+    p: vec3
+    n: vec3
+    surface: Surface
+    shares: Shares
 
 
 @func
@@ -19,7 +49,91 @@ def first_surface(
     hybrid: bool,
     stride: Stride,
 ) -> Hit:
-    """The first surface along a ray; ``hybrid`` is a choice fixed when compiled."""
+    """March to the first surface along a ray.
+
+    Args:
+        field: Signed distance.
+        ray: Ray.
+        bounds: Box that the surface lies in.
+        numbers: The numbers of the march.
+        steps: The largest number of steps.
+        hybrid: Whether to march as over terrain and water; a constant.
+        stride: How the hybrid march steps.
+    """
     if hybrid:
         return march_heightfield(field, ray, bounds, numbers, stride, steps)
     return march(field, ray, bounds, numbers, steps)
+
+
+@func
+def hit_point(ray: Ray, hit: Hit) -> vec3:
+    """The point where a ray ended."""
+    return ray.origin + hit.t * ray.direction
+
+
+@func
+def point_before(ray: Ray, hit: Hit, numbers: March) -> vec3:
+    """The point just before the end of a ray, where normals are evaluated.
+
+    Many fields have no gradient on the surface itself in 32 bits (a signed length of the vector to
+    the nearest edge, for example).
+    """
+    return ray.origin + hit.t * (1.0 - 0.5 * numbers.threshold) * ray.direction
+
+
+@func
+def facing_normal(
+    field: Field3, ray: Ray, hit: Hit, numbers: March, normals: int, normal_step: float
+) -> vec3:
+    """The unit normal where a ray ended, on the side that the ray came from.
+
+    Args:
+        field: Signed distance.
+        ray: Ray.
+        hit: Where it ended.
+        numbers: The numbers of the march.
+        normals: EXACT, SIX_TAPS, TETRAHEDRON or FORWARD of ``normals``; a constant.
+        normal_step: Step of the differences at distance 1 and nearer; it grows with the distance,
+            as the size of a pixel and the rounding error do.
+    """
+    step = normal_step * max(hit.t, 1.0)
+    return hit.side * normal(field, point_before(ray, hit, numbers), normals, step)
+
+
+@func
+def ray_offset(numbers: March, t: float, hybrid: bool) -> float:
+    """How far above a surface new rays begin: beyond the error of a march, above or below."""
+    error = 1.0 + ENOUGH if hybrid else 1.0
+    return (1.0 + error) * numbers.threshold * t + 1e-4
+
+
+@func
+def surface_point(
+    ray: Ray,
+    hit: Hit,
+    field: Field3,
+    surface: Callable[[vec3], Surface],
+    numbers: March,
+    normals: int,
+    normal_step: float,
+) -> SurfacePoint:
+    """The surface that ``first_surface`` found, with its normal and its material.
+
+    A function of its own, so that rays that meet nothing compute neither.
+
+    Args:
+        ray: Ray.
+        hit: Where it ended, at a surface.
+        field: Signed distance.
+        surface: The material at a point.
+        numbers: The numbers of the march.
+        normals: How normals are found; a constant of ``normals``.
+        normal_step: As for ``facing_normal``.
+    """
+    inside = hit.side < 0.0
+    p = hit_point(ray, hit)
+    n = facing_normal(field, ray, hit, numbers, normals, normal_step)
+    material = surface(p)
+    return SurfacePoint(
+        hit.t, inside, p, n, material, shares(material, -dot(n, ray.direction), inside)
+    )

@@ -22,13 +22,12 @@ from distal.lang import (
     vec4,
 )
 from distal.lang.srgb import encode_srgb
-from distal.render.bounce import just_before, place_on
 from distal.render.camera import Ray
 from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.march import March, march
 from distal.render.material import Surface
-from distal.render.normals import exact_normal
-from distal.render.trace import first_surface
+from distal.render.normals import EXACT
+from distal.render.trace import facing_normal, first_surface, hit_point, point_before
 
 EMPTY = vec3(0.08, 0.08, 0.1)
 
@@ -58,7 +57,7 @@ def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    return vec4(0.5 + 0.5 * hit.side * exact_normal(field, just_before(ray, hit, numbers)), 1.0)
+    return vec4(0.5 + 0.5 * facing_normal(field, ray, hit, numbers, EXACT, 0.0), 1.0)
 
 
 @func
@@ -106,7 +105,7 @@ def view_slope(
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    steep = length(gradient(field, just_before(ray, hit, numbers)))
+    steep = length(gradient(field, point_before(ray, hit, numbers)))
     if steep > 1.001 * slope:
         return vec4(1.0, 0.0, 1.0, 1.0)
     return vec4(heat(steep / slope), 1.0)
@@ -125,7 +124,7 @@ def view_material(
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    found = surface(place_on(ray, hit))
+    found = surface(hit_point(ray, hit))
     return vec4(encode_srgb(found.color + found.emission), 1.0)
 
 
