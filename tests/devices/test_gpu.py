@@ -15,8 +15,8 @@ from distal.compiler.driver import run_passes
 from distal.devices import adapters, cpu, gpu
 from distal.devices.base import Cancelled, DeviceError
 from distal.devices.gpu import GpuKernel
-from distal.devices.gpu_program import Program
-from distal.devices.tiles import Pace
+from distal.devices.gpu_program import GpuProgram
+from distal.devices.tiles import TileSizer
 from distal.frontend import lower
 from distal.ir.types import VEC4
 from distal.lang import (
@@ -132,10 +132,10 @@ def test_parts_make_the_same_picture(path: str, first: int) -> None:
     kernel, _, sources = of(distal.load("example:raymarcher"), path)
     extent = (83, 61)
     uniforms = {"resolution": extent, "time": 1.7}
-    kernel.pace = Pace(10**9, first=10**9)
+    kernel.tile_sizer = TileSizer(10**9, first=10**9)
     whole = kernel.render(*extent, uniforms, sources)
     assert kernel.stats["tiles"] == 1
-    kernel.pace = Pace(first, first)
+    kernel.tile_sizer = TileSizer(first, first)
     parts = kernel.render(*extent, uniforms, sources)
     assert kernel.stats["tiles"] >= 83 * 61 // first
     np.testing.assert_array_equal(parts, whole)
@@ -148,7 +148,7 @@ def test_pixels_are_mapped_as_on_the_cpu() -> None:
     uniforms = {"amount": 0.3}
     expected = cpu.prepare(module).map_pixels(pixels, uniforms, {})
     np.testing.assert_allclose(kernel.map_pixels(pixels, uniforms, {}), expected, atol=1e-6)
-    kernel.pace = Pace(50, 50)
+    kernel.tile_sizer = TileSizer(50, 50)
     np.testing.assert_allclose(kernel.map_pixels(pixels, uniforms, {}), expected, atol=1e-6)
 
 
@@ -185,7 +185,7 @@ def test_a_function_of_all_kinds_of_values_is_called_for_points(first: int) -> N
     args = [given, random.random(n).astype(np.float32), np.array([7], np.int32)]
     module = lower(mixed)
     kernel = gpu.prepare(module)
-    kernel.pace = Pace(first, first)
+    kernel.tile_sizer = TileSizer(first, first)
     values, expected = (k.evaluate(args, {}, {}) for k in (kernel, cpu.prepare(module)))
     for value, right in zip(values, expected, strict=True):
         assert value.dtype == right.dtype
@@ -221,7 +221,7 @@ def test_only_what_changed_is_uploaded_again() -> None:
 
 def test_it_ends_when_it_is_told_to(path: str) -> None:
     kernel, _, sources = of(distal.load("example:raymarcher"), path)
-    kernel.pace = Pace(256, 256)
+    kernel.tile_sizer = TileSizer(256, 256)
     told: list[float] = []
     with pytest.raises(Cancelled):
         kernel.render(
@@ -284,7 +284,7 @@ def test_out_of_memory_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: Any) -> None:
         raise wgpu.GPUOutOfMemoryError("no")
 
-    monkeypatch.setattr(Program, "set_uniforms", full)
+    monkeypatch.setattr(GpuProgram, "set_uniforms", full)
     with pytest.raises(DeviceError, match=r"has not enough memory; a smaller picture, or --device"):
         kernel.render(8, 8, {}, sources)
 
@@ -312,7 +312,7 @@ def test_it_draws_into_a_texture_of_a_window(lost_gpu: None) -> None:
 
 def test_a_large_picture_needs_no_binding_as_large() -> None:
     kernel, _, sources = of(place, "compute")
-    kernel.pace = Pace(2**18)
+    kernel.tile_sizer = TileSizer(2**18)
     picture = kernel.render(4096, 600, {"resolution": (4096, 600)}, sources)
     assert kernel.stats["tiles"] > 9
     assert picture[-1, -1].tolist() == [4095.5, 0.5, 4096.0, 600.0]

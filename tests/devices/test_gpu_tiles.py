@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from distal.devices.tiles import TARGET_S, Pace, Tile, tiles
+from distal.devices.tiles import TARGET_S, Tile, TileSizer, tiles
 
 
-def run(width: int, height: int, pace: Pace, seconds_per_pixel: float) -> list[Tile]:
+def run(width: int, height: int, tile_sizer: TileSizer, seconds_per_pixel: float) -> list[Tile]:
     parts = []
-    for tile in tiles(width, height, pace):
+    for tile in tiles(width, height, tile_sizer):
         parts.append(tile)
-        pace.measured(tile, tile.pixels * seconds_per_pixel)
+        tile_sizer.measured(tile, tile.pixels * seconds_per_pixel)
     return parts
 
 
@@ -22,7 +22,7 @@ def test_every_pixel_is_in_one_part(extent: tuple[int, int], most: int) -> None:
     if extent[0] * extent[1] > 20_000 and most < 1000:
         extent = (extent[0] // 10, extent[1] // 10)
     covered = np.zeros(extent[::-1], int)
-    for tile in run(*extent, Pace(most), 1e-6):
+    for tile in run(*extent, TileSizer(most), 1e-6):
         assert tile.pixels <= most
         covered[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width] += 1
     assert (covered == 1).all()
@@ -30,31 +30,31 @@ def test_every_pixel_is_in_one_part(extent: tuple[int, int], most: int) -> None:
 
 @pytest.mark.parametrize("pixel_s", [1e-9, 1e-7, 1e-5, 2e-4])
 def test_no_part_is_expected_to_take_long(pixel_s: float) -> None:
-    pace = Pace(10**8)
-    sizes = [tile.pixels * pixel_s for tile in run(1600, 1000, pace, pixel_s)]
+    tile_sizer = TileSizer(10**8)
+    sizes = [tile.pixels * pixel_s for tile in run(1600, 1000, tile_sizer, pixel_s)]
     assert max(sizes[2:], default=0.0) <= TARGET_S * 1.01
     # Once the pace is known, few parts are needed.
-    later = run(1600, 1000, pace, pixel_s)
+    later = run(1600, 1000, tile_sizer, pixel_s)
     whole = 1600 * 1000 * pixel_s
     assert len(later) == 1 if whole < 0.1 else len(later) <= 2.5 * whole / TARGET_S
 
 
 def test_a_small_picture_is_one_part_once_its_time_is_known() -> None:
-    pace = Pace(10**8)
-    assert len(run(640, 480, pace, 5e-8)) > 1
-    assert run(640, 480, pace, 5e-8) == [Tile(0, 0, 640, 480)]
+    tile_sizer = TileSizer(10**8)
+    assert len(run(640, 480, tile_sizer, 5e-8)) > 1
+    assert run(640, 480, tile_sizer, 5e-8) == [Tile(0, 0, 640, 480)]
 
 
 def test_a_sudden_slow_part_makes_the_next_one_small() -> None:
-    pace = Pace(10**8)
-    run(1000, 1000, pace, 1e-6)
-    budget = pace.start(10**6)
-    pace.measured(Tile(0, 0, budget, 1), 1.0)
-    assert pace.next() <= budget * TARGET_S * 1.01
+    tile_sizer = TileSizer(10**8)
+    run(1000, 1000, tile_sizer, 1e-6)
+    budget = tile_sizer.start(10**6)
+    tile_sizer.measured(Tile(0, 0, budget, 1), 1.0)
+    assert tile_sizer.next() <= budget * TARGET_S * 1.01
 
 
 def test_the_drivers_compilation_counts_for_nothing() -> None:
-    pace = Pace(10**8)
-    first = pace.start(10**6)
-    pace.measured(Tile(0, 0, first, 1), 2.0)
-    assert pace.next() == first
+    tile_sizer = TileSizer(10**8)
+    first = tile_sizer.start(10**6)
+    tile_sizer.measured(Tile(0, 0, first, 1), 2.0)
+    assert tile_sizer.next() == first

@@ -158,7 +158,7 @@ class CpuKernel:
             raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
         picture = PICTURES.take((height, width, 4))
         across, down = -(-width // TILE_WIDTH), -(-height // TILE_HEIGHT)
-        job = _Job(self, uniforms, resources, picture)
+        job = _KernelCall(self, uniforms, resources, picture)
         job.set(output=picture.ctypes.data, width=width, height=height)
         job.set(tiles_across=across, tiles=across * down)
         self._run(job, across * down, threads, progress, cancel)
@@ -187,7 +187,7 @@ class CpuKernel:
         runs = max(1, len(kinds_in(shape)))
         target = np.empty(runs * stride, cpu_memory.float_type(self._precision))
         tiles = -(-stride // (TILE_BLOCKS * self._lanes))
-        job = _Job(self, uniforms, resources, source, target)
+        job = _KernelCall(self, uniforms, resources, source, target)
         job.set(input=source.ctypes.data, output=target.ctypes.data, width=stride)
         job.set(tiles=tiles, stride=stride)
         if stride:
@@ -224,7 +224,7 @@ class CpuKernel:
             pixels = np.pad(pixels, ((0, short), (0, 0)), mode="edge")
         source, target = np.ascontiguousarray(pixels), PICTURES.take(pixels.shape)
         tiles = -(-len(pixels) // (TILE_BLOCKS * self._lanes))
-        job = _Job(self, uniforms, resources, source, target)
+        job = _KernelCall(self, uniforms, resources, source, target)
         job.set(input=source.ctypes.data, output=target.ctypes.data)
         job.set(width=len(pixels), tiles=tiles)
         self._run(job, tiles, count, progress, cancel)
@@ -232,7 +232,7 @@ class CpuKernel:
 
     def _run(
         self,
-        job: _Job,
+        job: _KernelCall,
         pieces: int,
         count: int | None,
         progress: Progress | None,
@@ -246,7 +246,7 @@ class CpuKernel:
         self.stats["threads"] = used
         self.stats["render_s"] = time.perf_counter() - started
 
-    def _run_frame(self, job: _Job, cancel: Cancel | None) -> None:
+    def _run_frame(self, job: _KernelCall, cancel: Cancel | None) -> None:
         """The per-frame part: at once, or watched in a thread when it may be long or large."""
         frame = self._frame
         assert frame is not None
@@ -257,7 +257,7 @@ class CpuKernel:
             frame(job.address())
 
 
-class _Job:
+class _KernelCall:
     """The memory of one run, alive as long as a thread may touch it."""
 
     def __init__(

@@ -1,7 +1,7 @@
 """What the processor can do, and the vector shape that suits it.
 
 Input: the operating system's list of features, or a level by name. Output: a
-``Level``: what LLVM is told, and how many lanes a kernel has. Needs no LLVM, so that a stored
+``CpuLevel``: what LLVM is told, and how many lanes a kernel has. Needs no LLVM, so that a stored
 kernel is found without loading it.
 """
 
@@ -22,7 +22,7 @@ FEATURES_VARIABLE: Final = "DISTAL_CPU"
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class CpuLevel:
     """One feature level.
 
     Attributes:
@@ -52,15 +52,16 @@ class Level:
 
 
 LEVELS: Final = (
-    Level("avx512", "x86_64", "x86-64-v4", 16, 4, 8,
-          ("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl", "avx2", "fma", "bmi2")),
-    Level("avx2", "x86_64", "x86-64-v3", 8, 4, 8, ("avx2", "fma", "bmi1", "bmi2", "f16c", "movbe")),
-    Level("sse4.2", "x86_64", "x86-64-v2", 4, 8, 8, ("sse4_2", "ssse3", "popcnt")),
-    Level("neon", "aarch64", "generic", 4, 4, 4, ("asimd",)),
+    CpuLevel("avx512", "x86_64", "x86-64-v4", 16, 4, 8,
+             ("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl", "avx2", "fma", "bmi2")),
+    CpuLevel("avx2", "x86_64", "x86-64-v3", 8, 4, 8,
+             ("avx2", "fma", "bmi1", "bmi2", "f16c", "movbe")),
+    CpuLevel("sse4.2", "x86_64", "x86-64-v2", 4, 8, 8, ("sse4_2", "ssse3", "popcnt")),
+    CpuLevel("neon", "aarch64", "generic", 4, 4, 4, ("asimd",)),
 )  # fmt: skip
 
 
-def level_named(name: str) -> Level:
+def level_named(name: str) -> CpuLevel:
     """The level of that name.
 
     Raises:
@@ -117,7 +118,7 @@ def _from_sysctl() -> frozenset[str]:
 
 
 @cache
-def host_levels() -> tuple[Level, ...]:
+def host_levels() -> tuple[CpuLevel, ...]:
     """The levels this processor can run, the best first."""
     features = host_features()
     here = machine()
@@ -127,7 +128,7 @@ def host_levels() -> tuple[Level, ...]:
     )  # fmt: skip
 
 
-def chosen_level(name: str | None = None) -> Level:
+def chosen_level(name: str | None = None) -> CpuLevel:
     """The level to compile for: the named one, else ``DISTAL_CPU``'s, else the best.
 
     Raises:

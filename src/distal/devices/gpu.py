@@ -26,9 +26,9 @@ from distal.devices import cpu_memory
 from distal.devices.adapters import Adapter, Gpu, chosen, opened, wgpu_module
 from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test
 from distal.devices.driver_errors import rough_names, uses_rough
-from distal.devices.gpu_program import LARGEST_DISPATCH, Program
+from distal.devices.gpu_program import LARGEST_DISPATCH, GpuProgram
 from distal.devices.pool import PICTURES
-from distal.devices.tiles import Pace, Tile, tiles
+from distal.devices.tiles import Tile, TileSizer, tiles
 from distal.ir.nodes import EntryKind, Module
 from distal.ir.target import Target
 from distal.ir.types import VEC4
@@ -126,25 +126,25 @@ class GpuKernel:
         leaves = max(sum(map(leaf_count, self._params)), leaf_count(self._result))
         self._point_bytes = _PIXEL_BYTES if self._is_image else 4 * max(1, leaves)
         self._lock = threading.RLock()
-        self._program: Program | None = None
+        self._program: GpuProgram | None = None
         self._ready()
 
     @property
-    def program(self) -> Program:
+    def program(self) -> GpuProgram:
         """The text on an open device: a new one where the last was lost."""
         return self._ready()
 
-    def _ready(self) -> Program:
+    def _ready(self) -> GpuProgram:
         if self._program is None or self._program.gpu.is_lost:
             gpu = self._open()
             with gpu.commands("compiling"):
-                self._program = Program(gpu, self._artifact, self._types)
+                self._program = GpuProgram(gpu, self._artifact, self._types)
             most = min(
                 gpu.limit("max-storage-buffer-binding-size"),
                 gpu.limit("max-buffer-size"),
                 _LARGEST_PART,
             )
-            self.pace = Pace(most // self._point_bytes)
+            self.tile_sizer = TileSizer(most // self._point_bytes)
             self._memory: dict[str, Any] = {}
         return self._program
 
@@ -174,7 +174,7 @@ class GpuKernel:
                 program.load(resources)
             run = self._draw_part if "fragment" in program.interface["stages"] else self._part
             done = parts = 0
-            for tile in tiles(width, height, self.pace):
+            for tile in tiles(width, height, self.tile_sizer):
                 if wanted():
                     raise Cancelled
                 begin = time.perf_counter()
@@ -185,7 +185,7 @@ class GpuKernel:
                     if parts == 0:
                         program.encode_frame(encoder)
                     run(program, encoder, tile, picture)
-                self.pace.measured(tile, time.perf_counter() - begin)
+                self.tile_sizer.measured(tile, time.perf_counter() - begin)
                 done, parts = done + tile.pixels, parts + 1
                 if progress is not None:
                     progress(done / (width * height))
@@ -196,7 +196,7 @@ class GpuKernel:
             return picture
 
     def _part(
-        self, program: Program, encoder: Any, tile: Tile, picture: NDArray[np.float32]
+        self, program: GpuProgram, encoder: Any, tile: Tile, picture: NDArray[np.float32]
     ) -> None:
         """Compute a part of a picture and read it back."""
         size = tile.pixels * _PIXEL_BYTES
@@ -212,7 +212,7 @@ class GpuKernel:
         self._memory["staging"].unmap()
 
     def _draw_part(
-        self, program: Program, encoder: Any, tile: Tile, picture: NDArray[np.float32]
+        self, program: GpuProgram, encoder: Any, tile: Tile, picture: NDArray[np.float32]
     ) -> None:
         """Draw a part of a picture and read it back."""
         texture, view = self._texture(program, tile)
@@ -233,15 +233,15 @@ class GpuKernel:
 
     # Memory, kept between runs
 
-    def _output(self, program: Program, size: int) -> Any:
+    def _output(self, program: GpuProgram, size: int) -> Any:
         usage = wgpu_module().BufferUsage
         return self._buffer(program, "output", size, usage.STORAGE | usage.COPY_SRC)
 
-    def _staging(self, program: Program, size: int) -> Any:
+    def _staging(self, program: GpuProgram, size: int) -> Any:
         usage = wgpu_module().BufferUsage
         return self._buffer(program, "staging", size, usage.COPY_DST | usage.MAP_READ)
 
-    def _buffer(self, program: Program, name: str, size: int, usage: int) -> Any:
+    def _buffer(self, program: GpuProgram, name: str, size: int, usage: int) -> Any:
         """A buffer of at least that size; grown by half again, so that few are made."""
         buffer = self._memory.get(name)
         if buffer is None or buffer.size < size:
@@ -254,7 +254,7 @@ class GpuKernel:
             self._memory[name] = buffer
         return buffer
 
-    def _texture(self, program: Program, tile: Tile) -> tuple[Any, Any]:
+    def _texture(self, program: GpuProgram, tile: Tile) -> tuple[Any, Any]:
         known = self._memory.get("texture")
         if known is None or known[2] < tile.width or known[3] < tile.height:
             width, height = tile.width, tile.height
@@ -270,12 +270,12 @@ class GpuKernel:
             known = self._memory["texture"] = texture, texture.create_view(), width, height
         return known[0], known[1]
 
-    def _read(self, program: Program, encoder: Any, output: Any, size: int) -> Any:
+    def _read(self, program: GpuProgram, encoder: Any, output: Any, size: int) -> Any:
         staging = self._staging(program, size)
         encoder.copy_buffer_to_buffer(output, 0, staging, 0, size)
         return self._mapped(program, encoder, staging, size)
 
-    def _mapped(self, program: Program, encoder: Any, staging: Any, size: int) -> Any:
+    def _mapped(self, program: GpuProgram, encoder: Any, staging: Any, size: int) -> Any:
         """Submit, wait, and see the bytes; whoever calls unmaps."""
         program.gpu.device.queue.submit([encoder.finish()])
         staging.map_async(wgpu_module().MapMode.READ, 0, size).sync_wait()
@@ -364,15 +364,15 @@ class GpuKernel:
                 program.load(resources)
                 program.set_uniforms(uniforms)
             first = 0
-            budget = self.pace.start(count)
+            budget = self.tile_sizer.start(count)
             while first < count:
                 if wanted():
                     raise Cancelled
                 last, begin = min(first + budget, count), time.perf_counter()
                 with program.gpu.commands():
                     run(first, last)
-                self.pace.measured(Tile(0, 0, last - first, 1), time.perf_counter() - begin)
-                first, budget = last, self.pace.next()
+                self.tile_sizer.measured(Tile(0, 0, last - first, 1), time.perf_counter() - begin)
+                first, budget = last, self.tile_sizer.next()
                 if progress is not None:
                     progress(first / count)
             self.stats["render_s"] = time.perf_counter() - started

@@ -24,7 +24,7 @@ _SAID: Final = re.compile(r"\berror: (.+)")
 LARGEST_DISPATCH: Final = 65535  # workgroups along one axis that every GPU allows
 
 
-class Program:
+class GpuProgram:
     """One text on one device; whoever calls holds the device (``Gpu.commands``).
 
     Attributes:

@@ -12,7 +12,7 @@ import sys
 from functools import cache
 from typing import Any, Final
 
-from distal.devices.features import Level, level_named
+from distal.devices.features import CpuLevel, level_named
 from distal.devices.features import machine as architecture_here
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import printable
@@ -64,7 +64,7 @@ def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:
     return manager, builder
 
 
-def compile_object(text: str, level: Level, *, assembly: bool = False) -> Any:
+def compile_object(text: str, level: CpuLevel, *, assembly: bool = False) -> Any:
     """The object file of a module, or its assembly text.
 
     Raises:
@@ -76,7 +76,7 @@ def compile_object(text: str, level: Level, *, assembly: bool = False) -> Any:
     return _compiled(text, level, assembly)
 
 
-def _compiled_apart(text: str, level: Level, assembly: bool) -> Any:
+def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
     """The same in a process of its own: LLVM ends the process where it gets no memory."""
     path = os.pathsep.join(filter(None, sys.path))
     made = subprocess.run(
@@ -101,7 +101,7 @@ def _serve() -> None:
     sys.stdout.flush()
 
 
-def _compiled(text: str, level: Level, assembly: bool) -> Any:
+def _compiled(text: str, level: CpuLevel, assembly: bool) -> Any:
     llvm = llvm_binding()
     if level.architecture != architecture_here():
         # Every target there is, which takes a tenth of a second.

@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from distal.devices.features import Level
+from distal.devices.features import CpuLevel
 from distal.version import __version__
 
 # What turns a module from the front end into machine code; the front end too, since passes link
@@ -28,7 +28,7 @@ _VERSION_FILE: Final = "_version.py"
 _LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")
 
 
-def kernel_key(level: Level, precision: int, *compiled: str) -> str:
+def kernel_key(level: CpuLevel, precision: int, *compiled: str) -> str:
     """Names machine code.
 
     Args:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
-from distal.devices.features import Level, chosen_level
+from distal.devices.features import CpuLevel, chosen_level
 from distal.devices.jit import compile_object
 from distal.devices.kernel_key import kernel_key
 from distal.packages import PackageError
@@ -53,7 +53,7 @@ def _code(bits: int) -> Executable | None:
         return None
 
 
-def _made(level: Level, bits: int) -> Executable:
+def _made(level: CpuLevel, bits: int) -> Executable:
     text = _text(bits)
     key = kernel_key(level, bits, _NAME, text)
     kept = Cache(default_folder())

@@ -34,7 +34,7 @@ class Tile:
         return self.width * self.height
 
 
-class Pace:
+class TileSizer:
     """How fast one kernel is, and how large its next part may be.
 
     Attributes:
@@ -84,18 +84,18 @@ class Pace:
         return self._budget
 
 
-def tiles(width: int, height: int, pace: Pace) -> Iterator[Tile]:
+def tiles(width: int, height: int, tile_sizer: TileSizer) -> Iterator[Tile]:
     """The parts of a picture, top row first, each sized when it is asked for.
 
     The caller tells the pace what each took before it asks for the next one.
     """
-    y, budget = 0, pace.start(width * height)
+    y, budget = 0, tile_sizer.start(width * height)
     while y < height:
         rows = min(budget // width, height - y)
         if rows == height - y or rows >= _ROW:
             rows -= rows % _ROW if rows < height - y else 0
             yield Tile(0, y, width, rows)
-            budget = pace.next()
+            budget = tile_sizer.next()
         else:  # a row of workgroups is too much: pieces of one
             rows, x = min(_ROW, height - y), 0
             while x < width:
@@ -103,6 +103,6 @@ def tiles(width: int, height: int, pace: Pace) -> Iterator[Tile]:
                 across = across if across < _ROW else across - across % _ROW
                 across = min(across, width - x)
                 yield Tile(x, y, across, rows)
-                budget = pace.next()
+                budget = tile_sizer.next()
                 x += across
         y += rows

@@ -10,7 +10,7 @@ from distal.compiler.driver import run_passes
 from distal.devices.executable import Executable
 from distal.devices.features import (
     LEVELS,
-    Level,
+    CpuLevel,
     chosen_level,
     host_features,
     host_levels,
@@ -34,14 +34,14 @@ def scene(frame: Frame) -> vec4:
     return vec4(total)
 
 
-def text_for(level: Level, precision: int = 32) -> str:
+def text_for(level: CpuLevel, precision: int = 32) -> str:
     return emit_for(run_passes(lower(scene), TARGET, precision), level.lanes(precision)).text
 
 
 @pytest.mark.parametrize("level", LEVELS, ids=lambda level: level.name)
 @pytest.mark.parametrize("precision", [32, 64])
 def test_every_level_compiles(
-    level: Level, precision: int, capfd: pytest.CaptureFixture[str]
+    level: CpuLevel, precision: int, capfd: pytest.CaptureFixture[str]
 ) -> None:
     code = compile_object(text_for(level, precision), level)
     assert b"distal_render" in code
