@@ -19,7 +19,7 @@ from distal.devices import cpu, reference
 from distal.fields.guarantees import UNBOUNDED, Guarantee, Primitive
 from distal.frontend import Assembly, lower
 from distal.frontend.signatures.annotations import to_type
-from distal.frontend.signatures.signatures import MISSING, Header, read_header
+from distal.frontend.signatures.signatures import MISSING, FunctionSignature, read_signature
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, Construct, Expr, FunctionRef, Gradient, Param, Read, Return
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Type, Vector, tuple_type
@@ -45,9 +45,9 @@ class Slot:
         return self.type is not FLOAT and not isinstance(self.type, Vector)
 
 
-def header_of(func: Func) -> Header:
+def header_of(func: Func) -> FunctionSignature:
     """The first line of a function."""
-    header = read_header(func.overloads[0])
+    header = read_signature(func.overloads[0])
     assert not header.problems, header.problems
     return header
 
@@ -55,14 +55,14 @@ def header_of(func: Func) -> Header:
 @cache
 def slots_of(func: Func) -> tuple[Slot, ...]:
     """The numbers and choices of a shape's function."""
-    slots = (Slot(s.name, to_type(s.annotation), s.default) for s in header_of(func).slots)
+    slots = (Slot(s.name, to_type(s.annotation), s.default) for s in header_of(func).parameters)
     return tuple(s for s in slots if s.name not in PLACE)
 
 
 @cache
 def dimension_of(func: Func) -> int:
     """2 for a flat shape, 3 for a solid."""
-    point = to_type(next(s.annotation for s in header_of(func).slots if s.name == "p"))
+    point = to_type(next(s.annotation for s in header_of(func).parameters if s.name == "p"))
     assert isinstance(point, Vector)
     return point.size
 

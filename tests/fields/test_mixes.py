@@ -42,11 +42,13 @@ class MixOf(Composed):
             value = self._numbers[slot.name]
             kind = {bool: BOOL, int: INT}.get(type(value), slot.type)
             given[slot.name] = assembly.constant(value, kind)
-        for slot in header_of(self._row.mix).slots:
+        for slot in header_of(self._row.mix).parameters:
             if slot.name.startswith("slope"):
                 given[slot.name] = assembly.constant(1.0, FLOAT)
         flat = any(
-            str(s.annotation) == "vec2" for s in header_of(self._row.mix).slots if s.name == "p"
+            str(s.annotation) == "vec2"
+            for s in header_of(self._row.mix).parameters
+            if s.name == "p"
         )
         if flat:
             given["p"] = given["q"]
@@ -66,7 +68,7 @@ def _mixes(row: Operator, a: Any, b: Any, rng: np.random.Generator) -> Any:
 
 @pytest.mark.parametrize("row", ROWS)
 def test_a_mix_is_a_share(row: Operator):
-    if {s.annotation for s in header_of(row.mix).slots} & {Bounds, Bounds2}:
+    if {s.annotation for s in header_of(row.mix).parameters} & {Bounds, Bounds2}:
         pytest.skip("asks for boxes; seen in pictures")
     rng = np.random.default_rng(seed_of(f"mix {row.name}"))
     scale = 10.0 ** rng.uniform(-4.0, 1.0, COUNT)

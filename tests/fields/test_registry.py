@@ -97,7 +97,7 @@ def test_a_shape_is_documented(row: Primitive):
     block = re.search(r"^Args:\n((?: +.*\n)+)", text, re.MULTILINE)
     assert block is not None
     explained = re.findall(r"^    (\w+): \S", block[1], re.MULTILINE)
-    assert explained == [s.name for s in header_of(row.distance).slots if s.name != "cell"]
+    assert explained == [s.name for s in header_of(row.distance).parameters if s.name != "cell"]
 
 
 @pytest.mark.parametrize("row", SHAPES)
@@ -107,7 +107,7 @@ def test_a_shape_is_declared_soundly(row: Primitive):
     assert set(row.limits) <= set(slots)
     for rule in (row.bounds, row.slope):
         if isinstance(rule, Func):
-            assert {s.name for s in header_of(rule).slots} <= set(slots)
+            assert {s.name for s in header_of(rule).parameters} <= set(slots)
     if row.requires is not None:
         assert _arguments(row.requires) <= set(slots)
     for slot in slots.values():
@@ -128,7 +128,7 @@ def test_an_operator_is_declared_soundly(row: Operator):
     given = names | RESERVED | {*row.fixed}
     for func in (*functions, row.mix, row.site, row.bounds, row.slope):
         if isinstance(func, Func):
-            unknown = {s.name for s in header_of(func).slots} - given
+            unknown = {s.name for s in header_of(func).parameters} - given
             assert not unknown, f"{func.name} asks for {unknown}"
     assert set(row.limits) <= names
     if row.requires is not None:

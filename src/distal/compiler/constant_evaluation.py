@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from distal.frontend.lowering.builtin_calls import call_with_constants
-from distal.frontend.objects import RefusedError
+from distal.frontend.types.python_objects import RefusedError
 from distal.ir.intrinsics import Intrinsic
 from distal.ir.nodes import Compose, Const, Expr, Splat
 from distal.ir.types import UINT, component_count

@@ -8,7 +8,7 @@ from distal.frontend.lowering.lower import (
     lower_captured,
     lower_overload,
 )
-from distal.frontend.objects import type_of_value
+from distal.frontend.types.python_objects import type_of_value
 
 __all__ = [
     "Assembly",

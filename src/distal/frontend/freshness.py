@@ -1,4 +1,4 @@
-"""Whether what a lowered program took in from Python is still what it was.
+"""Whether the Python objects that a lowered program captured are still the same.
 
 Scene code captures constants when it is lowered. Calling it again may skip the lowering only while
 every name its functions use means the same object as then; a notebook rebinds names all the time.
@@ -22,7 +22,7 @@ from distal.lang.values import MatrixValue, VectorValue
 
 
 class _Missing:
-    """What stands for a name that is not bound."""
+    """The value of a name that is not bound."""
 
 
 _MISSING: Final = _Missing()
@@ -49,7 +49,7 @@ class Captured:
         self._lasting = all(map(_lasts, self._objects))
 
     def is_fresh(self) -> bool:
-        """Whether all of them are the same still; False where that cannot be told."""
+        """Whether all of them are the same still; False where that is not known."""
         if not self._lasting:
             return False
         now = tuple(self._now())
@@ -107,7 +107,7 @@ def _lasts(value: Any) -> bool:
         return all(map(_lasts, value))
     if isinstance(value, (*_UNCHANGING, Func, Overload, ModuleType)):
         return True
-    if _is_struct(value):  # what it holds is looked at besides
+    if _is_struct(value):  # its fields are compared too
         return True
     if getattr(value, "shape", None) == ():  # NumPy's numbers, but not its arrays of one number
         return not hasattr(value, "__setitem__")

@@ -1,7 +1,7 @@
-"""The state of lowering one function's body: its blocks, its locals, what is surely assigned.
+"""The state of lowering one function's body: its blocks, its locals, which of them have a value.
 
 Statement and expression rules (``statements``, ``expressions`` and their neighbours) are functions
-over a ``Body``. A ``Body`` knows names and blocks; it knows no rule of the language.
+over a ``FunctionBody``, which knows names and blocks, and no rule of the language.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from distal.diagnostics import Diagnostic, Span
+from distal.frontend.name_lookup import NameLookup
 from distal.frontend.problems import FollowupError, SceneError
-from distal.frontend.signatures.scopes import Plan
-from distal.frontend.source import SourceMap
+from distal.frontend.scopes import ScopeAnalysis
+from distal.frontend.source import Node, SourceMap
 from distal.frontend.values import Closure, Static, Value
 from distal.ir.build import number
 from distal.ir.nodes import Assign, Compose, Construct, Expr, Let, Param, Read, Stmt, Var
@@ -23,7 +24,7 @@ from distal.ir.types import Array, Kind, Matrix, Scalar, Struct, Type, Vector, i
 from distal.ir.walk import children
 
 if TYPE_CHECKING:
-    from distal.frontend.lowering.compilation import Program
+    from distal.frontend.lowering.compilation import Compilation
 
 # Deeper expressions are split into lets, so that no pass and no driver recurses too far.
 DEEPEST = 60
@@ -45,7 +46,7 @@ class Variable:
     """
 
     name: str
-    owner: Body
+    owner: FunctionBody
     changes: bool
     home: Block | None = None
     ir_name: str = ""
@@ -71,32 +72,23 @@ class Loop:
     at_break: set[Variable] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Names:
-    """Where a function's global and closure names are looked up, and what annotations mean."""
-
-    find: Callable[[str], tuple[bool, Any]]
-    annotation: Callable[[ast.expr], Any]
-    known: Callable[[], set[str]]
-
-
-class Body:
+class FunctionBody:
     """One function body on its way to IR."""
 
     def __init__(
         self,
-        program: Program,
+        compilation: Compilation,
         name: str,
         source: SourceMap,
-        names: Names,
-        plan: Plan,
-        parent: Body | None = None,
+        names: NameLookup,
+        scopes: ScopeAnalysis,
+        parent: FunctionBody | None = None,
     ) -> None:
-        self.program = program
+        self.compilation = compilation
         self.name = name
         self.source = source
         self.names = names
-        self.plan = plan
+        self.scopes = scopes
         self.parent = parent
         self.parameters: dict[str, Variable] = {}
         self.blocks: list[Block] = []
@@ -112,18 +104,18 @@ class Body:
         self.place: Span | None = None  # of the statement that is being lowered
         self._taken: set[str] = set()
         self._depths: dict[Expr, int] = {}
-        self._expression: Callable[[Body, ast.expr], Value] = program.expression
+        self._expression: Callable[[FunctionBody, ast.expr], Value] = compilation.expression
 
     # Places and mistakes
 
-    def span(self, node: ast.expr | ast.stmt | ast.arg | ast.keyword) -> Span:
+    def span(self, node: Node | ast.arg | ast.keyword) -> Span:
         """The author's place of a node."""
         return self.source.span(node)
 
     def problem(
         self,
         message: str,
-        node: ast.expr | ast.stmt | ast.arg | ast.keyword,
+        node: Node | ast.arg | ast.keyword,
         hint: str | None = None,
     ) -> SceneError:
         """A mistake at a node, to be raised."""
@@ -132,7 +124,7 @@ class Body:
     def report(self, diagnostic: Diagnostic) -> None:
         """Note a mistake of this function."""
         self.failed = True
-        self.program.report(diagnostic)
+        self.compilation.report(diagnostic)
 
     # Blocks and statements
 
@@ -181,8 +173,8 @@ class Body:
     def block(self, statements: list[ast.stmt]) -> Iterator[Block]:
         """Collect the statements of an inner block."""
         block = Block({})
-        for plan in self.plan.blocks.get(id(statements), ()):
-            block.variables[plan.name] = Variable(plan.name, self, plan.changes, block)
+        for local in self.scopes.blocks.get(id(statements), ()):
+            block.variables[local.name] = Variable(local.name, self, local.changes, block)
         self.blocks.append(block)
         yield block
         self.blocks.pop()
@@ -219,15 +211,15 @@ class Body:
 
     def find(self, name: str, node: ast.expr) -> Variable | tuple[bool, Any]:
         """A variable of this or an enclosing body, or (found, object) from outside."""
-        body: Body | None = self
+        body: FunctionBody | None = self
         while body is not None:
             variable = body.lookup(name)
             if variable is not None:
                 return variable
-            if name in body.plan.loops:
+            if name in body.scopes.loops:
                 message = f"the loop variable '{name}' has no value outside its loop"
                 raise self.problem(message, node, "assign it to a local inside the loop")
-            if name in body.plan.names:
+            if name in body.scopes.names:
                 raise self.problem(f"'{name}' has no value here", node)
             body = body.parent
         return self.names.find(name)

@@ -2,7 +2,7 @@
 
 An expression raises a ``SceneError``; the statement around it records the diagnostic and lowering
 goes on with the next statement. ``FollowupError`` is raised for a name whose own definition failed:
-its mistake was told once already.
+its mistake was reported already.
 """
 
 from __future__ import annotations

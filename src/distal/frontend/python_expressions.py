@@ -12,14 +12,14 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
-from distal.frontend.lowering.body import Body
-from distal.frontend.lowering.builtin_calls import call_row
-from distal.frontend.objects import RefusedError, fit_constant, value_of
+from distal.frontend.function_body import FunctionBody
+from distal.frontend.lowering.builtin_calls import call_builtin
 from distal.frontend.problems import SceneError
-from distal.frontend.types.coercion import settle, vector_type
+from distal.frontend.types.coercion import vector_type, with_default_type
 from distal.frontend.types.constructors import construct
 from distal.frontend.types.operators import binary, unary
-from distal.frontend.values import Display, Static, Value
+from distal.frontend.types.python_objects import RefusedError, coerce_constant, value_of
+from distal.frontend.values import SequenceValue, Static, Value
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Expr, Uniform
 from distal.ir.types import Type
@@ -45,19 +45,19 @@ _TYPES: Final[dict[str, Type]] = {str(type): type for type in VALUE_CLASSES}
 # What a message of scene code advises, said for Python, where float(...) must give a number.
 _HINTS: Final = {"write float(...) around the int": "an int divided by 1 is a float: (n / 1) * 0.5"}
 
-# Within a function the front end cuts what is deeper into locals; here there are none, and passes
-# that recurse find it inside whatever stands around. It is half of what they were seen to bear.
+# In a function the front end cuts a deeper expression into locals. Here there are no locals, and
+# the passes recurse through the whole expression and what surrounds it. Half of the measured limit.
 DEEPEST: Final = 100
 _depths: Final[WeakKeyDictionary[Expr, int]] = WeakKeyDictionary()
 
-# Stands where the rules ask for the author's syntax: there is none.
+# The rules take the author's syntax for their messages: here there is none.
 _NOWHERE: Final = ast.Call(ast.Name("expression"), [], [])
 
 
 def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
-    """The value of an operator, a row of the table or a vector's or matrix's type, by name.
+    """The value of an operator, a built-in or a vector's or matrix's type, by name.
 
-    None where an operand is nothing that scene code could know.
+    None where an operand is no value of scene code.
 
     Raises:
         TypeError: The operation does not take such operands, or the expression grows too deep.
@@ -68,13 +68,13 @@ def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
     parameters = _Parameters()
     try:
         values = [_value(o, parameters) for o in operands]
-        node = settle(_OUTSIDE, _rule(operation)(values), _NOWHERE)
+        node = with_default_type(_OUTSIDE, _rule(operation)(values), _NOWHERE)
     except RefusedError as refused:
-        raise ValueError(_told(refused.message, refused.hint)) from None
+        raise ValueError(_with_hint(refused.message, refused.hint)) from None
     except SceneError as error:
-        told = error.diagnostic
-        hint = _HINTS.get(told.hint or "", told.hint)
-        raise TypeError(_told(told.message, hint)) from None
+        found = error.diagnostic
+        hint = _HINTS.get(found.hint or "", found.hint)
+        raise TypeError(_with_hint(found.message, hint)) from None
     if _depth(node) > DEEPEST:
         raise TypeError(
             f"this expression has more than {DEEPEST} operations inside one another; "
@@ -84,14 +84,14 @@ def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
 
 
 def _depth(node: Expr) -> int:
-    """How many operations stand inside one another; an operand's is known from its making."""
+    """How many operations are nested; an operand's number is known since it was built."""
     known = _depths.get(node)
     if known is None:
         known = _depths[node] = 1 + max(map(_depth, children(node)), default=0)
     return known
 
 
-class _Outside(Body):
+class _Outside(FunctionBody):
     """Where an expression is built that belongs to no function."""
 
     def __init__(self) -> None:
@@ -139,7 +139,7 @@ def _rule(operation: str) -> Callable[[Sequence[Value]], Value]:
         return lambda v: unary(_OUTSIDE, _UNARY[operation], v[0], _NOWHERE)
     if operation in _TYPES:
         return lambda v: construct(_OUTSIDE, _TYPES[operation], v, _NOWHERE)
-    return lambda v: call_row(_OUTSIDE, INTRINSICS[operation], v, _NOWHERE)
+    return lambda v: call_builtin(_OUTSIDE, INTRINSICS[operation], v, _NOWHERE)
 
 
 def _may_be_value(operand: Any) -> bool:
@@ -154,14 +154,14 @@ def _value(operand: Any, parameters: _Parameters) -> Value:
         operand = operand.tolist()  # NumPy's array of numbers and expressions
     text = repr(operand) if isinstance(operand, int | float) else "the operand"
     value = value_of(operand, text, parameters)
-    if isinstance(value, Display):
+    if isinstance(value, SequenceValue):
         # Outside scene code a short tuple, list or array of numbers is a vector, never an array.
         type = vector_type(value)
-        fitted = None if type is None else fit_constant(value, type)
-        return value if fitted is None else fitted
+        coerced = None if type is None else coerce_constant(value, type)
+        return value if coerced is None else coerced
     assert not isinstance(value, Static), f"{operand!r} passed as a value"
     return value
 
 
-def _told(message: str, hint: str | None) -> str:
+def _with_hint(message: str, hint: str | None) -> str:
     return f"{message}; {hint}" if hint else message

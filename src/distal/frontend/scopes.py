@@ -1,4 +1,4 @@
-"""Where each local of a function lives, found before lowering.
+"""Scope analysis: the block that each local of a function belongs to.
 
 Input: the syntax tree of one function. Output: for each block the locals that
 belong to it, and whether each may change. Knows names only, no types.
@@ -19,7 +19,7 @@ _EVERYTHING = frozenset({"*"})
 
 
 @dataclass(frozen=True, slots=True)
-class LocalPlan:
+class BlockLocal:
     """A local of a block; ``changes`` if a Var is needed instead of a Let."""
 
     name: str
@@ -28,10 +28,10 @@ class LocalPlan:
 
 @dataclass(slots=True)
 class _Block:
-    """Uses of names in one block, without those in its inner blocks."""
+    """Uses of names in one block, without its inner blocks."""
 
     statements: list[ast.stmt]
-    hidden: str | None = None  # the loop variable, which is nobody's local in here
+    hidden: str | None = None  # the loop variable, which is no local in here
     reads: set[str] = field(default_factory=set)
     whole: dict[str, int] = field(default_factory=lambda: defaultdict(int))
     partial: set[str] = field(default_factory=set)
@@ -39,7 +39,7 @@ class _Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class ScopeAnalysis:
     """The locals of a function.
 
     Attributes:
@@ -49,24 +49,24 @@ class Plan:
         changed_parameters: Parameters that are assigned to.
     """
 
-    blocks: dict[int, list[LocalPlan]]
+    blocks: dict[int, list[BlockLocal]]
     names: frozenset[str]
     loops: frozenset[str]
     changed_parameters: frozenset[str]
 
 
-def scan(statements: list[ast.stmt], parameters: set[str]) -> Plan:
-    """Plan the locals of a function with this body."""
+def analyse_scopes(statements: list[ast.stmt], parameters: set[str]) -> ScopeAnalysis:
+    """Find the locals of a function with this body."""
     captures: dict[str, set[str]] = {}
     root = _collect(statements, captures, None)
     # A part assigned does not make a name local: in Python it changes the outer object.
     stored = _stored(root) | (_partly_stored(root) & parameters)
-    blocks: dict[int, list[LocalPlan]] = defaultdict(list)
+    blocks: dict[int, list[BlockLocal]] = defaultdict(list)
     for name in sorted(stored - parameters):
         _place(root, name, blocks)
     names = frozenset(stored | parameters)
     loops = frozenset(_loop_names(root)) - names
-    return Plan(dict(blocks), names, loops, frozenset(stored & parameters))
+    return ScopeAnalysis(dict(blocks), names, loops, frozenset(stored & parameters))
 
 
 def _loop_names(block: _Block) -> Iterator[str]:
@@ -200,7 +200,7 @@ def _mentions(block: _Block, name: str) -> bool:
     return direct or any(_mentions(inner, name) for inner in block.inner)
 
 
-def _place(block: _Block, name: str, blocks: dict[int, list[LocalPlan]]) -> None:
+def _place(block: _Block, name: str, blocks: dict[int, list[BlockLocal]]) -> None:
     """Find the innermost block for a name; several where the uses are independent."""
     direct = name in block.reads or name in block.whole or name in block.partial
     holders = [inner for inner in block.inner if _mentions(inner, name)]
@@ -208,7 +208,7 @@ def _place(block: _Block, name: str, blocks: dict[int, list[LocalPlan]]) -> None
     if direct or not (len(holders) == 1 or separate):
         sites = list(_sites(block, name))
         once = sites == [block] and not _partly(block, name)
-        blocks[id(block.statements)].append(LocalPlan(name, not once))
+        blocks[id(block.statements)].append(BlockLocal(name, not once))
         return
     for holder in holders:
         _place(holder, name, blocks)

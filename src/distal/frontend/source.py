@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from typing import TypeAlias
 
 from distal.diagnostics import CompileError, Span
 from distal.frontend.parsing import parse
 from distal.lang.source import Source
+
+Node: TypeAlias = ast.expr | ast.stmt
 
 
 class SourceMap:
@@ -41,7 +44,7 @@ class SourceMap:
             end = len(encoded[:end].decode(errors="replace")) if end_line == line else len(text)
         return Span(self.file, line, start, end, text, end_line)
 
-    def header(self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) -> Span:
+    def name_span(self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) -> Span:
         """The place of a definition's name, for mistakes about the whole of it."""
         line = node.lineno + self._offset
         text = self.text(line)
@@ -56,7 +59,7 @@ def parse_definition(source: Source, name: str) -> tuple[ast.FunctionDef, Source
     """The ``def`` that begins at the source's first line.
 
     Raises:
-        CompileError: There is no text, or no plain ``def`` of that name stands there.
+        CompileError: There is no text, or no plain ``def`` of that name at the place.
     """
     if not source.lines or source.first_line > len(source.lines):
         raise CompileError.at(

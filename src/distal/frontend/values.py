@@ -15,7 +15,7 @@ from distal.ir.nodes import Const, Expr
 from distal.ir.types import BOOL, FLOAT, INT, UINT, Type
 
 if TYPE_CHECKING:
-    from distal.frontend.lowering.body import Body
+    from distal.frontend.function_body import FunctionBody
 
 LARGEST_FLOAT = 3.4028234663852886e38
 LARGEST_ARRAY = 1 << 16  # components; more belong into a Buffer
@@ -30,7 +30,7 @@ class Whole:
 
 
 @dataclass(frozen=True, slots=True)
-class Display:
+class SequenceValue:
     """``[a, b]`` or ``(a, b)``, or a captured list or tuple; ``is_list`` makes it an array."""
 
     items: tuple[Value, ...]
@@ -52,20 +52,20 @@ class Closure:
 
     Attributes:
         node: Its syntax.
-        owner: The function body it stands in, which has the names it captures.
+        owner: The function body that contains it and has the names it captures.
         name: What the lifted function is called.
         defaults: Values of parameters that have one, by name.
         instances: The lifted functions by argument types.
     """
 
     node: ast.Lambda | ast.FunctionDef
-    owner: Body
+    owner: FunctionBody
     name: str
     defaults: dict[str, Value] = field(default_factory=dict)
     instances: dict[tuple[Type | None, ...], Any] = field(default_factory=dict)
 
 
-Value: TypeAlias = "Expr | Whole | Display | Static | Closure"
+Value: TypeAlias = "Expr | Whole | SequenceValue | Static | Closure"
 
 
 def describe(value: Value) -> str:
@@ -73,7 +73,7 @@ def describe(value: Value) -> str:
     match value:
         case Whole():
             return "int"
-        case Display(items, is_list):
+        case SequenceValue(items, is_list):
             kind = "a list" if is_list else "a tuple"
             return f"{kind} of {len(items)}"
         case Static(_, text):
@@ -92,8 +92,8 @@ def whole_to(value: int, type: Type) -> Expr | None:
         except OverflowError:
             return None
         return Const(number, FLOAT) if abs(number) <= LARGEST_FLOAT else None
-    fitting = WHOLE_RANGES.get(type)
-    return Const(value, type) if fitting is not None and value in fitting else None
+    matching = WHOLE_RANGES.get(type)
+    return Const(value, type) if matching is not None and value in matching else None
 
 
 TRUE, FALSE = Const(True, BOOL), Const(False, BOOL)

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from distal.frontend import lower
-from distal.frontend.signatures.matching import signature_of
-from distal.frontend.signatures.signatures import MISSING, read_header
+from distal.frontend.signatures.signatures import MISSING, read_signature
 from distal.ir.types import Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
@@ -62,16 +61,16 @@ def call_arguments(
     else:
         mistake: TypeError | None = None
         for overload in function.overloads:
-            header = read_header(overload)
-            if header.problems:
+            signature = read_signature(overload)
+            if signature.problems:
                 lower(function)  # raises with the author's lines
             try:
-                defaults = {slot.name: slot.default for slot in header.slots}
-                values = bind(header.name, defaults, args, kwargs)
+                defaults = {slot.name: slot.default for slot in signature.parameters}
+                values = bind(signature.name, defaults, args, kwargs)
             except TypeError as error:
                 mistake = error
                 continue
-            found = choose_types(header, values, dtype)
+            found = choose_types(signature, values, dtype)
             if found is not None:
                 types, rows = found
                 return types, values, rows
@@ -96,7 +95,7 @@ def _takes(function: Func | Composed | LangFunction) -> str:
         params = ", ".join(f"{name}: {type}" for name, type in function.signature)
         overloads = [f"({params}) -> {function.result}"]
     else:
-        overloads = [signature_of(read_header(o)) for o in function.overloads]
+        overloads = [read_signature(o).text() for o in function.overloads]
     return f"it takes {' or '.join(overloads)}, or arrays with a row for each point"
 
 

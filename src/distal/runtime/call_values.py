@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.signatures import MISSING, Header
+from distal.frontend.signatures.signatures import MISSING, FunctionSignature
 from distal.ir.types import (
     FLOAT,
     VEC2,
@@ -65,21 +65,21 @@ def bind(
 
 
 def choose_types(
-    header: Header, values: Sequence[Any], dtype: np.dtype[Any]
+    header: FunctionSignature, values: Sequence[Any], dtype: np.dtype[Any]
 ) -> tuple[tuple[Type, ...], list[Any]] | None:
     """The parameter types under which every value fits and the values as ``lanes``, or None.
 
     A generic parameter tries its type variable's types in order.
     """
     variables: list[TypeVar] = []
-    for slot in header.slots:
+    for slot in header.parameters:
         if isinstance(slot.annotation, TypeVar) and slot.annotation not in variables:
             variables.append(slot.annotation)
     constraints = [v.__constraints__ or (FLOAT, VEC2, VEC3, VEC4) for v in variables]
     for choice in product(*constraints):
         bindings = {v: to_type(c) for v, c in zip(variables, choice, strict=True)}
         try:
-            types = tuple(to_type(s.annotation, bindings) for s in header.slots)
+            types = tuple(to_type(s.annotation, bindings) for s in header.parameters)
         except (AnnotationError, UnboundVariableError):
             return None
         rows = rows_of(values, types, dtype)

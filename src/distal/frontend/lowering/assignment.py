@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import ast
 
-from distal.frontend.lowering.body import Body, Variable
+from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.expressions import element, member
 from distal.frontend.problems import FollowupError, SceneError
-from distal.frontend.types.coercion import conversion_hint, fit, settle, shown_type
+from distal.frontend.source import Node
+from distal.frontend.types.coercion import coerce, conversion_hint, shown_type, with_default_type
 from distal.frontend.types.operators import binary
-from distal.frontend.values import Closure, Display, Static, Value, Whole
+from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import integer
 from distal.ir.nodes import Assign, Const, Expr, Field, Index, Read, Swizzle, Uniform
 from distal.ir.types import FLOAT, INT, Array, Scalar, Struct, Type, Vector, is_static
 from distal.ir.walk import nodes_in
 
 
-def assign(body: Body, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
+def assign(body: FunctionBody, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
     """``target = value``."""
     match target:
         case ast.Name():
@@ -32,7 +33,7 @@ def assign(body: Body, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
             raise body.problem("this cannot be assigned to", target)
 
 
-def local(body: Body, target: ast.Name) -> Variable:
+def local(body: FunctionBody, target: ast.Name) -> Variable:
     """The local that a name being assigned stands for."""
     variable = body.lookup(target.id)
     assert variable is not None, target.id
@@ -42,7 +43,7 @@ def local(body: Body, target: ast.Name) -> Variable:
     return variable
 
 
-def _assign_name(body: Body, target: ast.Name, value: Value, stmt: ast.stmt) -> None:
+def _assign_name(body: FunctionBody, target: ast.Name, value: Value, stmt: ast.stmt) -> None:
     variable = local(body, target)
     if isinstance(value, Static | Closure) or is_static(getattr(value, "type", INT)):
         _assign_static(body, variable, value, target)
@@ -50,25 +51,25 @@ def _assign_name(body: Body, target: ast.Name, value: Value, stmt: ast.stmt) -> 
     if variable.static is not None:
         raise body.problem(f"'{variable.name}' is a function and does not change", target)
     if variable.type is None:
-        expr = settle(body, value, value_node(stmt))
+        expr = with_default_type(body, value, value_node(stmt))
     else:
-        fitted = fit(body, value, variable.type, value_node(stmt))
-        if fitted is None:
+        coerced = coerce(body, value, variable.type, value_node(stmt))
+        if coerced is None:
             raise _changed_type(body, variable.name, variable.type, value, stmt)
-        expr = fitted
+        expr = coerced
     starts = not variable.ir_name
     body.store(variable, expr, stmt)
     if starts and isinstance(value, Whole):
         body.whole_starts[variable.ir_name] = value.value
 
 
-def value_node(stmt: ast.stmt) -> ast.expr | ast.stmt:
+def value_node(stmt: ast.stmt) -> Node:
     """The right side of an assignment, for its mistakes."""
     value = getattr(stmt, "value", None)
     return value if isinstance(value, ast.expr) else stmt
 
 
-def _assign_static(body: Body, variable: Variable, value: Value, target: ast.Name) -> None:
+def _assign_static(body: FunctionBody, variable: Variable, value: Value, target: ast.Name) -> None:
     """A local name for a function, a type or a resource: at compile time only."""
     if variable.changes or variable.type is not None:
         message = f"'{variable.name}' cannot change what function it stands for"
@@ -77,7 +78,9 @@ def _assign_static(body: Body, variable: Variable, value: Value, target: ast.Nam
     body.assigned.add(variable)
 
 
-def _changed_type(body: Body, name: str, type: Type, value: Value, stmt: ast.stmt) -> SceneError:
+def _changed_type(
+    body: FunctionBody, name: str, type: Type, value: Value, stmt: ast.stmt
+) -> SceneError:
     given = shown_type(value)
     hint = conversion_hint(value, type)
     if type is INT and given == str(FLOAT):
@@ -85,15 +88,17 @@ def _changed_type(body: Body, name: str, type: Type, value: Value, stmt: ast.stm
     return body.problem(f"'{name}' is {type} and cannot become {given}", stmt, hint)
 
 
-def _assign_part(body: Body, place: Expr, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
-    fitted = fit(body, value, place.type, value_node(stmt))
-    if fitted is None:
+def _assign_part(
+    body: FunctionBody, place: Expr, target: ast.expr, value: Value, stmt: ast.stmt
+) -> None:
+    coerced = coerce(body, value, place.type, value_node(stmt))
+    if coerced is None:
         message = f"'{ast.unparse(target)}' is {place.type}, not {shown_type(value)}"
         raise body.problem(message, stmt, conversion_hint(value, place.type))
-    body.emit(Assign(place, fitted, span=body.span(stmt)))
+    body.emit(Assign(place, coerced, span=body.span(stmt)))
 
 
-def lvalue(body: Body, target: ast.expr) -> Expr:
+def lvalue(body: FunctionBody, target: ast.expr) -> Expr:
     """The place that ``v.xy``, ``a[i]`` or ``hit.color`` names, rooted in a local."""
     match target:
         case ast.Name():
@@ -113,7 +118,7 @@ def lvalue(body: Body, target: ast.expr) -> Expr:
             raise body.problem("this cannot be assigned to", target, "assign it to a local first")
 
 
-def _root(body: Body, target: ast.Name) -> Expr:
+def _root(body: FunctionBody, target: ast.Name) -> Expr:
     variable = body.lookup(target.id)
     if variable is None:
         message = f"'{target.id}' belongs to the module or to an outer function and cannot change"
@@ -129,7 +134,7 @@ def _root(body: Body, target: ast.Name) -> Expr:
 
 
 def _unpack(
-    body: Body, target: ast.expr, elements: list[ast.expr], value: Value, stmt: ast.stmt
+    body: FunctionBody, target: ast.expr, elements: list[ast.expr], value: Value, stmt: ast.stmt
 ) -> None:
     items = _items(body, value, len(elements), target, stmt)
     if len(items) > 1 and _depend(body, items, elements):
@@ -139,17 +144,17 @@ def _unpack(
         assign(body, element_target, item, stmt)
 
 
-def _held(body: Body, value: Value) -> Value:
+def _held(body: FunctionBody, value: Value) -> Value:
     match value:
         case Whole() | Static() | Closure() | Const() | Uniform():
             return value
-        case Display(items, is_list, captured):
-            return Display(tuple(_held(body, i) for i in items), is_list, captured)
+        case SequenceValue(items, is_list, captured):
+            return SequenceValue(tuple(_held(body, i) for i in items), is_list, captured)
         case _:
             return body.hold("value", value)
 
 
-def _depend(body: Body, items: list[Value], targets: list[ast.expr]) -> bool:
+def _depend(body: FunctionBody, items: list[Value], targets: list[ast.expr]) -> bool:
     """Whether a value reads a local that an assignment before it may have changed."""
     names = {n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)}
     variables = (body.lookup(name) for name in names)
@@ -161,23 +166,25 @@ def _reads(value: Value, names: set[str]) -> bool:
     match value:
         case Whole() | Static() | Closure():
             return False
-        case Display(items):
+        case SequenceValue(items):
             return any(_reads(i, names) for i in items)
         case _:
             return any(isinstance(e, Read) and e.name in names for e in nodes_in(value))
 
 
-def _items(body: Body, value: Value, count: int, target: ast.expr, stmt: ast.stmt) -> list[Value]:
-    if isinstance(value, Display):
+def _items(
+    body: FunctionBody, value: Value, count: int, target: ast.expr, stmt: ast.stmt
+) -> list[Value]:
+    if isinstance(value, SequenceValue):
         items = list(value.items)
     else:
-        items = _parts(body, settle(body, value, value_node(stmt)), stmt)
+        items = _parts(body, with_default_type(body, value, value_node(stmt)), stmt)
     if len(items) != count:
         raise body.problem(f"{count} names cannot take {len(items)} values", target)
     return items
 
 
-def _parts(body: Body, value: Expr, stmt: ast.stmt) -> list[Value]:
+def _parts(body: FunctionBody, value: Expr, stmt: ast.stmt) -> list[Value]:
     match value.type:
         case Struct(_, fields, True):
             held = body.bind("values", value)
@@ -192,7 +199,7 @@ def _parts(body: Body, value: Expr, stmt: ast.stmt) -> list[Value]:
             raise body.problem(f"{value.type} does not unpack", value_node(stmt))
 
 
-def augment(body: Body, stmt: ast.AugAssign) -> None:
+def augment(body: FunctionBody, stmt: ast.AugAssign) -> None:
     """``target op= value``."""
     if isinstance(stmt.target, ast.Name):
         variable = local(body, stmt.target)

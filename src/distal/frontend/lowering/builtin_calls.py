@@ -1,4 +1,4 @@
-"""Calls of table rows: which signature fits the arguments, and what is splatted for it."""
+"""Calls of built-ins: choose the signature for the arguments, and widen scalars to it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any, Final
 
-from distal.frontend.lowering.body import Body
-from distal.frontend.objects import fit_constant, lang_value, number_of
+from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError
-from distal.frontend.types.coercion import fit, natural_type, settle, shown_type
+from distal.frontend.types.coercion import coerce, default_type, shown_type, with_default_type
 from distal.frontend.types.powers import power
-from distal.frontend.values import Closure, Display, Static, Value, Whole
+from distal.frontend.types.python_objects import coerce_constant, lang_value, number_of
+from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import splat
 from distal.ir.intrinsics import INTRINSICS, Intrinsic, python_functions
 from distal.ir.nodes import Builtin, Expr
@@ -47,7 +47,7 @@ _RESULTS: Final[dict[object, str]] = {
 
 @cache
 def exact_instances(name: str) -> dict[tuple[Type, ...], Type]:
-    """Every instance of a row: argument types to result."""
+    """Every instance of a built-in: argument types to result."""
     instances: dict[tuple[Type, ...], Type] = {}
     for signature in INTRINSICS[name].signatures:
         for params, result in signature.instances():
@@ -57,7 +57,7 @@ def exact_instances(name: str) -> dict[tuple[Type, ...], Type]:
 
 @cache
 def _instances(name: str) -> tuple[tuple[tuple[Type, ...], Type, bool], ...]:
-    """(parameter types, result, whether a scalar may stand for a vector), in the table's order."""
+    """(parameter types, result, whether scalars widen to vectors), in the table's order."""
     return tuple(
         (params, result, _splats(signature))
         for signature in INTRINSICS[name].signatures
@@ -71,37 +71,41 @@ def _splats(signature: Signature) -> bool:
     return componentwise and any(isinstance(t, Scalar) for t in signature.over)
 
 
-def call_row(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) -> Value:
-    """``row(args)``."""
-    if row.name in ("min", "max") and len(args) > 2:
-        return _nary(body, row, args, node)
-    if len(args) != len(row.args):
-        message = f"'{row.name}' takes {_counted(len(row.args), 'argument')}, got {len(args)}"
-        raise body.problem(message, node, signature_text(row))
-    if row.name == "pow" and not isinstance(args[1], Display | Static | Closure):
+def call_builtin(
+    body: FunctionBody, intrinsic: Intrinsic, args: Sequence[Value], node: ast.expr
+) -> Value:
+    """``intrinsic(args)``."""
+    if intrinsic.name in ("min", "max") and len(args) > 2:
+        return _nary(body, intrinsic, args, node)
+    if len(args) != len(intrinsic.args):
+        message = (
+            f"'{intrinsic.name}' takes {_counted(len(intrinsic.args), 'argument')}, got {len(args)}"
+        )
+        raise body.problem(message, node, signature_text(intrinsic))
+    if intrinsic.name == "pow" and not isinstance(args[1], SequenceValue | Static | Closure):
         return power(body, args[0], args[1], node)
-    types = tuple(None if isinstance(a, Whole) else natural_type(a) for a in args)
-    result = exact_instances(row.name).get(types)  # type: ignore[arg-type]  # None finds nothing
+    types = tuple(None if isinstance(a, Whole) else default_type(a) for a in args)
+    result = exact_instances(intrinsic.name).get(types)  # type: ignore[arg-type]  # None finds nothing
     if result is not None:
-        settled = tuple(settle(body, a, node) for a in args)
-        return Builtin(row.name, settled, result, span=body.span(node))
-    best = _best(row.name, args)
+        typed = tuple(with_default_type(body, a, node) for a in args)
+        return Builtin(intrinsic.name, typed, result, span=body.span(node))
+    best = _best(intrinsic.name, args)
     if best is None:
-        raise _mismatch(body, row, args, node)
+        raise _mismatch(body, intrinsic, args, node)
     params, result = best
-    fitted = tuple(_fit(body, a, t, node) for a, t in zip(args, params, strict=True))
-    return Builtin(row.name, fitted, result, span=body.span(node))
+    coerced = tuple(_coerce(body, a, t, node) for a, t in zip(args, params, strict=True))
+    return Builtin(intrinsic.name, coerced, result, span=body.span(node))
 
 
 def _counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def _nary(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) -> Value:
+def _nary(body: FunctionBody, intrinsic: Intrinsic, args: Sequence[Value], node: ast.expr) -> Value:
     """Min and max of many, left to right: the first of equals wins, as with two."""
     total = args[0]
     for arg in args[1:]:
-        total = call_row(body, row, (total, arg), node)
+        total = call_builtin(body, intrinsic, (total, arg), node)
         assert isinstance(total, Builtin)
         total = body.shallow(total)
     return total
@@ -124,11 +128,11 @@ def _score(args: Sequence[Value], params: Sequence[Type], *, splats: bool) -> in
             score = _LITERAL_SCORES.get(type)
             if score is None and splats and isinstance(type, Vector):
                 score = 0
-        elif isinstance(arg, Display):
-            score = 3 if _display_fits(arg, type) else None
+        elif isinstance(arg, SequenceValue):
+            score = 3 if _sequence_matches(arg, type) else None
             exact = exact or score is not None
         else:
-            given = natural_type(arg)
+            given = default_type(arg)
             score = 3 if given is type else None
             exact = exact or score is not None
             if score is None and splats and isinstance(type, Vector):
@@ -136,45 +140,45 @@ def _score(args: Sequence[Value], params: Sequence[Type], *, splats: bool) -> in
         if score is None:
             return None
         total += score
-    # Something must say that vectors or unsigned numbers are meant.
+    # Literals alone mean float or int: vectors and unsigned numbers need an argument of the type.
     plain = all(p is FLOAT or p is INT for p in params)
     return total if exact or plain else None
 
 
-def _display_fits(display: Display, type: Type) -> bool:
-    if not isinstance(type, Vector) or len(display.items) != type.size:
-        return natural_type(display) is type
-    if display.is_list and not display.captured:
+def _sequence_matches(sequence: SequenceValue, type: Type) -> bool:
+    if not isinstance(type, Vector) or len(sequence.items) != type.size:
+        return default_type(sequence) is type
+    if sequence.is_list and not sequence.captured:
         return False
     scalar = Scalar(type.kind)
-    return all(isinstance(i, Whole) or natural_type(i) is scalar for i in display.items)
+    return all(isinstance(i, Whole) or default_type(i) is scalar for i in sequence.items)
 
 
-def _fit(body: Body, value: Value, type: Type, node: ast.expr) -> Expr:
-    if isinstance(type, Vector) and isinstance(natural_type(value), Scalar):
-        return splat(_fit(body, value, Scalar(type.kind), node), type)
-    fitted = fit(body, value, type, node)
-    assert fitted is not None
-    return fitted
+def _coerce(body: FunctionBody, value: Value, type: Type, node: ast.expr) -> Expr:
+    if isinstance(type, Vector) and isinstance(default_type(value), Scalar):
+        return splat(_coerce(body, value, Scalar(type.kind), node), type)
+    coerced = coerce(body, value, type, node)
+    assert coerced is not None
+    return coerced
 
 
-def call_with_constants(row: Intrinsic, args: Sequence[Any]) -> Expr | None:
-    """The call of a row with Python numbers, vectors or matrices; None where it takes no such.
+def call_with_constants(intrinsic: Intrinsic, args: Sequence[Any]) -> Expr | None:
+    """The call of a built-in with Python numbers, vectors or matrices; None if it takes no such.
 
     Raises:
         RefusedError: An argument is no constant of scene code.
     """
-    values = [_plain_value(a, f"an argument of {row.name}") for a in args]
+    values = [_plain_value(a, f"an argument of {intrinsic.name}") for a in args]
     known = [v for v in values if v is not None]
-    if len(known) < len(values) or len(values) != len(row.args):
+    if len(known) < len(values) or len(values) != len(intrinsic.args):
         return None
-    best = _best(row.name, known)
+    best = _best(intrinsic.name, known)
     if best is None:
         return None
     params, result = best
-    fitted = [_fit_constant(v, t) for v, t in zip(known, params, strict=True)]
-    exprs = tuple(f for f in fitted if f is not None)
-    return Builtin(row.name, exprs, result) if len(exprs) == len(fitted) else None
+    coerced = [_coerce_constant(v, t) for v, t in zip(known, params, strict=True)]
+    exprs = tuple(f for f in coerced if f is not None)
+    return Builtin(intrinsic.name, exprs, result) if len(exprs) == len(coerced) else None
 
 
 def _plain_value(arg: Any, text: str) -> Value | None:
@@ -183,31 +187,35 @@ def _plain_value(arg: Any, text: str) -> Value | None:
     return number_of(arg, text)
 
 
-def _fit_constant(value: Value, type: Type) -> Expr | None:
-    if isinstance(type, Vector) and isinstance(natural_type(value), Scalar):
-        scalar = fit_constant(value, Scalar(type.kind))
+def _coerce_constant(value: Value, type: Type) -> Expr | None:
+    if isinstance(type, Vector) and isinstance(default_type(value), Scalar):
+        scalar = coerce_constant(value, Scalar(type.kind))
         return None if scalar is None else splat(scalar, type)
-    return fit_constant(value, type)
+    return coerce_constant(value, type)
 
 
-def _mismatch(body: Body, row: Intrinsic, args: Sequence[Value], node: ast.expr) -> SceneError:
+def _mismatch(
+    body: FunctionBody, intrinsic: Intrinsic, args: Sequence[Value], node: ast.expr
+) -> SceneError:
     for arg in args:
         if isinstance(arg, Static | Closure):
-            settle(body, arg, node)
+            with_default_type(body, arg, node)
     types = [shown_type(a) for a in args]
     distinct = list(dict.fromkeys(types))
     shown = distinct[0] if len(distinct) == 1 else ", ".join(types)
-    return body.problem(f"'{row.name}' does not take {shown}", node, signature_text(row))
+    return body.problem(
+        f"'{intrinsic.name}' does not take {shown}", node, signature_text(intrinsic)
+    )
 
 
-def signature_text(row: Intrinsic) -> str:
-    """A row in an author's words: ``length(v) -> float, v: vec2 | vec3 | vec4``."""
-    signature = row.signatures[0]
-    over = " | ".join(dict.fromkeys(str(t) for s in row.signatures for t in s.over))
+def signature_text(intrinsic: Intrinsic) -> str:
+    """A built-in's signature for hints: ``length(v) -> float, v: vec2 | vec3 | vec4``."""
+    signature = intrinsic.signatures[0]
+    over = " | ".join(dict.fromkeys(str(t) for s in intrinsic.signatures for t in s.over))
     result = _RESULTS.get(signature.result, str(signature.result))
-    if len(row.args) == 1 and result != "T":
-        (only,) = row.args
-        return f"{row.name}({only}) -> {result}, {only}: {over}"
-    patterns = zip(row.args, signature.params, strict=True)
+    if len(intrinsic.args) == 1 and result != "T":
+        (only,) = intrinsic.args
+        return f"{intrinsic.name}({only}) -> {result}, {only}: {over}"
+    patterns = zip(intrinsic.args, signature.params, strict=True)
     params = ", ".join(f"{n}: {'T' if p is Follows.T else p}" for n, p in patterns)
-    return f"{row.name}({params}) -> {result}, T: {over}"
+    return f"{intrinsic.name}({params}) -> {result}, T: {over}"

@@ -10,14 +10,14 @@ from types import FunctionType as PythonFunction
 from types import ModuleType
 from typing import Any, Final
 
-from distal.frontend.lowering.body import Body
-from distal.frontend.lowering.builtin_calls import PYTHON_FUNCTIONS, call_row
+from distal.frontend.function_body import FunctionBody
+from distal.frontend.lowering.builtin_calls import PYTHON_FUNCTIONS, call_builtin
 from distal.frontend.problems import SceneError
 from distal.frontend.signatures.annotations import AnnotationError, to_type
-from distal.frontend.types.coercion import fit_or_refuse, settle, shown_type
+from distal.frontend.types.coercion import coerce_or_raise, shown_type, with_default_type
 from distal.frontend.types.constructors import construct, construct_struct, length_of
-from distal.frontend.types.unification import meet
-from distal.frontend.values import Closure, Display, Static, Value, Whole
+from distal.frontend.types.unification import unify_operands
+from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import splat
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Apply, Expr, Gradient, Sample, Select, Size, Texel
@@ -65,15 +65,15 @@ _HINTS: Final[dict[Any, str]] = {
 }
 
 
-def lower_call(body: Body, node: ast.Call) -> Value:
+def lower_call(body: FunctionBody, node: ast.Call) -> Value:
     """``function(arguments)``."""
     called = body.expression(node.func)
     match called:
         case Static(obj, text):
             return _static_call(body, obj, text, node)
         case Closure():
-            return body.program.call_closure(body, called, arguments(body, node), node)
-        case Whole() | Display():
+            return body.compilation.call_closure(body, called, arguments(body, node), node)
+        case Whole() | SequenceValue():
             raise body.problem(f"{shown_type(called)} is not a function", node.func)
         case _:
             if isinstance(called.type, FunctionType):
@@ -81,7 +81,7 @@ def lower_call(body: Body, node: ast.Call) -> Value:
             raise body.problem(f"{called.type} is not a function", node.func)
 
 
-def arguments(body: Body, node: ast.Call) -> list[Value]:
+def arguments(body: FunctionBody, node: ast.Call) -> list[Value]:
     """The positional arguments, lowered."""
     for arg in node.args:
         if isinstance(arg, ast.Starred):
@@ -89,23 +89,23 @@ def arguments(body: Body, node: ast.Call) -> list[Value]:
     return [body.expression(a) for a in node.args]
 
 
-def _static_call(body: Body, obj: Any, text: str, node: ast.Call) -> Value:
+def _static_call(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> Value:
     if isinstance(obj, Func):
-        return body.program.call(body, obj, arguments(body, node), node)
+        return body.compilation.call(body, obj, arguments(body, node), node)
     if isinstance(obj, Composed):
-        return _apply(body, body.program.composed(obj).reference(), node, text)
-    row = obj.row if isinstance(obj, LangFunction) else _python_row(obj)
-    if row is not None:
+        return _apply(body, body.compilation.composed(obj).reference(), node, text)
+    intrinsic = obj.row if isinstance(obj, LangFunction) else _python_builtin(obj)
+    if intrinsic is not None:
         args = arguments(body, node)
         if node.keywords:
-            args = _row_keywords(body, row.name, row.args, args, node)
-        return call_row(body, row, args, node)
+            args = _builtin_arguments(body, intrinsic.name, intrinsic.args, args, node)
+        return call_builtin(body, intrinsic, args, node)
     if isinstance(obj, LangForm):
         return _form(body, obj, node)
     if obj is len:
         args = _exactly(body, "len", 1, node)
         value = args[0]
-        if not isinstance(value, Whole | Display | Static | Closure) and isinstance(
+        if not isinstance(value, Whole | SequenceValue | Static | Closure) and isinstance(
             value.type, Buffer
         ):
             return Size(value, INT, span=body.span(node))
@@ -115,28 +115,28 @@ def _static_call(body: Body, obj: Any, text: str, node: ast.Call) -> Value:
     raise _not_scene_code(body, obj, text, node)
 
 
-def _python_row(obj: Any) -> Any:
+def _python_builtin(obj: Any) -> Any:
     try:
         return PYTHON_FUNCTIONS.get(obj)
     except TypeError:  # not hashable
         return None
 
 
-def _row_keywords(
-    body: Body, name: str, names: Sequence[str], args: list[Value], node: ast.Call
+def _builtin_arguments(
+    body: FunctionBody, name: str, names: Sequence[str], args: list[Value], node: ast.Call
 ) -> list[Value]:
-    slots: dict[str, Value] = dict(zip(names, args, strict=False))
+    parameters: dict[str, Value] = dict(zip(names, args, strict=False))
     for keyword in node.keywords:
         if keyword.arg is None or keyword.arg not in names:
             hint = f"its arguments: {', '.join(names)}"
             raise body.problem(f"'{name}' has no argument '{keyword.arg}'", keyword, hint)
-        if keyword.arg in slots:
+        if keyword.arg in parameters:
             raise body.problem(f"'{name}' gets argument '{keyword.arg}' twice", keyword)
-        slots[keyword.arg] = body.expression(keyword.value)
-    return [slots[n] for n in names if n in slots]
+        parameters[keyword.arg] = body.expression(keyword.value)
+    return [parameters[n] for n in names if n in parameters]
 
 
-def _type_call(body: Body, cls: type, text: str, node: ast.Call) -> Value:
+def _type_call(body: FunctionBody, cls: type, text: str, node: ast.Call) -> Value:
     if "__distal_struct__" in vars(cls):
         return construct_struct(body, cls, arguments(body, node), node)
     try:
@@ -146,7 +146,7 @@ def _type_call(body: Body, cls: type, text: str, node: ast.Call) -> Value:
     return construct(body, type, arguments(body, node), node)
 
 
-def _not_scene_code(body: Body, obj: Any, text: str, node: ast.Call) -> SceneError:
+def _not_scene_code(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> SceneError:
     hint = None
     with suppress(TypeError):  # not hashable
         hint = _HINTS.get(obj)
@@ -166,21 +166,21 @@ def _not_scene_code(body: Body, obj: Any, text: str, node: ast.Call) -> SceneErr
     return body.problem(f"'{text}' is not a function of scene code", node.func, hint)
 
 
-def _apply(body: Body, function: Expr, node: ast.Call, name: str | None = None) -> Expr:
+def _apply(body: FunctionBody, function: Expr, node: ast.Call, name: str | None = None) -> Expr:
     """Call a function value: a parameter, or what an object stands for."""
     type = function.type
     assert isinstance(type, FunctionType)
     name = name or ast.unparse(node.func)
     args = _exactly(body, name, len(type.params), node)
-    fitted = tuple(
-        fit_or_refuse(body, a, t, at, f"argument {i} of '{name}'")
+    coerced = tuple(
+        coerce_or_raise(body, a, t, at, f"argument {i} of '{name}'")
         for i, (a, t, at) in enumerate(zip(args, type.params, node.args, strict=True), 1)
     )
-    return Apply(function, fitted, type.result, span=body.span(node))
+    return Apply(function, coerced, type.result, span=body.span(node))
 
 
 def _exactly(
-    body: Body, name: str, count: int, node: ast.Call, hint: str | None = None
+    body: FunctionBody, name: str, count: int, node: ast.Call, hint: str | None = None
 ) -> list[Value]:
     if node.keywords:
         raise body.problem(f"'{name}' takes no keyword arguments", node.keywords[0], hint)
@@ -191,15 +191,15 @@ def _exactly(
     return args
 
 
-def _form(body: Body, form: LangForm, node: ast.Call) -> Value:
+def _form(body: FunctionBody, form: LangForm, node: ast.Call) -> Value:
     count = form.signature.count(",") + 1
     args = _exactly(body, form.name, count, node, form.signature)
     return _FORMS[form](body, args, node)
 
 
-def _select(body: Body, args: list[Value], node: ast.Call) -> Value:
-    test = settle(body, args[0], node.args[0])
-    yes, no = meet(body, args[1], args[2], node, "select")
+def _select(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
+    test = with_default_type(body, args[0], node.args[0])
+    yes, no = unify_operands(body, args[1], args[2], node, "select")
     match test.type:
         case Scalar(Kind.BOOL):
             return Select(test, yes, no, yes.type, span=body.span(node))
@@ -217,42 +217,44 @@ def _select(body: Body, args: list[Value], node: ast.Call) -> Value:
             raise body.problem(message, node.args[0], hint)
 
 
-def _gradient(body: Body, args: list[Value], node: ast.Call, *, with_value: bool) -> Value:
-    point = settle(body, args[1], node.args[1])
+def _gradient(body: FunctionBody, args: list[Value], node: ast.Call, *, with_value: bool) -> Value:
+    point = with_default_type(body, args[1], node.args[1])
     if point.type not in (FLOAT, VEC2, VEC3, VEC4):
         hint = "the point is a float or a vec2 to vec4"
         raise body.problem(f"there is no gradient at {point.type}", node.args[1], hint)
     wanted = FunctionType((point.type,), FLOAT)
     name = "value_and_gradient" if with_value else "gradient"
     what = f"the field of '{name}'"
-    field = fit_or_refuse(body, args[0], wanted, node.args[0], what)
+    field = coerce_or_raise(body, args[0], wanted, node.args[0], what)
     type = tuple_type((FLOAT, point.type)) if with_value else point.type
     return Gradient(field, point, with_value, type, span=body.span(node))
 
 
-def _texture(body: Body, value: Value, name: str, node: ast.Call) -> tuple[Expr, TextureShape]:
-    texture = settle(body, value, node.args[0])
+def _texture(
+    body: FunctionBody, value: Value, name: str, node: ast.Call
+) -> tuple[Expr, TextureShape]:
+    texture = with_default_type(body, value, node.args[0])
     if not isinstance(texture.type, Texture):
         raise body.problem(f"'{name}' takes a texture, not {texture.type}", node.args[0])
     return texture, texture.type.shape
 
 
-def _sample(body: Body, args: list[Value], node: ast.Call) -> Value:
+def _sample(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
     texture, shape = _texture(body, args[0], "sample", node)
     wanted = VEC2 if shape is TextureShape.FLAT else VEC3
     what = f"the place in a {shape.value}"
-    return Sample(texture, fit_or_refuse(body, args[1], wanted, node.args[1], what), VEC4)
+    return Sample(texture, coerce_or_raise(body, args[1], wanted, node.args[1], what), VEC4)
 
 
-def _texel(body: Body, args: list[Value], node: ast.Call) -> Value:
+def _texel(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
     texture, shape = _texture(body, args[0], "texel", node)
     wanted = IVEC2 if shape is TextureShape.FLAT else IVEC3
     what = f"the index of a {shape.value}"
-    return Texel(texture, fit_or_refuse(body, args[1], wanted, node.args[1], what), VEC4)
+    return Texel(texture, coerce_or_raise(body, args[1], wanted, node.args[1], what), VEC4)
 
 
-def _size(body: Body, args: list[Value], node: ast.Call) -> Value:
-    resource = settle(body, args[0], node.args[0])
+def _size(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
+    resource = with_default_type(body, args[0], node.args[0])
     match resource.type:
         case Texture(shape):
             return Size(resource, IVEC3 if shape is TextureShape.VOLUME else IVEC2)
@@ -264,7 +266,7 @@ def _size(body: Body, args: list[Value], node: ast.Call) -> Value:
             raise body.problem(message, node.args[0], hint)
 
 
-_FORMS: Final[dict[LangForm, Callable[[Body, list[Value], ast.Call], Value]]] = {
+_FORMS: Final[dict[LangForm, Callable[[FunctionBody, list[Value], ast.Call], Value]]] = {
     select: _select,
     gradient: lambda body, args, node: _gradient(body, args, node, with_value=False),
     value_and_gradient: lambda body, args, node: _gradient(body, args, node, with_value=True),

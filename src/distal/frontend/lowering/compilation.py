@@ -11,16 +11,15 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from distal.diagnostics import CompileError, Diagnostic, Span
-from distal.frontend.lowering import lambda_lifting as lifting
-from distal.frontend.lowering import scene_calls as calling
+from distal.frontend.function_body import FunctionBody
+from distal.frontend.lowering import lambda_lifting, scene_calls
 from distal.frontend.lowering.assembly import Assembly
-from distal.frontend.lowering.body import Body
 from distal.frontend.lowering.expressions import lower_expression
+from distal.frontend.lowering.instances import Instance
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.instances import Instance
-from distal.frontend.signatures.matching import signature_of
-from distal.frontend.signatures.signatures import Header, read_header
+from distal.frontend.signatures.signatures import FunctionSignature, read_signature
+from distal.frontend.source import Node
 from distal.frontend.values import Closure, Value
 from distal.ir.nodes import (
     EntryKind,
@@ -42,21 +41,21 @@ from distal.lang.resources import Buffer as LangBuffer
 from distal.lang.resources import TextureValue
 
 
-class Program:
+class Compilation:
     """The state of one compilation."""
 
     def __init__(self) -> None:
-        self.expression: Callable[[Body, ast.expr], Value] = lower_expression
+        self.expression: Callable[[FunctionBody, ast.expr], Value] = lower_expression
         self.functions: list[Function] = []
         self.diagnostics: list[Diagnostic] = []
         self.in_progress: list[Instance] = []
         self.instances: dict[Any, Instance] = {}
         self.is_too_deep = False  # calls went deeper than Python's stack, which was reported
-        self._headers: dict[Overload, Header] = {}
+        self._signatures: dict[Overload, FunctionSignature] = {}
         self._names: set[str] = set()
         self._uniforms: dict[str, tuple[Parameter, UniformDeclaration]] = {}
         self._numbers: dict[str, UniformDeclaration] = {}
-        self._wishes: dict[str, int] = {}  # how often a number was to be called that
+        self._name_counts: dict[str, int] = {}  # how often a number was to be called that
         self.assembly = Assembly(self)
         self._resources: dict[int, ResourceDeclaration] = {}
         self._structs: dict[str, list[Struct]] = {}
@@ -85,30 +84,30 @@ class Program:
 
     # What the functions share
 
-    def header(self, overload: Overload) -> Header:
+    def signature(self, overload: Overload) -> FunctionSignature:
         """A function's parsed definition; its mistakes are noted."""
-        header = self._headers.get(overload)
-        if header is None:
+        signature = self._signatures.get(overload)
+        if signature is None:
             try:
-                header = read_header(overload)
+                signature = read_signature(overload)
             except CompileError as error:
                 for diagnostic in error.diagnostics:
                     self.report(diagnostic)
                 raise FollowupError from None
-            for diagnostic in header.problems:
+            for diagnostic in signature.problems:
                 self.report(diagnostic)
-            self._headers[overload] = header
-        if header.hopeless:
+            self._signatures[overload] = signature
+        if signature.unusable:
             raise FollowupError
-        return header
+        return signature
 
-    def signature(self, overload: Overload) -> str:
+    def signature_text(self, overload: Overload) -> str:
         """``name(p: vec3) -> float`` as the author wrote it."""
-        return signature_of(self.header(overload))
+        return self.signature(overload).text()
 
     def overloads(self) -> tuple[Overload, ...]:
         """Every Python function that was looked at so far."""
-        return tuple(self._headers)
+        return tuple(self._signatures)
 
     def unique_name(self, name: str, suffix: str = "") -> str:
         """A module-wide name: plain, else with the suffix, else numbered."""
@@ -147,7 +146,7 @@ class Program:
             return struct
         return Struct(f"{struct.name}_{position + 1}", struct.fields, False)
 
-    def annotation(self, body: Body, node: ast.expr) -> Type:
+    def annotation(self, body: FunctionBody, node: ast.expr) -> Type:
         """The type that an annotation inside a body names."""
         try:
             return self.adopt(to_type(body.names.annotation(node), body.bindings))
@@ -156,7 +155,7 @@ class Program:
         except AnnotationError as error:
             raise body.problem(error.message, node, error.hint) from None
         except UnboundVariableError as error:
-            message = f"nothing tells what '{error.variable.__name__}' is here"
+            message = f"the type '{error.variable.__name__}' is not known here"
             raise body.problem(message, node) from None
 
     def uniform(self, parameter: Parameter) -> Expr:
@@ -187,17 +186,17 @@ class Program:
             self.uniform(parameter)
         return expression.node
 
-    def number(self, wish: str, type: Type, value: Any) -> Expr:
+    def number(self, preferred_name: str, type: Type, value: Any) -> Expr:
         """A number of the scene: a uniform with this value.
 
         Its name has a capital letter, which no parameter's name has.
         """
-        first = name = f"{wish[:1].upper()}{wish[1:]}"
-        n = self._wishes.get(first, 1)
+        first = name = f"{preferred_name[:1].upper()}{preferred_name[1:]}"
+        n = self._name_counts.get(first, 1)
         while name in self._numbers:
             n += 1
             name = f"{first}_{n}"
-        self._wishes[first] = n
+        self._name_counts[first] = n
         self._numbers[name] = UniformDeclaration(name, type, Origin.NUMBER, value)
         return Uniform(name, type)
 
@@ -227,23 +226,25 @@ class Program:
         resources = tuple(self._resources.values())
         return Module(tuple(self.functions), entry.name, kind, uniforms, resources)
 
-    # Functions (the rules are in ``calling`` and ``lifting``)
+    # Functions (the rules are in ``scene_calls`` and ``lambda_lifting``)
 
-    def call(self, body: Body, function: Func, args: Sequence[Value], node: ast.Call) -> Expr:
+    def call(
+        self, body: FunctionBody, function: Func, args: Sequence[Value], node: ast.Call
+    ) -> Expr:
         """A call of another scene function."""
-        return calling.call(self, body, function, args, node)
+        return scene_calls.call(body, function, args, node)
 
     def call_closure(
-        self, body: Body, closure: Closure, args: Sequence[Value], node: ast.Call
+        self, body: FunctionBody, closure: Closure, args: Sequence[Value], node: ast.Call
     ) -> Expr:
         """A call of a lambda or nested function."""
-        return lifting.call_closure(self, body, closure, args, node)
+        return lambda_lifting.call_closure(body, closure, args, node)
 
     def function_value(
-        self, body: Body, value: Value, type: FunctionType, node: ast.expr | ast.stmt
+        self, body: FunctionBody, value: Value, type: FunctionType, node: Node
     ) -> Expr | None:
         """A function as a value of a FunctionType."""
-        return lifting.function_value(self, body, value, type, node)
+        return lambda_lifting.function_value(body, value, type, node)
 
     def composed(self, obj: Composed) -> Instance:
         """The function that an object makes itself, made now if it was not yet."""

@@ -1,9 +1,10 @@
-"""Overloads chosen by exact types: what a caller outside scene code asks for."""
+"""Choose an overload by exact argument types, for callers outside scene code."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
+from distal.frontend.lowering.instances import Instance
 from distal.frontend.lowering.scene_calls import instantiate
 from distal.frontend.problems import SceneError
 from distal.frontend.signatures.annotations import (
@@ -12,48 +13,47 @@ from distal.frontend.signatures.annotations import (
     admits,
     to_type,
 )
-from distal.frontend.signatures.instances import Instance
-from distal.frontend.signatures.matching import signature_of
-from distal.frontend.signatures.signatures import MISSING, Header
+from distal.frontend.signatures.signatures import MISSING, FunctionSignature
 from distal.ir.types import Type
 from distal.lang.functions import Func
 
 if TYPE_CHECKING:
-    from distal.frontend.lowering.compilation import Program
+    from distal.frontend.lowering.compilation import Compilation
 
 
-def exact_instance(program: Program, func: Func, types: tuple[Type, ...]) -> Instance:
+def exact_instance(compilation: Compilation, func: Func, types: tuple[Type, ...]) -> Instance:
     """The overload whose parameters have exactly these types, lowered."""
-    headers = [program.header(o) for o in func.overloads]
-    for header in headers:
-        bindings = exact_bindings(program, header, types)
+    signatures = [compilation.signature(o) for o in func.overloads]
+    for signature in signatures:
+        bindings = exact_bindings(compilation, signature, types)
         if bindings is not None:
-            return instantiate(program, header, types, bindings, None)
+            return instantiate(compilation, signature, types, bindings, None)
     given = ", ".join(map(str, types)) or "nothing"
-    hint = " or ".join(signature_of(h) for h in headers)
-    raise SceneError(f"'{func.name}' does not take {given}", headers[0].span, hint)
+    hint = " or ".join(s.text() for s in signatures)
+    raise SceneError(f"'{func.name}' does not take {given}", signatures[0].span, hint)
 
 
 def exact_bindings(
-    program: Program, header: Header, types: tuple[Type, ...]
+    compilation: Compilation, signature: FunctionSignature, types: tuple[Type, ...]
 ) -> dict[TypeVar, Type] | None:
-    """What the type variables of a header stand for, or None where the types do not fit."""
-    if len(header.slots) != len(types):
+    """What the type variables of a signature stand for, or None where the types do not match."""
+    if len(signature.parameters) != len(types):
         return None
     bindings: dict[TypeVar, Type] = {}
-    for slot, type in zip(header.slots, types, strict=True):
-        if isinstance(slot.annotation, TypeVar) and (
-            not admits(slot.annotation, type) or bindings.setdefault(slot.annotation, type) != type
+    for parameter, type in zip(signature.parameters, types, strict=True):
+        if isinstance(parameter.annotation, TypeVar) and (
+            not admits(parameter.annotation, type)
+            or bindings.setdefault(parameter.annotation, type) != type
         ):
             return None
-    for slot, type in zip(header.slots, types, strict=True):
+    for parameter, type in zip(signature.parameters, types, strict=True):
         try:
-            if slot.annotation is not MISSING and (
-                program.adopt(to_type(slot.annotation, bindings)) is not type
+            if parameter.annotation is not MISSING and (
+                compilation.adopt(to_type(parameter.annotation, bindings)) is not type
             ):
                 return None
         except AnnotationError as error:
-            raise SceneError(error.message, slot.span, error.hint) from None
+            raise SceneError(error.message, parameter.span, error.hint) from None
         except UnboundVariableError:
             return None
     return bindings

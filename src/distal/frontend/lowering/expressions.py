@@ -1,6 +1,6 @@
 """Expressions: one function for each kind of syntax node, in one table.
 
-A node without an entry is not part of the language; the author is told so at that node.
+A node without an entry is not part of the language: a mistake at that node.
 """
 
 from __future__ import annotations
@@ -11,20 +11,21 @@ from enum import EnumMeta
 from types import ModuleType
 from typing import Any, Final
 
-from distal.frontend.lowering.body import Body, Variable
+from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.calls import arguments, lower_call
-from distal.frontend.objects import RefusedError, value_of
+from distal.frontend.lowering.refusals import refusal
 from distal.frontend.problems import did_you_mean
-from distal.frontend.refusals import refusal
-from distal.frontend.types.coercion import constant_int, fit, settle, unify
+from distal.frontend.types.coercion import coerce, constant_int, with_default_type
 from distal.frontend.types.constructors import repeated
 from distal.frontend.types.operators import binary, compare, condition, unary
+from distal.frontend.types.python_objects import RefusedError, value_of
+from distal.frontend.types.unification import unify_values
 from distal.frontend.values import (
     FALSE,
     LARGEST_FLOAT,
     TRUE,
     Closure,
-    Display,
+    SequenceValue,
     Static,
     Value,
     Whole,
@@ -60,7 +61,7 @@ from distal.ir.types import (
 _LETTER_SETS: Final = ("xyzw", "rgba")
 
 
-def lower_expression(body: Body, node: ast.expr) -> Value:
+def lower_expression(body: FunctionBody, node: ast.expr) -> Value:
     """The value of an expression."""
     rule = _RULES.get(type(node))
     if rule is None:
@@ -68,7 +69,7 @@ def lower_expression(body: Body, node: ast.expr) -> Value:
     return rule(body, node)
 
 
-def _constant(body: Body, node: ast.Constant) -> Value:
+def _constant(body: FunctionBody, node: ast.Constant) -> Value:
     match node.value:
         case bool():
             return TRUE if node.value else FALSE
@@ -83,38 +84,38 @@ def _constant(body: Body, node: ast.Constant) -> Value:
             raise refusal(body, node)
 
 
-def _name(body: Body, node: ast.Name) -> Value:
+def _name(body: FunctionBody, node: ast.Name) -> Value:
     found = body.find(node.id, node)
     if isinstance(found, Variable):
         return body.read(found, node)
     exists, obj = found
     if not exists:
-        hint = did_you_mean(node.id, body.names.known() | body.plan.names)
+        hint = did_you_mean(node.id, body.names.known() | body.scopes.names)
         raise body.problem(f"'{node.id}' is not defined", node, hint)
     return object_value(body, obj, node.id, node)
 
 
-def object_value(body: Body, obj: Any, text: str, node: ast.expr) -> Value:
+def object_value(body: FunctionBody, obj: Any, text: str, node: ast.expr) -> Value:
     """The meaning of a Python object that is named here."""
     try:
-        return value_of(obj, text, body.program)
+        return value_of(obj, text, body.compilation)
     except RefusedError as refused:
         raise body.problem(refused.message, node, refused.hint) from None
 
 
-def _attribute(body: Body, node: ast.Attribute) -> Value:
+def _attribute(body: FunctionBody, node: ast.Attribute) -> Value:
     base = body.expression(node.value)
     if isinstance(base, Static):
         return _static_attribute(body, base, node)
     if node.attr == "value" and _is_enum_member(body, node.value):
         return base
-    if isinstance(base, Display) and len(base.items) in (2, 3, 4):
+    if isinstance(base, SequenceValue) and len(base.items) in (2, 3, 4):
         base = _as_vector(body, base, node.value)
-    value = settle(body, base, node.value)
+    value = with_default_type(body, base, node.value)
     return member(body, value, node.attr, node)
 
 
-def _is_enum_member(body: Body, node: ast.expr) -> bool:
+def _is_enum_member(body: FunctionBody, node: ast.expr) -> bool:
     """Whether this is ``Mode.A``, which stands for its value already."""
     if not isinstance(node, ast.Attribute):
         return False
@@ -122,13 +123,13 @@ def _is_enum_member(body: Body, node: ast.expr) -> bool:
     return isinstance(owner, Static) and isinstance(owner.object, EnumMeta)
 
 
-def _as_vector(body: Body, display: Display, node: ast.expr) -> Value:
+def _as_vector(body: FunctionBody, sequence: SequenceValue, node: ast.expr) -> Value:
     """A captured tuple whose components are picked is a vector of floats."""
-    fitted = fit(body, display, vector_of(Kind.FLOAT, len(display.items)), node)
-    return display if fitted is None else fitted
+    coerced = coerce(body, sequence, vector_of(Kind.FLOAT, len(sequence.items)), node)
+    return sequence if coerced is None else coerced
 
 
-def member(body: Body, value: Expr, name: str, node: ast.expr) -> Expr:
+def member(body: FunctionBody, value: Expr, name: str, node: ast.expr) -> Expr:
     """``value.name``: a swizzle or a field."""
     match value.type:
         case Vector(kind):
@@ -150,7 +151,7 @@ def member(body: Body, value: Expr, name: str, node: ast.expr) -> Expr:
             raise body.problem(f"{value.type} has no '{name}'", node, hint or None)
 
 
-def swizzle_lanes(body: Body, name: str, type: Vector, node: ast.expr) -> str:
+def swizzle_lanes(body: FunctionBody, name: str, type: Vector, node: ast.expr) -> str:
     """The letters of a swizzle as ``xyzw``."""
     for letters in _LETTER_SETS:
         if set(name) <= set(letters):
@@ -169,7 +170,7 @@ def swizzle_lanes(body: Body, name: str, type: Vector, node: ast.expr) -> str:
     raise body.problem(f"{type} has no component '{name}'", node, hint)
 
 
-def _static_attribute(body: Body, base: Static, node: ast.Attribute) -> Value:
+def _static_attribute(body: FunctionBody, base: Static, node: ast.Attribute) -> Value:
     text = f"{base.text}.{node.attr}"
     try:
         obj = getattr(base.object, node.attr)
@@ -187,7 +188,7 @@ def _static_attribute(body: Body, base: Static, node: ast.Attribute) -> Value:
     return object_value(body, obj, text, node)
 
 
-def _bin_op(body: Body, node: ast.BinOp) -> Value:
+def _bin_op(body: FunctionBody, node: ast.BinOp) -> Value:
     # A long sum leans to the left: go down its spine in a loop, not by recursion.
     spine = [node]
     while isinstance(spine[-1].left, ast.BinOp):
@@ -196,24 +197,24 @@ def _bin_op(body: Body, node: ast.BinOp) -> Value:
     for step in reversed(spine):
         right = body.expression(step.right)
         value = _one_bin_op(body, step, value, right)
-        if not isinstance(value, Whole | Display | Static | Closure):
+        if not isinstance(value, Whole | SequenceValue | Static | Closure):
             value = body.shallow(value)
     return value
 
 
-def _one_bin_op(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+def _one_bin_op(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> Value:
     if isinstance(node.op, ast.Mult):
         for one, other in ((left, right), (right, left)):
-            if isinstance(one, Display) and one.is_list and not one.captured:
+            if isinstance(one, SequenceValue) and one.is_list and not one.captured:
                 return repeated(body, one, other, node)
     return binary(body, node.op, left, right, node)
 
 
-def _unary_op(body: Body, node: ast.UnaryOp) -> Value:
+def _unary_op(body: FunctionBody, node: ast.UnaryOp) -> Value:
     operand = body.expression(node.operand)
     if not isinstance(node.op, ast.Not):
         return unary(body, node.op, operand, node)
-    if not isinstance(operand, Whole | Display | Static | Closure):
+    if not isinstance(operand, Whole | SequenceValue | Static | Closure):
         type = operand.type
         if isinstance(type, Vector) and type.kind is Kind.BOOL:
             hint = "write ~v for each component, or not any(v)"
@@ -222,7 +223,7 @@ def _unary_op(body: Body, node: ast.UnaryOp) -> Value:
     return Unary(UnaryOp.NOT, value, BOOL, span=body.span(node))
 
 
-def _bool_op(body: Body, node: ast.BoolOp) -> Value:
+def _bool_op(body: FunctionBody, node: ast.BoolOp) -> Value:
     op = LogicalOp.AND if isinstance(node.op, ast.And) else LogicalOp.OR
     what = f"an operand of '{op.value}'"
     parts = [condition(body, body.expression(v), v, what) for v in node.values]
@@ -232,7 +233,7 @@ def _bool_op(body: Body, node: ast.BoolOp) -> Value:
     return total
 
 
-def _compare(body: Body, node: ast.Compare) -> Value:
+def _compare(body: FunctionBody, node: ast.Compare) -> Value:
     left = body.expression(node.left)
     parts: list[Expr] = []
     for op, at in zip(node.ops, node.comparators, strict=True):
@@ -252,25 +253,27 @@ def _compare(body: Body, node: ast.Compare) -> Value:
     return total
 
 
-def _if_exp(body: Body, node: ast.IfExp) -> Value:
+def _if_exp(body: FunctionBody, node: ast.IfExp) -> Value:
     test = condition(body, body.expression(node.test), node.test, "a condition")
     values = (body.expression(node.body), body.expression(node.orelse))
-    yes, no = unify(body, values, node, "the branches of a conditional expression are")
+    yes, no = unify_values(body, values, node, "the branches of a conditional expression are")
     return Select(test, yes, no, yes.type, span=body.span(node))
 
 
-def _subscript(body: Body, node: ast.Subscript) -> Value:
+def _subscript(body: FunctionBody, node: ast.Subscript) -> Value:
     base = body.expression(node.value)
     if isinstance(base, Static):
         message = f"'{base.text}' is not an array"
         raise body.problem(message, node)
-    if isinstance(base, Display):
+    if isinstance(base, SequenceValue):
         position = constant_int(body.expression(node.slice))
         if position is not None:
             check_index(body, position, len(base.items), node)
             return base.items[position]
-        return element(body, body.bind(array_name(node.value), settle(body, base, node)), node)
-    return element(body, settle(body, base, node.value), node)
+        return element(
+            body, body.bind(array_name(node.value), with_default_type(body, base, node)), node
+        )
+    return element(body, with_default_type(body, base, node.value), node)
 
 
 def array_name(node: ast.expr) -> str:
@@ -282,7 +285,7 @@ def array_name(node: ast.expr) -> str:
             return "values"
 
 
-def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:
+def element(body: FunctionBody, base: Expr, node: ast.Subscript) -> Expr:
     """``base[index]``, also as a target."""
     if isinstance(node.slice, ast.Slice):
         hint = "pick components by letters, such as .xy" if isinstance(base.type, Vector) else None
@@ -296,7 +299,7 @@ def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:
     if position is not None:
         check_index(body, position, length, node)
         return _constant_element(body, base, position, node)
-    value = settle(body, index, node.slice)
+    value = with_default_type(body, index, node.slice)
     if isinstance(base.type, Struct):
         raise body.problem("a tuple's index is a number known now", node.slice)
     if value.type is not INT:
@@ -307,7 +310,7 @@ def element(body: Body, base: Expr, node: ast.Subscript) -> Expr:
     return Index(base, value, element_type(base.type), span=body.span(node))
 
 
-def _length(body: Body, base: Expr, node: ast.expr) -> int | None:
+def _length(body: FunctionBody, base: Expr, node: ast.expr) -> int | None:
     match base.type:
         case Array(_, length):
             return length
@@ -321,7 +324,7 @@ def _length(body: Body, base: Expr, node: ast.expr) -> int | None:
             raise body.problem(f"{base.type} takes no index", node)
 
 
-def _constant_element(body: Body, base: Expr, position: int, node: ast.expr) -> Expr:
+def _constant_element(body: FunctionBody, base: Expr, position: int, node: ast.expr) -> Expr:
     span = body.span(node)
     match base.type:
         case Vector(kind):
@@ -336,7 +339,7 @@ def _constant_element(body: Body, base: Expr, position: int, node: ast.expr) -> 
 LONGEST_QUOTE: Final = 40  # letters of the author's code inside a hint
 
 
-def check_index(body: Body, position: int, length: int | None, node: ast.Subscript) -> None:
+def check_index(body: FunctionBody, position: int, length: int | None, node: ast.Subscript) -> None:
     """Refuse a constant index outside 0 .. length - 1; the length of a buffer is not known.
 
     A negative one is refused too, although Python counts it from the end: computed indices are
@@ -352,30 +355,30 @@ def check_index(body: Body, position: int, length: int | None, node: ast.Subscri
         raise body.problem(f"index {position} is out of range: there are {length} elements", node)
 
 
-def _tuple(body: Body, node: ast.Tuple) -> Value:
+def _tuple(body: FunctionBody, node: ast.Tuple) -> Value:
     if not node.elts:
         raise body.problem("an empty tuple holds nothing", node)
-    return Display(_items(body, node.elts), is_list=False)
+    return SequenceValue(_items(body, node.elts), is_list=False)
 
 
-def _list(body: Body, node: ast.List) -> Value:
+def _list(body: FunctionBody, node: ast.List) -> Value:
     if not node.elts:
         raise body.problem("an array has at least one element", node, "write [0.0] * 8")
-    return Display(_items(body, node.elts), is_list=True)
+    return SequenceValue(_items(body, node.elts), is_list=True)
 
 
-def _items(body: Body, nodes: list[ast.expr]) -> tuple[Value, ...]:
+def _items(body: FunctionBody, nodes: list[ast.expr]) -> tuple[Value, ...]:
     for node in nodes:
         if isinstance(node, ast.Starred):
             raise body.problem("'*' is not part of scene code", node)
     return tuple(body.expression(n) for n in nodes)
 
 
-def _lambda(body: Body, node: ast.Lambda) -> Value:
+def _lambda(body: FunctionBody, node: ast.Lambda) -> Value:
     return make_closure(body, node, "lambda")
 
 
-def make_closure(body: Body, node: ast.Lambda | ast.FunctionDef, name: str) -> Closure:
+def make_closure(body: FunctionBody, node: ast.Lambda | ast.FunctionDef, name: str) -> Closure:
     """A function that may use the locals around it; its defaults are computed here."""
     a = node.args
     if a.vararg or a.kwarg:
@@ -389,14 +392,14 @@ def make_closure(body: Body, node: ast.Lambda | ast.FunctionDef, name: str) -> C
     return Closure(node, body, name, defaults)
 
 
-def arguments_of_range(body: Body, node: ast.Call) -> list[Value]:
+def arguments_of_range(body: FunctionBody, node: ast.Call) -> list[Value]:
     """The 1 to 3 arguments of ``range``."""
     if node.keywords or not 1 <= len(node.args) <= 3:
         raise body.problem("'range' takes 1 to 3 arguments", node, "range(start, stop, step)")
     return arguments(body, node)
 
 
-_RULES: Final[dict[type[ast.expr], Callable[[Body, Any], Value]]] = {
+_RULES: Final[dict[type[ast.expr], Callable[[FunctionBody, Any], Value]]] = {
     ast.Constant: _constant,
     ast.Name: _name,
     ast.Attribute: _attribute,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from distal.frontend.lowering.body import Variable
+from distal.frontend.function_body import Variable
 from distal.ir.nodes import FunctionRef
 from distal.ir.types import FunctionType, Type
 

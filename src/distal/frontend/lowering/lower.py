@@ -1,4 +1,8 @@
-"""The front end's door: a function in, a module of IR out, or every mistake at once."""
+"""Lower a function, an object or a built-in to a module of IR.
+
+Input: what ``@func`` or ``@image`` made, an object or a built-in, and argument types. Output: a
+module, or one ``CompileError`` with all mistakes. Does not depend on targets.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +12,12 @@ from typing import TypeAlias, TypeVar
 from distal.diagnostics import CompileError, Diagnostic
 from distal.frontend.freshness import Captured
 from distal.frontend.lowering.builtin_calls import exact_instances
-from distal.frontend.lowering.compilation import Program
-from distal.frontend.lowering.lambda_lifting import lower_row
+from distal.frontend.lowering.compilation import Compilation
+from distal.frontend.lowering.exact_overloads import exact_bindings, exact_instance
+from distal.frontend.lowering.lambda_lifting import builtin_function
 from distal.frontend.lowering.scene_calls import instantiate
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.exact import exact_bindings, exact_instance
 from distal.frontend.signatures.signatures import MISSING
 from distal.ir.nodes import EntryKind, Function, Module
 from distal.ir.types import FRAME, VEC3, VEC4, FunctionType, Type, is_static
@@ -38,26 +42,28 @@ def lower(obj: SceneCode, arg_types: tuple[Type, ...] | None = None) -> Module:
     Raises:
         CompileError: All mistakes in the function and in what it calls.
     """
-    return _lower(Program(), obj, arg_types)
+    return _lower(Compilation(), obj, arg_types)
 
 
 def lower_captured(
     obj: SceneCode, arg_types: tuple[Type, ...] | None = None
 ) -> tuple[Module, Captured]:
-    """As ``lower``; also tells whether the module still stands for the function later on."""
-    program = Program()
-    module = _lower(program, obj, arg_types)
-    return module, Captured(program.overloads())
+    """As ``lower``; also says later on whether the module is still up to date."""
+    compilation = Compilation()
+    module = _lower(compilation, obj, arg_types)
+    return module, Captured(compilation.overloads())
 
 
-def _lower(program: Program, obj: SceneCode, arg_types: tuple[Type, ...] | None) -> Module:
+def _lower(compilation: Compilation, obj: SceneCode, arg_types: tuple[Type, ...] | None) -> Module:
     if isinstance(obj, LangFunction):
-        return _lower_builtin(program, obj, arg_types)
+        return _lower_builtin(compilation, obj, arg_types)
     if isinstance(obj, Composed):
-        return _guarded(program, obj.name, lambda: program.finish(program.composed(obj), obj.kind))
+        return _guarded(
+            compilation, obj.name, lambda: compilation.finish(compilation.composed(obj), obj.kind)
+        )
     if isinstance(obj, Image):
-        return _guarded(program, obj.name, lambda: _lower_image(program, obj))
-    return _guarded(program, obj.name, lambda: _lower_func(program, obj, arg_types))
+        return _guarded(compilation, obj.name, lambda: _lower_image(compilation, obj))
+    return _guarded(compilation, obj.name, lambda: _lower_func(compilation, obj, arg_types))
 
 
 def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tuple[Function, ...]:
@@ -65,113 +71,115 @@ def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tu
 
     Unlike for ``lower``, parameters may be functions, textures and buffers.
     """
-    program = Program()
+    compilation = Compilation()
 
     def work() -> tuple[Function, ...]:
         if isinstance(func, LangFunction):
-            lower_row(program, func.row, arg_types)
+            builtin_function(compilation, func.row, arg_types)
         else:
-            exact_instance(program, func, arg_types)
-        error = program.error()
+            exact_instance(compilation, func, arg_types)
+        error = compilation.error()
         if error is not None:
             raise error
-        return tuple(program.functions)
+        return tuple(compilation.functions)
 
     name = func.row.name if isinstance(func, LangFunction) else func.name
-    return _guarded(program, name, work)
+    return _guarded(compilation, name, work)
 
 
 def has_overload(func: Func, arg_types: tuple[Type, ...]) -> bool:
     """Whether a function has an overload for exactly these argument types."""
-    program = Program()
-    headers = [program.header(o) for o in func.overloads]
-    return any(exact_bindings(program, h, arg_types) is not None for h in headers)
+    compilation = Compilation()
+    signatures = [compilation.signature(o) for o in func.overloads]
+    return any(exact_bindings(compilation, h, arg_types) is not None for h in signatures)
 
 
-def _guarded(program: Program, name: str, work: Callable[[], R]) -> R:
+def _guarded(compilation: Compilation, name: str, work: Callable[[], R]) -> R:
     """Run, and turn whatever stops the work into one error with all mistakes."""
     try:
         return work()
     except SceneError as problem:
-        program.report(problem.diagnostic)
+        compilation.report(problem.diagnostic)
     except FollowupError:
         pass
     except CompileError as error:
         for diagnostic in error.diagnostics:
-            program.report(diagnostic)
+            compilation.report(diagnostic)
     except (RecursionError, MemoryError):
         hint = "split long expressions, and functions that call each other many levels deep"
-        program.report(Diagnostic(f"'{name}' is too deeply nested", None, hint))
-    error_found = program.error()
+        compilation.report(Diagnostic(f"'{name}' is too deeply nested", None, hint))
+    error_found = compilation.error()
     assert error_found is not None, f"lowering {name} stopped without a mistake"
     raise error_found
 
 
 def _lower_builtin(
-    program: Program, function: LangFunction, types: tuple[Type, ...] | None
+    compilation: Compilation, function: LangFunction, types: tuple[Type, ...] | None
 ) -> Module:
-    row = function.row
-    if types is None or types not in exact_instances(row.name):
+    intrinsic = function.row
+    if types is None or types not in exact_instances(intrinsic.name):
         given = "nothing" if not types else ", ".join(map(str, types))
-        raise CompileError.at(f"'{row.name}' does not take {given}", None)
-    return program.finish(lower_row(program, row, types), EntryKind.FUNCTION)
+        raise CompileError.at(f"'{intrinsic.name}' does not take {given}", None)
+    return compilation.finish(builtin_function(compilation, intrinsic, types), EntryKind.FUNCTION)
 
 
-def _lower_image(program: Program, image: Image) -> Module:
-    header = program.header(image.overloads[0])
+def _lower_image(compilation: Compilation, image: Image) -> Module:
+    signature = compilation.signature(image.overloads[0])
     if len(image.overloads) > 1:
-        raise SceneError(f"the image '{image.name}' has overloads", header.span)
+        raise SceneError(f"the image '{image.name}' has overloads", signature.span)
     hint = f"write def {image.name}(frame: Frame) -> vec3"
-    if not header.problems:
-        types = [_plain_type(program, s.annotation) for s in header.slots]
+    if not signature.problems:
+        types = [_plain_type(compilation, p.annotation) for p in signature.parameters]
         if types != [FRAME]:
             message = f"the image '{image.name}' takes one parameter, a Frame"
-            raise SceneError(message, header.span, hint)
-    instance = instantiate(program, header, (FRAME,) * len(header.slots), {}, None)
+            raise SceneError(message, signature.span, hint)
+    instance = instantiate(compilation, signature, (FRAME,) * len(signature.parameters), {}, None)
     if instance.result is not None and instance.result not in (VEC3, VEC4):
         message = f"the image '{image.name}' returns vec3 or vec4, not {instance.result}"
-        program.report(Diagnostic(message, header.span, hint))
-    return program.finish(instance, EntryKind.IMAGE)
+        compilation.report(Diagnostic(message, signature.span, hint))
+    return compilation.finish(instance, EntryKind.IMAGE)
 
 
-def _plain_type(program: Program, annotation: object) -> Type | None:
+def _plain_type(compilation: Compilation, annotation: object) -> Type | None:
     try:
-        return program.adopt(to_type(annotation))
+        return compilation.adopt(to_type(annotation))
     except (AnnotationError, UnboundVariableError):
         return None
 
 
-def _lower_func(program: Program, func: Func, types: tuple[Type, ...] | None) -> Module:
+def _lower_func(compilation: Compilation, func: Func, types: tuple[Type, ...] | None) -> Module:
     if types is None:
-        types = _own_types(program, func)
-    header = program.header(func.overloads[0])
+        types = _own_types(compilation, func)
+    signature = compilation.signature(func.overloads[0])
     for type in types:
         if is_static(type) or type is FRAME:
             what = "a function" if isinstance(type, FunctionType) else f"a {type}"
             message = f"'{func.name}' takes {what}: only scene code can call it"
-            raise SceneError(message, header.span)
-    return program.finish(exact_instance(program, func, types), EntryKind.FUNCTION)
+            raise SceneError(message, signature.span)
+    return compilation.finish(exact_instance(compilation, func, types), EntryKind.FUNCTION)
 
 
-def _own_types(program: Program, func: Func) -> tuple[Type, ...]:
+def _own_types(compilation: Compilation, func: Func) -> tuple[Type, ...]:
     """The annotated types, where there is nothing to choose."""
-    headers = [program.header(o) for o in func.overloads]
-    if len(headers) > 1:
-        message = f"'{func.name}' has {len(headers)} overloads: say which argument types are meant"
-        raise SceneError(message, headers[0].span)
-    (header,) = headers
+    signatures = [compilation.signature(o) for o in func.overloads]
+    if len(signatures) > 1:
+        message = (
+            f"'{func.name}' has {len(signatures)} overloads: say which argument types are meant"
+        )
+        raise SceneError(message, signatures[0].span)
+    (signature,) = signatures
     types: list[Type] = []
-    for slot in header.slots:
-        if slot.annotation is MISSING:
+    for parameter in signature.parameters:
+        if parameter.annotation is MISSING:
             # The mistake is reported; the body's own mistakes are wanted beside it.
             types.append(VEC3)
             continue
         try:
-            types.append(program.adopt(to_type(slot.annotation)))
+            types.append(compilation.adopt(to_type(parameter.annotation)))
         except UnboundVariableError:
             message = f"'{func.name}' is generic: say which argument types are meant"
-            raise SceneError(message, slot.span) from None
+            raise SceneError(message, parameter.span) from None
         except AnnotationError as error:
-            program.report(Diagnostic(error.message, slot.span, error.hint))
+            compilation.report(Diagnostic(error.message, parameter.span, error.hint))
             raise FollowupError from None
     return tuple(types)

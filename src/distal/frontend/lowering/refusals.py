@@ -1,12 +1,13 @@
-"""What is not part of scene code, each with its own words and, where there is one, its mend."""
+"""The messages for syntax that is not part of scene code, with a hint where there is one."""
 
 from __future__ import annotations
 
 import ast
 from typing import Final
 
-from distal.frontend.lowering.body import Body
+from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError
+from distal.frontend.source import Node
 
 # Syntax node -> (what the author wrote, hint).
 _REFUSED: Final[dict[type[ast.AST], tuple[str, str | None]]] = {
@@ -40,7 +41,7 @@ _REFUSED: Final[dict[type[ast.AST], tuple[str, str | None]]] = {
 }
 
 
-def refusal(body: Body, node: ast.expr | ast.stmt) -> SceneError:
+def refusal(body: FunctionBody, node: Node) -> SceneError:
     """The mistake of using syntax that scene code does not have."""
     if isinstance(node, ast.Constant):
         return _constant(body, node)
@@ -48,7 +49,7 @@ def refusal(body: Body, node: ast.expr | ast.stmt) -> SceneError:
     return body.problem(f"{what} is not part of scene code", node, hint)
 
 
-def _constant(body: Body, node: ast.Constant) -> SceneError:
+def _constant(body: FunctionBody, node: ast.Constant) -> SceneError:
     match node.value:
         case str() | bytes():
             return body.problem("text is not part of scene code", node)

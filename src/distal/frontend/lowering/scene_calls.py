@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeVar
 
 from distal.diagnostics import Diagnostic
-from distal.frontend.lowering.body import Body, Variable
+from distal.frontend.function_body import FunctionBody, Variable
+from distal.frontend.lowering.argument_matching import Argument, closeness, match, pair
+from distal.frontend.lowering.instances import Instance
 from distal.frontend.lowering.statements import lower_statements
 from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.scopes import analyse_scopes
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.instances import Instance
-from distal.frontend.signatures.matching import Argument, closeness, match, pair, signature_of
-from distal.frontend.signatures.scopes import scan
-from distal.frontend.signatures.signatures import MISSING, Header
+from distal.frontend.signatures.signatures import MISSING, FunctionSignature
+from distal.frontend.source import Node
 from distal.frontend.types.coercion import shown_type
 from distal.frontend.values import Value, Whole
 from distal.ir.nodes import Call, Const, Expr, Function, Param, Read, Return, Stmt, Var
@@ -23,27 +24,32 @@ from distal.ir.walk import blocks, map_statement
 from distal.lang.functions import Func
 
 if TYPE_CHECKING:
-    from distal.frontend.lowering.compilation import Program
+    from distal.frontend.lowering.compilation import Compilation
 
 
 def call(
-    program: Program, body: Body, function: Func, args: Sequence[Value], node: ast.Call
+    body: FunctionBody,
+    function: Func,
+    args: Sequence[Value],
+    node: ast.Call,
 ) -> Expr:
     """A call of another scene function."""
     positional = [Argument(v, n) for v, n in zip(args, node.args, strict=True)]
     keywords = keyword_arguments(body, node)
-    headers = [program.header(o) for o in function.overloads]
-    header, paired = _choose(body, function, headers, positional, keywords, node)
-    if header.problems:
+    signatures = [body.compilation.signature(o) for o in function.overloads]
+    signature, paired = _choose(body, function, signatures, positional, keywords, node)
+    if signature.problems:
         raise FollowupError
-    matched = match(body, header, paired)
-    instance = instantiate(program, header, matched.types, matched.bindings, (body, node))
+    matched = match(body, signature, paired)
+    instance = instantiate(
+        body.compilation, signature, matched.types, matched.bindings, (body, node)
+    )
     if instance.result is None:
         raise FollowupError
     return Call(instance.name, matched.args, instance.result, span=body.span(node))
 
 
-def keyword_arguments(body: Body, node: ast.Call) -> dict[str, Argument]:
+def keyword_arguments(body: FunctionBody, node: ast.Call) -> dict[str, Argument]:
     """The keyword arguments of a call, lowered."""
     keywords: dict[str, Argument] = {}
     for keyword in node.keywords:
@@ -54,28 +60,28 @@ def keyword_arguments(body: Body, node: ast.Call) -> dict[str, Argument]:
 
 
 def _choose(
-    body: Body,
+    body: FunctionBody,
     function: Func,
-    headers: list[Header],
+    signatures: list[FunctionSignature],
     args: list[Argument],
     keywords: dict[str, Argument],
     node: ast.Call,
-) -> tuple[Header, list[Argument]]:
-    if len(headers) == 1:
-        (only,) = headers
+) -> tuple[FunctionSignature, list[Argument]]:
+    if len(signatures) == 1:
+        (only,) = signatures
         return only, pair(body, only, args, keywords, node)
-    best: tuple[int, Header, list[Argument]] | None = None
-    for header in headers:
+    best: tuple[int, FunctionSignature, list[Argument]] | None = None
+    for signature in signatures:
         try:
-            paired = pair(body, header, args, keywords, node)
+            paired = pair(body, signature, args, keywords, node)
         except SceneError:
             continue
-        score = closeness(header, paired, body)
+        score = closeness(signature, paired, body)
         if score is not None and (best is None or score > best[0]):
-            best = (score, header, paired)
+            best = (score, signature, paired)
     if best is None:
         shown = ", ".join(shown_type(a.value) for a in (*args, *keywords.values()))
-        hint = " or ".join(signature_of(h) for h in headers)
+        hint = " or ".join(s.text() for s in signatures)
         raise body.problem(
             f"no overload of '{function.name}' takes {shown or 'nothing'}", node, hint
         )
@@ -83,26 +89,28 @@ def _choose(
 
 
 def instantiate(
-    program: Program,
-    header: Header,
+    compilation: Compilation,
+    signature: FunctionSignature,
     types: tuple[Type, ...],
     bindings: dict[TypeVar, Type],
-    caller: tuple[Body, ast.expr | ast.stmt] | None,
+    caller: tuple[FunctionBody, Node] | None,
 ) -> Instance:
     """The function for these types, lowered now if it was not yet."""
-    key = (header.overload, types)
-    known = program.instances.get(key)
+    key = (signature.overload, types)
+    known = compilation.instances.get(key)
     if known is not None:
         if caller is not None:
-            program.check_recursion(known, caller[0].span(caller[1]))
+            compilation.check_recursion(known, caller[0].span(caller[1]))
         return known
-    instance = Instance(program.unique_name(header.name, _suffix(types)), header.name, types)
-    program.instances[key] = instance
-    program.in_progress.append(instance)
+    instance = Instance(
+        compilation.unique_name(signature.name, _suffix(types)), signature.name, types
+    )
+    compilation.instances[key] = instance
+    compilation.in_progress.append(instance)
     try:
-        lower_function(program, header, instance, bindings)
+        lower_function(compilation, signature, instance, bindings)
     finally:
-        program.in_progress.pop()
+        compilation.in_progress.pop()
     return instance
 
 
@@ -114,49 +122,56 @@ def _suffix(types: tuple[Type, ...]) -> str:
 
 
 def lower_function(
-    program: Program, header: Header, instance: Instance, bindings: dict[TypeVar, Type]
+    compilation: Compilation,
+    signature: FunctionSignature,
+    instance: Instance,
+    bindings: dict[TypeVar, Type],
 ) -> None:
     """Lower one function's body; its mistakes are noted in the program."""
-    plan = scan(header.node.body, {s.name for s in header.slots})
-    body = Body(program, header.name, header.source, header.names, plan)
+    scopes = analyse_scopes(signature.node.body, {s.name for s in signature.parameters})
+    body = FunctionBody(compilation, signature.name, signature.source, signature.names, scopes)
     body.bindings = bindings
     params = []
-    for slot, type in zip(header.slots, instance.params, strict=True):
-        failed = slot.annotation is MISSING
-        variable = body.add_parameter(slot.name, None if failed else type)
+    for parameter, type in zip(signature.parameters, instance.params, strict=True):
+        failed = parameter.annotation is MISSING
+        variable = body.add_parameter(parameter.name, None if failed else type)
         params.append(Param(variable.ir_name, type))
-    result_ok = _declare_result(program, header, body, bindings)
+    result_ok = _declare_result(signature, body, bindings)
     instance.result = body.result
-    statements = lower_body(body, header.node.body)
+    statements = lower_body(body, signature.node.body)
     if body.reachable and not body.failed:
-        message = f"'{header.name}' may end without returning a value"
-        body.report(Diagnostic(message, header.span, "end every way through it with return"))
+        message = f"'{signature.name}' may end without returning a value"
+        body.report(Diagnostic(message, signature.span, "end every way through it with return"))
     if not result_ok or body.failed:
         return
-    result, statements = settle_result(body, statements)
+    result, statements = infer_result(body, statements)
     if result is None:
         return
     instance.result = result
-    program.functions.append(
-        Function(instance.name, tuple(params), result, statements, header.name, span=header.span)
+    compilation.functions.append(
+        Function(
+            instance.name, tuple(params), result, statements, signature.name, span=signature.span
+        )
     )
 
 
 def _declare_result(
-    program: Program, header: Header, body: Body, bindings: dict[TypeVar, Type]
+    signature: FunctionSignature,
+    body: FunctionBody,
+    bindings: dict[TypeVar, Type],
 ) -> bool:
-    if header.result is MISSING:
-        return not header.problems
-    returns = header.node.returns
+    if signature.result is MISSING:
+        return not signature.problems
+    returns = signature.node.returns
     assert returns is not None
-    span = header.source.span(returns)
+    span = signature.source.span(returns)
     try:
-        body.result = program.adopt(to_type(header.result, bindings))
+        body.result = body.compilation.adopt(to_type(signature.result, bindings))
     except AnnotationError as error:
         body.report(Diagnostic(error.message, span, error.hint))
         return False
     except UnboundVariableError as error:
-        message = f"nothing tells what '{error.variable.__name__}' is"
+        message = f"the type '{error.variable.__name__}' is not known here"
         body.report(Diagnostic(message, span))
         return False
     if is_static(body.result):
@@ -166,10 +181,10 @@ def _declare_result(
     return True
 
 
-def lower_body(body: Body, statements: list[ast.stmt]) -> tuple[Stmt, ...]:
+def lower_body(body: FunctionBody, statements: list[ast.stmt]) -> tuple[Stmt, ...]:
     """Lower a function's statements; parameters that change become locals first."""
     with body.block(statements) as block:
-        for name in sorted(body.plan.changed_parameters):
+        for name in sorted(body.scopes.changed_parameters):
             parameter = body.parameters[name]
             if parameter.type is None or is_static(parameter.type):
                 continue
@@ -182,8 +197,10 @@ def lower_body(body: Body, statements: list[ast.stmt]) -> tuple[Stmt, ...]:
     return tuple(block.statements)
 
 
-def settle_result(body: Body, statements: tuple[Stmt, ...]) -> tuple[Type | None, tuple[Stmt, ...]]:
-    """The result's type; without an annotation the returned values tell."""
+def infer_result(
+    body: FunctionBody, statements: tuple[Stmt, ...]
+) -> tuple[Type | None, tuple[Stmt, ...]]:
+    """The result's type; without an annotation, that of the returned values."""
     if body.result is not None:
         return body.result, statements
     found: dict[Type, ast.Return] = {}

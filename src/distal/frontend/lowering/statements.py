@@ -11,14 +11,19 @@ import builtins
 from collections.abc import Callable
 from typing import Any, Final
 
+from distal.frontend.function_body import FunctionBody, Loop, Variable
 from distal.frontend.lowering.assignment import assign, augment, value_node
-from distal.frontend.lowering.body import Body, Loop, Variable
 from distal.frontend.lowering.expressions import arguments_of_range, array_name, make_closure
+from distal.frontend.lowering.refusals import refusal
 from distal.frontend.problems import FollowupError, SceneError
-from distal.frontend.refusals import refusal
-from distal.frontend.types.coercion import constant_int, fit_or_refuse, natural_type, settle
+from distal.frontend.types.coercion import (
+    coerce_or_raise,
+    constant_int,
+    default_type,
+    with_default_type,
+)
 from distal.frontend.types.operators import condition
-from distal.frontend.values import TRUE, Closure, Display, Static, Value, Whole
+from distal.frontend.values import TRUE, Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import index as element_at
 from distal.ir.build import integer, negation
 from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
@@ -27,8 +32,8 @@ from distal.ir.types import INT, Array, Type, is_static
 DEEP_CALLS: Final = 20  # a statement that fails below so many calls fails because of them
 
 
-def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
-    """Lower into the current block, going on after each mistake."""
+def lower_statements(body: FunctionBody, statements: list[ast.stmt]) -> None:
+    """Lower into the current block, continuing after each mistake."""
     for stmt in statements:
         body.begin_statement(stmt)
         try:
@@ -47,22 +52,22 @@ def lower_statements(body: Body, statements: list[ast.stmt]) -> None:
             _give_up(body, stmt)
 
 
-def _report_depth(body: Body, stmt: ast.stmt) -> None:
+def _report_depth(body: FunctionBody, stmt: ast.stmt) -> None:
     """Say that Python's stack is used up: by this statement, or by the calls that lead to it."""
     body.failed = True
-    program = body.program
-    if len(program.in_progress) < DEEP_CALLS:
+    compilation = body.compilation
+    if len(compilation.in_progress) < DEEP_CALLS:
         hint = "split it into several lines"
         body.report(body.problem("this is too deeply nested", stmt, hint).diagnostic)
-    elif not program.is_too_deep:
-        program.is_too_deep = True  # every caller on the way back meets the same
-        first = program.in_progress[0].source_name
+    elif not compilation.is_too_deep:
+        compilation.is_too_deep = True  # every caller fails in the same way
+        first = compilation.in_progress[0].source_name
         message = f"functions call one another too many levels deep, beginning with '{first}'"
         hint = "join some of them, or call them one after the other"
         body.report(body.problem(message, stmt, hint).diagnostic)
 
 
-def _give_up(body: Body, stmt: ast.stmt) -> None:
+def _give_up(body: FunctionBody, stmt: ast.stmt) -> None:
     """What a failed statement would have defined is not missed any more."""
     names = [n.id for n in ast.walk(stmt) if isinstance(n, ast.Name) and _stores(n)]
     if isinstance(stmt, ast.FunctionDef | ast.ClassDef):
@@ -78,7 +83,7 @@ def _stores(node: ast.Name) -> bool:
     return isinstance(node.ctx, ast.Store)
 
 
-def _guarded(body: Body, lower: Callable[[], Expr]) -> Expr | None:
+def _guarded(body: FunctionBody, lower: Callable[[], Expr]) -> Expr | None:
     """A head's value, or None after recording its mistake: the blocks are lowered still."""
     try:
         return lower()
@@ -89,18 +94,18 @@ def _guarded(body: Body, lower: Callable[[], Expr]) -> Expr | None:
     return None
 
 
-def _assign(body: Body, stmt: ast.Assign) -> None:
+def _assign(body: FunctionBody, stmt: ast.Assign) -> None:
     value = body.expression(stmt.value)
-    if len(stmt.targets) > 1 and not isinstance(value, Whole | Display | Static | Closure):
+    if len(stmt.targets) > 1 and not isinstance(value, Whole | SequenceValue | Static | Closure):
         value = body.bind("value", value)
     for target in stmt.targets:
         assign(body, target, value, stmt)
 
 
-def _ann_assign(body: Body, stmt: ast.AnnAssign) -> None:
+def _ann_assign(body: FunctionBody, stmt: ast.AnnAssign) -> None:
     if not isinstance(stmt.target, ast.Name):
         raise body.problem("only a name takes a type", stmt.target)
-    type = body.program.annotation(body, stmt.annotation)
+    type = body.compilation.annotation(body, stmt.annotation)
     variable = body.lookup(stmt.target.id)
     if is_static(type):
         raise body.problem(f"a local cannot be {type}", stmt.annotation)
@@ -111,11 +116,11 @@ def _ann_assign(body: Body, stmt: ast.AnnAssign) -> None:
         raise body.problem(message, stmt)
     if stmt.value is not None:
         value = body.expression(stmt.value)
-        expr = fit_or_refuse(body, value, type, value_node(stmt), f"'{stmt.target.id}'")
+        expr = coerce_or_raise(body, value, type, value_node(stmt), f"'{stmt.target.id}'")
         assign(body, stmt.target, expr, stmt)
 
 
-def _if(body: Body, stmt: ast.If) -> None:
+def _if(body: FunctionBody, stmt: ast.If) -> None:
     def head() -> Expr:
         return condition(body, body.expression(stmt.test), stmt.test, "a condition")
 
@@ -136,14 +141,14 @@ def _if(body: Body, stmt: ast.If) -> None:
         _emit_after(body, made, reachable=reachable)
 
 
-def _emit_after(body: Body, stmt: Stmt, *, reachable: bool) -> None:
+def _emit_after(body: FunctionBody, stmt: Stmt, *, reachable: bool) -> None:
     """Add a statement whose own end may not be reached, though its start is."""
     after, body.reachable = body.reachable, reachable
     body.emit(stmt)
     body.reachable = after
 
 
-def _while(body: Body, stmt: ast.While) -> None:
+def _while(body: FunctionBody, stmt: ast.While) -> None:
     if stmt.orelse:
         raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
     reachable = body.reachable
@@ -173,7 +178,7 @@ def _while(body: Body, stmt: ast.While) -> None:
     _emit_after(body, While(test, statements, span=span), reachable=reachable)
 
 
-def _for(body: Body, stmt: ast.For) -> None:
+def _for(body: FunctionBody, stmt: ast.For) -> None:
     if stmt.orelse:
         raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
     if not isinstance(stmt.target, ast.Name):
@@ -199,7 +204,7 @@ def _for(body: Body, stmt: ast.For) -> None:
 
 
 def _loop_body(
-    body: Body,
+    body: FunctionBody,
     stmt: ast.For,
     variable: Variable,
     counter: str,
@@ -224,14 +229,14 @@ def _loop_body(
         body.emit(For(counter, start, stop, step, tuple(block.statements), span=span))
 
 
-def _iteration(body: Body, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr | None]:
+def _iteration(body: FunctionBody, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr | None]:
     """(start, stop, step) and, for a loop over an array, the array."""
     node = stmt.iter
     if isinstance(node, ast.Call):
         called = body.expression(node.func)
         if isinstance(called, Static) and called.object is builtins.range:
             return _range(body, node), None
-    value = settle(body, body.expression(node), node)
+    value = with_default_type(body, body.expression(node), node)
     if not isinstance(value.type, Array):
         hint = "write for i in range(n)" if value.type is INT else None
         raise body.problem(f"a loop goes over range(...) or an array, not {value.type}", node, hint)
@@ -239,7 +244,7 @@ def _iteration(body: Body, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr 
     return (integer(0), integer(value.type.length), 1), array
 
 
-def _range(body: Body, node: ast.Call) -> tuple[Expr, Expr, int]:
+def _range(body: FunctionBody, node: ast.Call) -> tuple[Expr, Expr, int]:
     args = arguments_of_range(body, node)
     step = constant_int(args[2]) if len(args) == 3 else 1
     if step is None:
@@ -254,11 +259,11 @@ def _range(body: Body, node: ast.Call) -> tuple[Expr, Expr, int]:
     return whole[0], whole[1], step
 
 
-def _bound(body: Body, value: Value, node: ast.expr) -> Expr:
-    return fit_or_refuse(body, value, INT, node, "a bound of a range")
+def _bound(body: FunctionBody, value: Value, node: ast.expr) -> Expr:
+    return coerce_or_raise(body, value, INT, node, "a bound of a range")
 
 
-def _break(body: Body, stmt: ast.Break) -> None:
+def _break(body: FunctionBody, stmt: ast.Break) -> None:
     body.emit(Break(span=body.span(stmt)))
     loop = body.loops[-1]
     if body.reachable:
@@ -267,12 +272,12 @@ def _break(body: Body, stmt: ast.Break) -> None:
     body.reachable = False
 
 
-def _continue(body: Body, stmt: ast.Continue) -> None:
+def _continue(body: FunctionBody, stmt: ast.Continue) -> None:
     body.emit(Continue(span=body.span(stmt)))
     body.reachable = False
 
 
-def _return(body: Body, stmt: ast.Return) -> None:
+def _return(body: FunctionBody, stmt: ast.Return) -> None:
     try:
         if stmt.value is None:
             raise body.problem(f"'{body.name}' returns no value here", stmt, "write return value")
@@ -284,34 +289,34 @@ def _return(body: Body, stmt: ast.Return) -> None:
         body.reachable = False
 
 
-def _returned(body: Body, value: Value, node: ast.expr) -> Expr:
+def _returned(body: FunctionBody, value: Value, node: ast.expr) -> Expr:
     if body.result is not None:
         whose = "the lambda" if body.name == "lambda" else f"'{body.name}'"
-        return fit_or_refuse(body, value, body.result, node, f"the value of {whose}")
-    expr = settle(body, value, node)
+        return coerce_or_raise(body, value, body.result, node, f"the value of {whose}")
+    expr = with_default_type(body, value, node)
     if is_static(expr.type):
         raise body.problem(f"a function returns a value, not {expr.type}", node)
     return expr
 
 
-def _expr(body: Body, stmt: ast.Expr) -> None:
+def _expr(body: FunctionBody, stmt: ast.Expr) -> None:
     match stmt.value:
         case ast.Constant(value) if value is Ellipsis:
             return
         case ast.Constant(str()):
             return  # a docstring, or a comment written as one
         case _:
-            natural: Type | None = natural_type(body.expression(stmt.value))
-            what = "this value" if natural is None else f"this {natural}"
+            default: Type | None = default_type(body.expression(stmt.value))
+            what = "this value" if default is None else f"this {default}"
             hint = "functions have no effect but their value: assign it, or return it"
             raise body.problem(f"{what} is not used", stmt, hint)
 
 
-def _pass(body: Body, stmt: ast.Pass) -> None:
+def _pass(body: FunctionBody, stmt: ast.Pass) -> None:
     """Nothing."""
 
 
-def _function_def(body: Body, stmt: ast.FunctionDef) -> None:
+def _function_def(body: FunctionBody, stmt: ast.FunctionDef) -> None:
     variable = body.lookup(stmt.name)
     assert variable is not None
     if stmt.decorator_list:
@@ -319,12 +324,14 @@ def _function_def(body: Body, stmt: ast.FunctionDef) -> None:
         raise body.problem(message, stmt.decorator_list[0], "a nested def needs none")
     if variable.changes or variable.static is not None:
         message = f"'{stmt.name}' cannot change what function it stands for"
-        raise SceneError(message, body.source.header(stmt), "give each function a name of its own")
+        raise SceneError(
+            message, body.source.name_span(stmt), "give each function a name of its own"
+        )
     variable.static = make_closure(body, stmt, stmt.name)
     body.assigned.add(variable)
 
 
-_RULES: Final[dict[type[ast.stmt], Callable[[Body, Any], None]]] = {
+_RULES: Final[dict[type[ast.stmt], Callable[[FunctionBody, Any], None]]] = {
     ast.Assign: _assign,
     ast.AugAssign: augment,
     ast.AnnAssign: _ann_assign,

@@ -1,19 +1,19 @@
 """Bringing a value to a type: literals take the type that is wanted, nothing else is converted.
 
-``fit`` gives an expression of exactly the wanted type or None; ``settle`` gives the type a value
-has alone. A number is never turned into another kind, and a scalar never widened, except where a
+``coerce`` gives an expression of exactly the expected type or None; ``with_default_type`` gives the
+value its default type. A number never changes its kind, and a scalar is never widened, unless a
 rule of an operator or a built-in says so.
 """
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Sequence
 
-from distal.frontend.lowering.body import Body
-from distal.frontend.objects import kind_of_object
+from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError
-from distal.frontend.values import Closure, Display, Static, Value, Whole, describe, whole_to
+from distal.frontend.source import Node
+from distal.frontend.types.python_objects import kind_of_object
+from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole, describe, whole_to
 from distal.ir.nodes import Compose, Const, Construct, Expr
 from distal.ir.types import (
     FLOAT,
@@ -39,34 +39,34 @@ def is_callable(value: Value) -> bool:
             return True
         case Static(obj):
             return isinstance(obj, Func | LangFunction)
-        case Whole() | Display():
+        case Whole() | SequenceValue():
             return False
         case _:
             return isinstance(value.type, FunctionType)
 
 
-def fit(body: Body, value: Value, type: Type, node: ast.expr | ast.stmt) -> Expr | None:
+def coerce(body: FunctionBody, value: Value, type: Type, node: Node) -> Expr | None:
     """The value as an expression of exactly ``type``; None where it is of another."""
     match value:
         case Whole(number):
-            return _fit_whole(body, number, type, node)
-        case Display(items, is_list, captured):
-            return _fit_display(body, items, type, node, vectors=captured or not is_list)
+            return _coerce_whole(body, number, type, node)
+        case SequenceValue(items, is_list, captured):
+            return _coerce_sequence(body, items, type, node, vectors=captured or not is_list)
         case Static() | Closure():
             if isinstance(type, FunctionType) and is_callable(value):
-                return body.program.function_value(body, value, type, node)
+                return body.compilation.function_value(body, value, type, node)
             return None
         case _:
             return value if value.type is type else None
 
 
-def _fit_whole(body: Body, number: int, type: Type, node: ast.expr | ast.stmt) -> Expr | None:
+def _coerce_whole(body: FunctionBody, number: int, type: Type, node: Node) -> Expr | None:
     if not isinstance(type, Scalar) or type.kind is Kind.BOOL:
         return None
-    fitted = whole_to(number, type)
-    if fitted is None:
+    coerced = whole_to(number, type)
+    if coerced is None:
         raise body.problem(f"{_shown(number)} is out of the range of {type}", node)
-    return fitted
+    return coerced
 
 
 def _shown(number: int) -> str:
@@ -74,8 +74,13 @@ def _shown(number: int) -> str:
     return text
 
 
-def _fit_display(
-    body: Body, items: Sequence[Value], type: Type, node: ast.expr | ast.stmt, *, vectors: bool
+def _coerce_sequence(
+    body: FunctionBody,
+    items: Sequence[Value],
+    type: Type,
+    node: Node,
+    *,
+    vectors: bool,
 ) -> Expr | None:
     match type:
         case Array(element, length):
@@ -88,7 +93,7 @@ def _fit_display(
             return None
     if len(wanted) != len(items):
         return None
-    parts = [fit(body, item, t, node) for item, t in zip(items, wanted, strict=True)]
+    parts = [coerce(body, item, t, node) for item, t in zip(items, wanted, strict=True)]
     known = tuple(p for p in parts if p is not None)
     if len(known) < len(parts):
         return None
@@ -97,7 +102,7 @@ def _fit_display(
 
 def vector_type(value: Value) -> Type | None:
     """The vector that a captured list or a tuple of 2 to 4 numbers may stand for."""
-    if not isinstance(value, Display) or not 2 <= len(value.items) <= 4:
+    if not isinstance(value, SequenceValue) or not 2 <= len(value.items) <= 4:
         return None
     if value.is_list and not value.captured:
         return None
@@ -108,17 +113,17 @@ def vector_type(value: Value) -> Type | None:
 
 
 def _scalar_kind(value: Value) -> Kind | None:
-    type = natural_type(value)
+    type = default_type(value)
     return type.kind if isinstance(type, Scalar) else None
 
 
-def natural_type(value: Value) -> Type | None:
+def default_type(value: Value) -> Type | None:
     """The type a value has alone; None for what is no value or does not know yet."""
     match value:
         case Whole():
             return INT
-        case Display(items, is_list, captured):
-            types = [natural_type(i) for i in items]
+        case SequenceValue(items, is_list, captured):
+            types = [default_type(i) for i in items]
             if any(t is None for t in types):
                 return None
             known = [t for t in types if t is not None]
@@ -134,17 +139,17 @@ def natural_type(value: Value) -> Type | None:
 
 def _common(items: Sequence[Value], types: Sequence[Type]) -> Type | None:
     """The one element type: whole-number literals join floats."""
-    firm = {t for i, t in zip(items, types, strict=True) if not isinstance(i, Whole)}
-    if not firm:
+    concrete = {t for i, t in zip(items, types, strict=True) if not isinstance(i, Whole)}
+    if not concrete:
         return INT
-    if len(firm) == 1:
-        (element,) = firm
+    if len(concrete) == 1:
+        (element,) = concrete
         if all(not isinstance(i, Whole) for i in items) or isinstance(element, Scalar):
             return element
     return None
 
 
-def settle(body: Body, value: Value, node: ast.expr | ast.stmt) -> Expr:
+def with_default_type(body: FunctionBody, value: Value, node: Node) -> Expr:
     """The value with the type it has alone."""
     match value:
         case Static(obj, text):
@@ -152,17 +157,17 @@ def settle(body: Body, value: Value, node: ast.expr | ast.stmt) -> Expr:
         case Closure(_, _, name):
             hint = "call it, or pass it to a function that takes one"
             raise body.problem(f"the function '{name}' is not a value", node, hint)
-        case Whole() | Display():
-            type = natural_type(value)
-            fitted = None if type is None else fit(body, value, type, node)
-            if fitted is None:
-                raise _mixed_display(body, value, node)
-            return fitted
+        case Whole() | SequenceValue():
+            type = default_type(value)
+            coerced = None if type is None else coerce(body, value, type, node)
+            if coerced is None:
+                raise _mixed_sequence(body, value, node)
+            return coerced
         case _:
             return value
 
 
-def not_a_value(body: Body, obj: object, text: str, node: ast.expr | ast.stmt) -> SceneError:
+def not_a_value(body: FunctionBody, obj: object, text: str, node: Node) -> SceneError:
     """The mistake of using a function, a type or a module as a value."""
     hint = None
     if isinstance(obj, Func | LangFunction | LangForm):
@@ -176,8 +181,8 @@ def _kind(obj: object) -> str:
     return kind_of_object(obj)
 
 
-def _mixed_display(body: Body, value: Value, node: ast.expr | ast.stmt) -> SceneError:
-    assert isinstance(value, Display)
+def _mixed_sequence(body: FunctionBody, value: Value, node: Node) -> SceneError:
+    assert isinstance(value, SequenceValue)
     for item in value.items:
         if isinstance(item, Static | Closure):
             return body.problem(f"{describe(item)} is not a value", node)
@@ -185,13 +190,11 @@ def _mixed_display(body: Body, value: Value, node: ast.expr | ast.stmt) -> Scene
     return body.problem(f"the elements of an array have one type, not {' and '.join(kinds)}", node)
 
 
-def fit_or_refuse(
-    body: Body, value: Value, type: Type, node: ast.expr | ast.stmt, what: str
-) -> Expr:
+def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, what: str) -> Expr:
     """The value as ``type``; otherwise the mistake ``what is type, not …``."""
-    fitted = fit(body, value, type, node)
-    if fitted is not None:
-        return fitted
+    coerced = coerce(body, value, type, node)
+    if coerced is not None:
+        return coerced
     if isinstance(type, FunctionType) and is_callable(value):
         raise body.problem(
             f"{what} is {type}, not {shown_type(value)}", node, callable_hint(body, value)
@@ -203,26 +206,26 @@ def fit_or_refuse(
     )
 
 
-def callable_hint(body: Body, value: Value) -> str | None:
+def callable_hint(body: FunctionBody, value: Value) -> str | None:
     """What a function takes, where another one is wanted."""
     match value:
         case Static(Func() as function):
-            return " or ".join(body.program.signature(o) for o in function.overloads)
+            return " or ".join(body.compilation.signature_text(o) for o in function.overloads)
         case _:
             return None
 
 
 def shown_type(value: Value) -> str:
     """The type of a value, or what it is."""
-    if isinstance(value, Display):
-        natural = natural_type(value)
-        return describe(value) if natural is None else str(natural)
+    if isinstance(value, SequenceValue):
+        default = default_type(value)
+        return describe(value) if default is None else str(default)
     return describe(value)
 
 
 def conversion_hint(value: Value, wanted: Type) -> str | None:
     """How to turn a value into the wanted type, where there is a natural way."""
-    given = natural_type(value)
+    given = default_type(value)
     if given is None or is_static(given) or is_static(wanted):
         return None
     match given, wanted:
@@ -240,35 +243,6 @@ def conversion_hint(value: Value, wanted: Type) -> str | None:
             return "pick a component, such as .x"
         case _:
             return None
-
-
-def unify(body: Body, values: Sequence[Value], node: ast.expr, what: str) -> tuple[Expr, ...]:
-    """All values as one type: literals take the type of the others, nothing is widened."""
-    firm = [v for v in values if not isinstance(v, Whole)]
-    types = list(dict.fromkeys(natural_type(v) for v in firm))
-    if not firm:
-        return tuple(settle(body, v, node) for v in values)
-    if len(types) == 1 and types[0] is not None:
-        wanted = types[0]
-        fitted = [fit(body, v, wanted, node) for v in values]
-        known = tuple(f for f in fitted if f is not None)
-        if len(known) == len(values):
-            return known
-    for value in values:
-        if isinstance(value, Static | Closure):
-            settle(body, value, node)
-    kinds = " and ".join(dict.fromkeys(shown_type(v) for v in values))
-    hint = _unify_hint(values)
-    raise body.problem(f"{what} {kinds}", node, hint)
-
-
-def _unify_hint(values: Sequence[Value]) -> str | None:
-    vectors = [t for v in values if isinstance(t := natural_type(v), Vector)]
-    scalars = [v for v in values if isinstance(natural_type(v), Scalar)]
-    if len(set(vectors)) == 1 and scalars:
-        return f"write {vectors[0]}(...) around the {natural_type(scalars[0])}"
-    types = {natural_type(v) for v in values}
-    return "write float(...) around the int" if types == {INT, FLOAT} else None
 
 
 def constant_int(value: Value) -> int | None:

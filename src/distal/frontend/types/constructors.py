@@ -5,12 +5,18 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from distal.frontend.lowering.body import Body
-from distal.frontend.objects import RefusedError, value_of
+from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import did_you_mean
 from distal.frontend.signatures.annotations import AnnotationError, struct_defaults, struct_type
-from distal.frontend.types.coercion import fit, fit_or_refuse, natural_type, settle, shown_type
-from distal.frontend.values import LARGEST_ARRAY, Closure, Display, Static, Value, Whole
+from distal.frontend.types.coercion import (
+    coerce,
+    coerce_or_raise,
+    default_type,
+    shown_type,
+    with_default_type,
+)
+from distal.frontend.types.python_objects import RefusedError, value_of
+from distal.frontend.values import LARGEST_ARRAY, Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import cast, integer, number, splat
 from distal.ir.nodes import Compose, Const, Construct, Expr, Index
 from distal.ir.types import (
@@ -30,14 +36,14 @@ from distal.ir.types import (
 )
 
 
-def construct(body: Body, type: Type, args: Sequence[Value], node: ast.Call) -> Value:
+def construct(body: FunctionBody, type: Type, args: Sequence[Value], node: ast.Call) -> Value:
     """A scalar, vector or matrix made from ``args``."""
     if node.keywords:
         message = f"'{type}' takes no keyword arguments"
         raise body.problem(message, node.keywords[0])
     for arg in args:
         if isinstance(arg, Static | Closure):
-            settle(body, arg, node)
+            with_default_type(body, arg, node)
     match type:
         case Scalar(kind):
             return _scalar(body, kind, args, node)
@@ -49,14 +55,14 @@ def construct(body: Body, type: Type, args: Sequence[Value], node: ast.Call) -> 
             raise body.problem(f"{type} is not made by a call", node)
 
 
-def _scalar(body: Body, kind: Kind, args: Sequence[Value], node: ast.Call) -> Value:
+def _scalar(body: FunctionBody, kind: Kind, args: Sequence[Value], node: ast.Call) -> Value:
     type = Scalar(kind)
     if len(args) != 1:
         raise body.problem(f"'{type}' takes 1 argument, got {len(args)}", node)
     (arg,) = args
     if isinstance(arg, Whole):
         return _literal(body, arg.value, type, node)
-    value = settle(body, arg, node)
+    value = with_default_type(body, arg, node)
     if not isinstance(value.type, Scalar):
         hint = None
         if isinstance(value.type, Vector):
@@ -65,14 +71,14 @@ def _scalar(body: Body, kind: Kind, args: Sequence[Value], node: ast.Call) -> Va
     return cast(value, kind)
 
 
-def _literal(body: Body, value: int, type: Scalar, node: ast.Call) -> Expr:
+def _literal(body: FunctionBody, value: int, type: Scalar, node: ast.Call) -> Expr:
     match type.kind:
         case Kind.BOOL:
             return Const(value != 0, BOOL)
         case Kind.FLOAT:
-            fitted = fit(body, Whole(value), FLOAT, node)
-            assert fitted is not None
-            return fitted
+            coerced = coerce(body, Whole(value), FLOAT, node)
+            assert coerced is not None
+            return coerced
         case Kind.INT | Kind.UINT:
             if not -(2**31) <= value < 2**32:
                 raise body.problem(f"{value:.6g} does not fit into 32 bits", node)
@@ -81,7 +87,7 @@ def _literal(body: Body, value: int, type: Scalar, node: ast.Call) -> Expr:
             return Const(value - 2**32 if value >= 2**31 else value, INT)
 
 
-def _vector(body: Body, type: Vector, args: Sequence[Value], node: ast.Call) -> Expr:
+def _vector(body: FunctionBody, type: Vector, args: Sequence[Value], node: ast.Call) -> Expr:
     if not args:
         raise body.problem(f"'{type}' needs {type.size} components", node, f"write {type}(0)")
     if len(args) == 1:
@@ -102,31 +108,31 @@ def _vector(body: Body, type: Vector, args: Sequence[Value], node: ast.Call) -> 
     return Compose(tuple(parts), type, span=body.span(node))
 
 
-def _elements(body: Body, arg: Value, node: ast.Call) -> Sequence[Value]:
+def _elements(body: FunctionBody, arg: Value, node: ast.Call) -> Sequence[Value]:
     """The elements of a short array of numbers; else the argument itself."""
-    if isinstance(arg, Display):
+    if isinstance(arg, SequenceValue):
         return [arg]
-    match natural_type(arg):
+    match default_type(arg):
         case Array(Scalar() as element, length) if 2 <= length <= 4:
-            array = body.bind("values", settle(body, arg, node))
+            array = body.bind("values", with_default_type(body, arg, node))
             return [Index(array, integer(i), element) for i in range(length)]
         case _:
             return [arg]
 
 
-def _component(body: Body, arg: Value, type: Vector, node: ast.Call) -> Expr:
+def _component(body: FunctionBody, arg: Value, type: Vector, node: ast.Call) -> Expr:
     scalar = Scalar(type.kind)
     if isinstance(arg, Whole):
         if type.kind is Kind.BOOL:
             return Const(arg.value != 0, BOOL)
-        fitted = fit(body, arg, scalar, node)
-        assert fitted is not None
-        return fitted
-    if isinstance(arg, Display) and 2 <= len(arg.items) <= 4:
+        coerced = coerce(body, arg, scalar, node)
+        assert coerced is not None
+        return coerced
+    if isinstance(arg, SequenceValue) and 2 <= len(arg.items) <= 4:
         parts = tuple(_component(body, i, type, node) for i in arg.items)
         if all(isinstance(p.type, Scalar) for p in parts):
             return Compose(parts, vector_of(type.kind, len(parts)))
-    value = settle(body, arg, node)
+    value = with_default_type(body, arg, node)
     match value.type:
         case Scalar() | Vector():
             return cast(value, type.kind)
@@ -134,21 +140,21 @@ def _component(body: Body, arg: Value, type: Vector, node: ast.Call) -> Expr:
             raise body.problem(f"'{type}' is made of numbers and vectors, not {value.type}", node)
 
 
-def _matrix(body: Body, type: Matrix, args: Sequence[Value], node: ast.Call) -> Expr:
+def _matrix(body: FunctionBody, type: Matrix, args: Sequence[Value], node: ast.Call) -> Expr:
     size, column = type.size, Vector(Kind.FLOAT, type.size)
     if len(args) == 1:
         only = args[0]
-        if natural_type(only) is type:
-            return settle(body, only, node)
-        scalar = fit(body, only, FLOAT, node)
+        if default_type(only) is type:
+            return with_default_type(body, only, node)
+        scalar = coerce(body, only, FLOAT, node)
         if scalar is not None:
             return _diagonal(scalar, type)
     if len(args) == size:
-        columns = [fit(body, a, column, node) for a in args]
+        columns = [coerce(body, a, column, node) for a in args]
         if all(c is not None for c in columns):
             return Compose(tuple(c for c in columns if c is not None), type, span=body.span(node))
     if len(args) == size * size:
-        cells = [fit(body, a, FLOAT, node) for a in args]
+        cells = [coerce(body, a, FLOAT, node) for a in args]
         known = tuple(c for c in cells if c is not None)
         if len(known) == len(cells):
             rows = (known[i : i + size] for i in range(0, len(known), size))
@@ -167,10 +173,10 @@ def _diagonal(scalar: Expr, type: Matrix) -> Expr:
     return Compose(tuple(columns), type)
 
 
-def construct_struct(body: Body, cls: type, args: Sequence[Value], node: ast.Call) -> Expr:
+def construct_struct(body: FunctionBody, cls: type, args: Sequence[Value], node: ast.Call) -> Expr:
     """``Hit(distance, material=2)``: positional, by keyword, defaults."""
     try:
-        type = body.program.adopt(struct_type(cls))
+        type = body.compilation.adopt(struct_type(cls))
     except AnnotationError as error:
         raise body.problem(error.message, node, error.hint) from None
     assert isinstance(type, Struct)
@@ -194,7 +200,7 @@ def construct_struct(body: Body, cls: type, args: Sequence[Value], node: ast.Cal
 
 
 def _struct_field(
-    body: Body,
+    body: FunctionBody,
     cls: type,
     type: Struct,
     name: str,
@@ -205,22 +211,22 @@ def _struct_field(
     what = f"field '{name}' of '{type}'"
     if name in given:
         value, at = given[name]
-        return fit_or_refuse(body, value, wanted, at, what)
+        return coerce_or_raise(body, value, wanted, at, what)
     make = struct_defaults(cls).get(name)
     if make is None:
         raise body.problem(f"'{type}' needs its field '{name}'", node)
     try:
-        default = value_of(make(), f"{type}.{name}", body.program)
+        default = value_of(make(), f"{type}.{name}", body.compilation)
     except RefusedError as refused:
         raise body.problem(refused.message, node, refused.hint) from None
-    return fit_or_refuse(body, default, wanted, node, what)
+    return coerce_or_raise(body, default, wanted, node, what)
 
 
-def length_of(body: Body, value: Value, node: ast.expr) -> Value:
+def length_of(body: FunctionBody, value: Value, node: ast.expr) -> Value:
     """``len(x)``: known now for everything but a buffer."""
-    if isinstance(value, Display):
+    if isinstance(value, SequenceValue):
         return Whole(len(value.items))
-    expr = settle(body, value, node)
+    expr = with_default_type(body, value, node)
     match expr.type:
         case Array(_, length):
             return Whole(length)
@@ -234,15 +240,15 @@ def length_of(body: Body, value: Value, node: ast.expr) -> Value:
 
 def _size(value: Value) -> int:
     """How many single values a display holds."""
-    return sum(map(_size, value.items)) if isinstance(value, Display) else 1
+    return sum(map(_size, value.items)) if isinstance(value, SequenceValue) else 1
 
 
-def repeated(body: Body, element: Value, count: Value, node: ast.expr) -> Value:
+def repeated(body: FunctionBody, element: Value, count: Value, node: ast.expr) -> Value:
     """``[x] * n``: an array of equal elements."""
-    if not isinstance(count, Whole) or not isinstance(element, Display):
+    if not isinstance(count, Whole) or not isinstance(element, SequenceValue):
         raise body.problem("a list is repeated a number of times known now", node)
     total = _size(element) * count.value
     if not 1 <= total <= LARGEST_ARRAY:
         message = f"an array has 1 to {LARGEST_ARRAY} components, not {total}"
         raise body.problem(message, node, "more belong into a Buffer" if total > 0 else None)
-    return Display(element.items * count.value, is_list=True)
+    return SequenceValue(element.items * count.value, is_list=True)

@@ -10,12 +10,13 @@ import operator
 from collections.abc import Callable
 from typing import Any, Final
 
-from distal.frontend.lowering.body import Body
-from distal.frontend.objects import RefusedError, float_constant
+from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError
-from distal.frontend.types.coercion import settle, shown_type
+from distal.frontend.source import Node
+from distal.frontend.types.coercion import shown_type, with_default_type
 from distal.frontend.types.powers import power
-from distal.frontend.types.unification import do_not_mix, firm, meet
+from distal.frontend.types.python_objects import RefusedError, float_constant
+from distal.frontend.types.unification import concrete, do_not_mix, unify_operands
 from distal.frontend.values import Value, Whole
 from distal.ir.build import cast, splat
 from distal.ir.nodes import (
@@ -81,9 +82,7 @@ _SHIFTS = {BinaryOp.SHL, BinaryOp.SHR}
 _LARGEST_LITERAL = 1 << 64
 
 
-def binary(
-    body: Body, op: ast.operator, lhs: Value, rhs: Value, node: ast.expr | ast.stmt
-) -> Value:
+def binary(body: FunctionBody, op: ast.operator, lhs: Value, rhs: Value, node: Node) -> Value:
     """``lhs op rhs``."""
     if isinstance(op, ast.Pow):
         return power(body, lhs, rhs, node)
@@ -96,11 +95,11 @@ def binary(
             return folded
     if kind in _SHIFTS:
         return _shift(body, kind, lhs, rhs, node)
-    left, right = meet(body, lhs, rhs, node, kind.value)
+    left, right = unify_operands(body, lhs, rhs, node, kind.value)
     return _arithmetic(body, kind, left, right, node)
 
 
-def _fold(body: Body, op: BinaryOp, lhs: int, rhs: int, node: ast.expr | ast.stmt) -> Value | None:
+def _fold(body: FunctionBody, op: BinaryOp, lhs: int, rhs: int, node: Node) -> Value | None:
     if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD) and rhs == 0:
         raise body.problem("division by zero", node)
     if op is BinaryOp.DIV:
@@ -117,7 +116,7 @@ def _fold(body: Body, op: BinaryOp, lhs: int, rhs: int, node: ast.expr | ast.stm
     return Whole(value)
 
 
-def _arithmetic(body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt) -> Expr:
+def _arithmetic(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: Node) -> Expr:
     type, span = lhs.type, body.span(node)
     kind = kind_of(type)
     if kind is None:
@@ -145,9 +144,7 @@ def _is_zero(value: Expr) -> bool:
     return isinstance(value, Const) and value.value == 0
 
 
-def _check_matrix(
-    body: Body, op: BinaryOp, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt
-) -> None:
+def _check_matrix(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: Node) -> None:
     scaled = isinstance(rhs, Splat) or (isinstance(lhs, Splat) and op is BinaryOp.MUL)
     if op in (BinaryOp.ADD, BinaryOp.SUB) and not (scaled or isinstance(lhs, Splat)):
         return
@@ -161,23 +158,23 @@ def _check_matrix(
     raise body.problem(f"'{op.value}' does not take {lhs.type} and {rhs.type}", node, hint)
 
 
-def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Value:
+def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node) -> Value:
     if isinstance(rhs, Whole) and not 0 <= rhs.value < 32:
         raise body.problem("a shift goes by 0 to 31 bits", node)
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
         shifted = lhs.value << rhs.value if op is BinaryOp.SHL else lhs.value >> rhs.value
         return Whole(shifted)
-    value = settle(body, lhs, node)
+    value = with_default_type(body, lhs, node)
     kind = kind_of(value.type)
     if isinstance(rhs, Whole) and kind is Kind.UINT:
         count: Expr = Const(rhs.value, UINT)
     else:
-        count = settle(body, rhs, node)
+        count = with_default_type(body, rhs, node)
     if kind not in (Kind.INT, Kind.UINT) or isinstance(value.type, Matrix):
         raise body.problem(f"'{op.value}' does not take {value.type}", node)
     if kind_of(count.type) not in (Kind.INT, Kind.UINT):
         raise body.problem(f"'{op.value}' shifts by an int, not {count.type}", node)
-    # int and uint counts keep their bits, and only the low five tell.
+    # int and uint counts keep their bits, and only the low five count.
     count = cast(count, kind)
     if isinstance(value.type, Scalar):
         value = splat(value, count.type)
@@ -188,8 +185,8 @@ def _shift(body: Body, op: BinaryOp, lhs: Value, rhs: Value, node: ast.expr | as
     return Binary(op, value, count, value.type, span=body.span(node))
 
 
-def _matmul(body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Expr:
-    left, right = firm(body, lhs, rhs, node), firm(body, rhs, lhs, node)
+def _matmul(body: FunctionBody, lhs: Value, rhs: Value, node: Node) -> Expr:
+    left, right = concrete(body, lhs, rhs, node), concrete(body, rhs, lhs, node)
     match left.type, right.type:
         case (Matrix(n), Matrix(m)) if n == m:
             type: Type = left.type
@@ -205,7 +202,7 @@ def _matmul(body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt) -> Ex
     return MatMul(left, right, type, span=body.span(node))
 
 
-def unary(body: Body, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
+def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
     """``-x``, ``+x``, ``~x``; ``not`` is a condition's."""
     if isinstance(operand, Whole):
         match op:
@@ -215,7 +212,7 @@ def unary(body: Body, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
                 return operand
             case _:
                 return Whole(~operand.value)
-    value = settle(body, operand, node)
+    value = with_default_type(body, operand, node)
     kind, span = kind_of(value.type), body.span(node)
     match op:
         case ast.USub() | ast.UAdd() if kind in (Kind.FLOAT, Kind.INT, Kind.UINT):
@@ -234,7 +231,7 @@ def unary(body: Body, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
             raise body.problem(f"'{symbol}' does not take {value.type}", node, hint)
 
 
-def compare(body: Body, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -> Expr:
+def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -> Expr:
     """One comparison of a chain."""
     found = COMPARISONS.get(type(op))
     if found is None:
@@ -242,7 +239,7 @@ def compare(body: Body, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
         meaning: Any = getattr(operator, found.name.lower())
         return Const(bool(meaning(lhs.value, rhs.value)), BOOL)
-    left, right = meet(body, lhs, rhs, node, found.value)
+    left, right = unify_operands(body, lhs, rhs, node, found.value)
     kind = kind_of(left.type)
     if kind is None or isinstance(left.type, Matrix):
         raise body.problem(f"'{found.value}' does not compare {left.type}", node)
@@ -251,7 +248,7 @@ def compare(body: Body, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -
     return Compare(found, left, right, with_kind(left.type, Kind.BOOL), span=body.span(node))
 
 
-def _no_comparison(body: Body, op: ast.cmpop, node: ast.expr) -> SceneError:
+def _no_comparison(body: FunctionBody, op: ast.cmpop, node: ast.expr) -> SceneError:
     match op:
         case ast.Is() | ast.IsNot():
             symbol = "is" if isinstance(op, ast.Is) else "is not"
@@ -262,11 +259,11 @@ def _no_comparison(body: Body, op: ast.cmpop, node: ast.expr) -> SceneError:
             return body.problem("'in' is not part of scene code", node, hint)
 
 
-def condition(body: Body, value: Value, node: ast.expr, what: str) -> Expr:
+def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Expr:
     """A value that decides something: a bool, and nothing that only resembles one."""
     if isinstance(value, Whole):
         raise body.problem(f"{what} is a bool, not int", node, "compare it: x != 0")
-    expr = settle(body, value, node)
+    expr = with_default_type(body, value, node)
     if expr.type is BOOL:
         return expr
     hint = None

@@ -1,13 +1,12 @@
-"""``base ** exponent``: constant whole exponents multiply, others are the row ``pow``."""
+"""``base ** exponent``: constant whole exponents multiply, others call the built-in ``pow``."""
 
 from __future__ import annotations
 
-import ast
-
 from distal.diagnostics import Span
-from distal.frontend.lowering.body import Body
-from distal.frontend.types.coercion import settle
-from distal.frontend.types.unification import meet
+from distal.frontend.function_body import FunctionBody
+from distal.frontend.source import Node
+from distal.frontend.types.coercion import with_default_type
+from distal.frontend.types.unification import unify_operands
 from distal.frontend.values import Value, Whole
 from distal.ir.build import builtin, compare, number, select
 from distal.ir.limits import LARGEST_POWER, SMALLEST
@@ -15,23 +14,23 @@ from distal.ir.nodes import Binary, BinaryOp, CompareOp, Const, Expr
 from distal.ir.types import FLOAT, Kind, Matrix, kind_of
 
 
-def power(body: Body, base: Value, exponent: Value, node: ast.expr | ast.stmt) -> Value:
-    """``base ** exponent``: constant whole exponents multiply, others are the row ``pow``."""
+def power(body: FunctionBody, base: Value, exponent: Value, node: Node) -> Value:
+    """``base ** exponent``: constant whole exponents multiply, others call the built-in ``pow``."""
     whole = _whole_exponent(exponent)
     if isinstance(base, Whole) and whole is not None and isinstance(exponent, Whole):
         return _fold_power(body, base.value, whole, node)
     if isinstance(base, Whole) and whole is None:
-        exponent_expr = settle(body, exponent, node)
+        exponent_expr = with_default_type(body, exponent, node)
         if kind_of(exponent_expr.type) is not Kind.FLOAT:
             raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
     if whole is None:
-        left, right = meet(body, base, exponent, node, "**")
+        left, right = unify_operands(body, base, exponent, node, "**")
         if kind_of(left.type) is not Kind.FLOAT or isinstance(left.type, Matrix):
             if kind_of(left.type) in (Kind.INT, Kind.UINT):
                 raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
             raise body.problem(f"'**' does not take {left.type}", node)
         return builtin("pow", left, right)
-    value = settle(body, base, node)
+    value = with_default_type(body, base, node)
     kind = kind_of(value.type)
     if kind is Kind.BOOL or kind is None or isinstance(value.type, Matrix):
         raise body.problem(f"'**' does not take {value.type}", node)
@@ -54,7 +53,7 @@ def _whole_exponent(exponent: Value) -> int | None:
             return None
 
 
-def _fold_power(body: Body, base: int, exponent: int, node: ast.expr | ast.stmt) -> Value:
+def _fold_power(body: FunctionBody, base: int, exponent: int, node: Node) -> Value:
     if exponent < 0:
         if base == 0:
             raise body.problem("division by zero", node)
@@ -64,7 +63,7 @@ def _fold_power(body: Body, base: int, exponent: int, node: ast.expr | ast.stmt)
     return Whole(base**exponent)
 
 
-def _multiplied(body: Body, base: Expr, exponent: int, node: ast.expr | ast.stmt) -> Expr:
+def _multiplied(body: FunctionBody, base: Expr, exponent: int, node: Node) -> Expr:
     """Repeated squaring; each power of two is computed once."""
     if exponent == 0:
         return number(1, base.type)
@@ -89,8 +88,8 @@ def _multiplied(body: Body, base: Expr, exponent: int, node: ast.expr | ast.stmt
     return result if exponent > 0 else _reciprocal(body, result, span)
 
 
-def _reciprocal(body: Body, product: Expr, span: Span) -> Expr:
-    """1 / product, as large as a power becomes (the row ``pow``) where that is 0."""
+def _reciprocal(body: FunctionBody, product: Expr, span: Span) -> Expr:
+    """1 / product, as large as a power becomes (the built-in ``pow``) where that is 0."""
     product = body.bind("product", product)
     inverse = Binary(BinaryOp.DIV, number(1, product.type), product, product.type, span=span)
     size = builtin("abs", product)

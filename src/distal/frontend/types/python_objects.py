@@ -19,7 +19,7 @@ from distal.frontend.values import (
     LARGEST_FLOAT,
     TRUE,
     Closure,
-    Display,
+    SequenceValue,
     Static,
     Value,
     Whole,
@@ -180,14 +180,14 @@ def _sequence(items: Sequence[Any], text: str, declarations: Declarations) -> Va
     if len(inner) == len(items):
         vectors = _rows(inner, text)
         if vectors is not None:
-            return Display(vectors, is_list=True, captured=True)
+            return SequenceValue(vectors, is_list=True, captured=True)
     values = tuple(value_of(i, f"{text}[{n}]", declarations) for n, i in enumerate(items))
     for value in values:
         if isinstance(value, Static):
             raise RefusedError(
                 f"'{text}' holds {value.object!r:.60}, which is no value of scene code"
             )
-    return Display(values, is_list=True, captured=True)
+    return SequenceValue(values, is_list=True, captured=True)
 
 
 def _check_size(size: int, text: str) -> None:
@@ -224,10 +224,10 @@ def _struct_value(obj: Any, text: str, declarations: Declarations) -> Expr:
     parts = []
     for name, field_type in struct.fields:
         value = value_of(getattr(obj, name), f"{text}.{name}", declarations)
-        fitted = fit_constant(value, field_type)
-        if fitted is None:
+        coerced = coerce_constant(value, field_type)
+        if coerced is None:
             raise RefusedError(f"'{text}.{name}' is not the {field_type} its struct says")
-        parts.append(fitted)
+        parts.append(coerced)
     return Construct(tuple(parts), struct)
 
 
@@ -245,35 +245,35 @@ def _array(obj: Any, text: str) -> Value:
         return Compose(tuple(parts), Matrix(shape[0]))
     if len(shape) == 1 and shape[0] > 0:
         items = tuple(_scalar(x, kind, text) for x in obj.tolist())
-        return Display(items, is_list=True, captured=True)
+        return SequenceValue(items, is_list=True, captured=True)
     if len(shape) == 2 and 2 <= shape[1] <= 4 and shape[0] > 0:
         vector = vector_of(kind, shape[1])
         rows = (Compose(tuple(_scalar(x, kind, text) for x in row), vector) for row in obj.tolist())
-        return Display(tuple(rows), is_list=True, captured=True)
+        return SequenceValue(tuple(rows), is_list=True, captured=True)
     raise RefusedError(
         f"'{text}' is an array of shape {shape}, which no type holds", "use a Buffer"
     )
 
 
-def fit_constant(value: Value, type: Type) -> Expr | None:
+def coerce_constant(value: Value, type: Type) -> Expr | None:
     """A captured value as a constant of exactly this type, or None."""
     match value:
         case Whole(number):
             return whole_to(number, type)
-        case Display(items):
-            return _fit_display(items, type)
+        case SequenceValue(items):
+            return _coerce_sequence(items, type)
         case Static() | Closure():
             return None
         case _:
             return value if value.type is type else None
 
 
-def _fit_display(items: tuple[Value, ...], type: Type) -> Expr | None:
+def _coerce_sequence(items: tuple[Value, ...], type: Type) -> Expr | None:
     match type:
         case Array(element, length) if length == len(items):
-            parts = [fit_constant(i, element) for i in items]
+            parts = [coerce_constant(i, element) for i in items]
         case Vector(kind, size) if size == len(items):
-            parts = [fit_constant(i, Scalar(kind)) for i in items]
+            parts = [coerce_constant(i, Scalar(kind)) for i in items]
         case _:
             return None
     known = tuple(p for p in parts if p is not None)

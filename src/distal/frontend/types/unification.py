@@ -3,28 +3,41 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from typing import Final
 
-from distal.frontend.lowering.body import Body
+from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError
-from distal.frontend.types.coercion import fit, natural_type, settle
-from distal.frontend.values import Display, Value, Whole
+from distal.frontend.source import Node
+from distal.frontend.types.coercion import coerce, default_type, shown_type, with_default_type
+from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import splat
 from distal.ir.nodes import BinaryOp, CompareOp, Expr, Read
-from distal.ir.types import Array, Kind, Matrix, Scalar, Type, Vector, kind_of, vector_of
+from distal.ir.types import (
+    FLOAT,
+    INT,
+    Array,
+    Kind,
+    Matrix,
+    Scalar,
+    Type,
+    Vector,
+    kind_of,
+    vector_of,
+)
 
 
-def meet(
-    body: Body, lhs: Value, rhs: Value, node: ast.expr | ast.stmt, symbol: str
+def unify_operands(
+    body: FunctionBody, lhs: Value, rhs: Value, node: Node, symbol: str
 ) -> tuple[Expr, Expr]:
     """Both sides as one type: a literal takes the other side's kind, a scalar is splatted."""
     if isinstance(lhs, Whole) and not isinstance(rhs, Whole):
-        right = firm(body, rhs, lhs, node)
-        return _literal_beside(body, lhs, right, node, symbol), right
+        right = concrete(body, rhs, lhs, node)
+        return _coerce_literal(body, lhs, right, node, symbol), right
     if isinstance(rhs, Whole) and not isinstance(lhs, Whole):
-        left = firm(body, lhs, rhs, node)
-        return left, _literal_beside(body, rhs, left, node, symbol)
-    left, right = firm(body, lhs, rhs, node), firm(body, rhs, lhs, node)
+        left = concrete(body, lhs, rhs, node)
+        return left, _coerce_literal(body, rhs, left, node, symbol)
+    left, right = concrete(body, lhs, rhs, node), concrete(body, rhs, lhs, node)
     if left.type is right.type:
         return left, right
     if kind_of(left.type) is kind_of(right.type) and kind_of(left.type) is not None:
@@ -45,34 +58,32 @@ def _widening(type: Type) -> frozenset[str]:
     return frozenset({"*", "/"}) if isinstance(type, Matrix) else _EVERY_SYMBOL
 
 
-def firm(body: Body, value: Value, other: Value, node: ast.expr | ast.stmt) -> Expr:
+def concrete(body: FunctionBody, value: Value, other: Value, node: Node) -> Expr:
     """A value with its own type; a captured tuple is a vector beside a vector."""
-    if isinstance(value, Display):
-        other_type = natural_type(other)
+    if isinstance(value, SequenceValue):
+        other_type = default_type(other)
         if isinstance(other_type, Matrix):
             other_type = vector_of(Kind.FLOAT, other_type.size)
         if isinstance(other_type, Vector):
-            fitted = fit(body, value, other_type, node)
-            if fitted is not None:
-                return fitted
-    return settle(body, value, node)
+            coerced = coerce(body, value, other_type, node)
+            if coerced is not None:
+                return coerced
+    return with_default_type(body, value, node)
 
 
-def _literal_beside(
-    body: Body, literal: Whole, other: Expr, node: ast.expr | ast.stmt, symbol: str
+def _coerce_literal(
+    body: FunctionBody, literal: Whole, other: Expr, node: Node, symbol: str
 ) -> Expr:
     """The literal as the other side's kind; a scalar, or splatted beside a vector or matrix."""
     kind = kind_of(other.type)
     if kind is None or kind is Kind.BOOL:
-        raise do_not_mix(body, other, settle(body, literal, node), node, symbol)
-    scalar = fit(body, literal, Scalar(kind), node)
+        raise do_not_mix(body, other, with_default_type(body, literal, node), node, symbol)
+    scalar = coerce(body, literal, Scalar(kind), node)
     assert scalar is not None
     return splat(scalar, other.type)
 
 
-def do_not_mix(
-    body: Body, lhs: Expr, rhs: Expr, node: ast.expr | ast.stmt, symbol: str
-) -> SceneError:
+def do_not_mix(body: FunctionBody, lhs: Expr, rhs: Expr, node: Node, symbol: str) -> SceneError:
     """The mistake of bringing two types together that an operator does not join."""
     left, right = lhs.type, rhs.type
     message = f"{left} and {right} do not mix in '{symbol}'"
@@ -96,7 +107,7 @@ def do_not_mix(
     return body.problem(message, node, hint)
 
 
-def _int_hint(body: Body, value: Expr) -> str:
+def _int_hint(body: FunctionBody, value: Expr) -> str:
     """How an int meets a float."""
     if isinstance(value, Read) and value.name in body.whole_starts:
         start = body.whole_starts[value.name]
@@ -104,3 +115,34 @@ def _int_hint(body: Body, value: Expr) -> str:
     if isinstance(value.type, Vector):
         return f"write vec{value.type.size}(...) around the {value.type}"
     return "write float(...) around the int"
+
+
+def unify_values(
+    body: FunctionBody, values: Sequence[Value], node: ast.expr, what: str
+) -> tuple[Expr, ...]:
+    """All values as one type: literals take the type of the others, nothing is widened."""
+    concrete = [v for v in values if not isinstance(v, Whole)]
+    types = list(dict.fromkeys(default_type(v) for v in concrete))
+    if not concrete:
+        return tuple(with_default_type(body, v, node) for v in values)
+    if len(types) == 1 and types[0] is not None:
+        wanted = types[0]
+        coerced = [coerce(body, v, wanted, node) for v in values]
+        known = tuple(f for f in coerced if f is not None)
+        if len(known) == len(values):
+            return known
+    for value in values:
+        if isinstance(value, Static | Closure):
+            with_default_type(body, value, node)
+    kinds = " and ".join(dict.fromkeys(shown_type(v) for v in values))
+    hint = _unify_hint(values)
+    raise body.problem(f"{what} {kinds}", node, hint)
+
+
+def _unify_hint(values: Sequence[Value]) -> str | None:
+    vectors = [t for v in values if isinstance(t := default_type(v), Vector)]
+    scalars = [v for v in values if isinstance(default_type(v), Scalar)]
+    if len(set(vectors)) == 1 and scalars:
+        return f"write {vectors[0]}(...) around the {default_type(scalars[0])}"
+    types = {default_type(v) for v in values}
+    return "write float(...) around the int" if types == {INT, FLOAT} else None

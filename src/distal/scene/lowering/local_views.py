@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 from distal.frontend import Assembly, lower
-from distal.frontend.signatures.signatures import read_header
+from distal.frontend.signatures.signatures import read_signature
 from distal.ir.build import boolean, cast, field, number
 from distal.ir.nodes import (
     Assign,
@@ -182,7 +182,7 @@ class LocalView(_ImageView):
 
     def compose(self, assembly: Assembly) -> str:
         """The image's own function with other returns."""
-        slot = read_header(self._image.overloads[0]).slots[0].name
+        slot = read_signature(self._image.overloads[0]).parameters[0].name
         call: Any = assembly.call(self._image, {slot: Read(slot, FRAME)})
         function = assembly.function(call.function)
         local = self._local

@@ -13,7 +13,7 @@ from typing import Any
 from distal.diagnostics import Span
 from distal.fields import boxes
 from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive
-from distal.frontend.signatures.signatures import read_header
+from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
@@ -116,7 +116,7 @@ def _grows(growth: float) -> str | None:
 
 
 def _is_flat(function: Func, place: Span | None) -> bool:
-    slots = read_header(function.overloads[0]).slots
+    slots = read_signature(function.overloads[0]).parameters
     annotation = next((s.annotation for s in slots if s.name == "p"), None)
     type = getattr(annotation, "__distal_type__", None)
     if not isinstance(type, Vector) or type not in (VEC2, VEC3):

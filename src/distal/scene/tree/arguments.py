@@ -17,7 +17,7 @@ from distal.diagnostics import CompileError, Span
 from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Limit, Requirement
 from distal.frontend.problems import did_you_mean
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.signatures import MISSING, read_header
+from distal.frontend.signatures.signatures import MISSING, read_signature
 from distal.ir.nodes import Uniform
 from distal.ir.types import BOOL, FLOAT, INT, Buffer, Kind, Struct, Texture, Type, Vector
 from distal.lang.expressions import Symbolic
@@ -82,11 +82,11 @@ def slots_of(func: Func) -> tuple[FunctionParameter, ...]:
     """
     found = _slots.get(func)
     if found is None:
-        header = read_header(func.overloads[0])
+        header = read_signature(func.overloads[0])
         if header.problems:
             raise CompileError(header.problems)
         made = []
-        for slot in header.slots:
+        for slot in header.parameters:
             try:
                 type: Type | None = to_type(slot.annotation)
             except UnboundVariableError:

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from distal.diagnostics import Span
 from distal.frontend import Assembly
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.signatures import MISSING, read_header
+from distal.frontend.signatures.signatures import MISSING, read_signature
 from distal.ir.nodes import Expr
 from distal.ir.types import BOOL, INT, Type
 from distal.lang.expressions import Expression
@@ -102,7 +102,7 @@ class FunctionCall(Unchanging):
 
 def result_of(func: Func) -> Type | None:
     """The type that a function's first line says it gives, or None."""
-    result = read_header(func.overloads[0]).result
+    result = read_signature(func.overloads[0]).result
     if result is MISSING:
         return None
     try:
