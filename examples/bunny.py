@@ -1,6 +1,6 @@
 """A sitting bunny of ellipsoids and capsules that melt into each other, under two lamps.
 
-Turn it, feed it. Try: softness at 0 shows the pieces it is made of.
+Turn the camera and change the weight. Try: softness 0 shows the separate pieces.
 After the bunny of a graphics blog, whose mouse turned the camera and changed the weight.
 """
 
@@ -31,7 +31,7 @@ GRASS = "#7c9c58"
 
 fat = weight - 1.0
 
-# It looks along +x; only the side of +z is modelled, the other is its mirror image.
+# It looks along +x; only the side of +z is modelled; the other side mirrors it.
 body = Ellipsoid((0.62 + 0.2 * fat, 0.52 + 0.17 * fat, 0.44 * weight)).rotate(z=0.25)
 body = body.translate(-0.14, 0.56 + 0.1 * fat, 0.0)
 chest = Ellipsoid((0.32, 0.42, 0.3 * weight)).rotate(z=-0.3).translate(0.34, 0.64, 0.0)

@@ -1,8 +1,8 @@
-"""Every closed solid of the library on one table, each as it is without any number given.
+"""Every closed solid of the library on one table, each with its default sizes.
 
-The list is the library's own: what is added there lies here the next day. Their names are in the
-catalogue of the documentation, in the same order. All of them are one kernel; normals by
-differences halve its compilation.
+The list comes from the library: a new shape appears here by itself. The catalogue of the
+documentation names them in the same order. All shapes are compiled to one kernel; normals by
+differences halve the time that this takes.
 """
 
 import inspect
@@ -20,7 +20,7 @@ SPACING = 2.1
 
 
 def stands_by_itself(name: str) -> bool:
-    """Whether a shape has an end and an inside, and needs no data."""
+    """Whether a shape is bounded, has an inside, and needs no data."""
     row, made = PRIMITIVES[name], CLASSES[name]
     given = [p.default for p in inspect.signature(made).parameters.values()]
     complete = not any(d is inspect.Parameter.empty or isinstance(d, Buffer) for d in given)

@@ -1,6 +1,6 @@
 """A city of 3,721 towers at dusk, every one repeated from one: height, steps and windows differ.
 
-The index of a repetition tells the copies apart: ``cell`` in a field and in a pattern. Try: the
+The index of a repetition distinguishes the copies: ``cell`` in a field and in a pattern. Try: the
 share of windows that are lit.
 """
 
@@ -41,7 +41,7 @@ SUN = vec3(-0.55, 0.1, -0.8)
 
 @func
 def chance(cell: vec3, which: int) -> float:
-    """A number from 0 to 1 for a tower; another for each ``which``."""
+    """A random number from 0 to 1 for a tower, a different one for each ``which``."""
     return fraction(lattice_hash(ivec3(round(cell)), which))
 
 
@@ -53,7 +53,7 @@ def middle_of(cell: vec3) -> vec2:
 
 @func
 def height_of(cell: vec3) -> float:
-    """Low at the rim, high in the middle, a few high anywhere."""
+    """Low at the edge of the city, high in the middle, a few high anywhere."""
     luck = chance(cell, 1)
     lot = middle_of(cell)
     middle = exp(-dot(lot, lot) / 50.0)
@@ -91,7 +91,7 @@ def facade(p: vec3, n: vec3, cell: vec3, lit: float) -> Surface:
     wall = step(abs(n.y), 0.5)
     pane = wall * step(inside.x, 0.3) * step(inside.y, 0.28)
     on = step(chance(room, 7), lit)
-    # Windows smaller than a pixel show what they give on average.
+    # Windows smaller than a pixel show their mean color.
     near = 1.0 - smoothstep(13.0, 30.0, length(middle_of(cell) - vec2(6.6, 13.5)))
     pane = mix(0.33 * wall, pane, near)
     on = mix(lit, on, near)
@@ -103,7 +103,7 @@ def facade(p: vec3, n: vec3, cell: vec3, lit: float) -> Surface:
 
 @func
 def streets(p: vec3) -> Surface:
-    """Asphalt; lamps along every street, wide avenues, and the dark of the sea around."""
+    """Asphalt; lamps along every street, wide avenues, and the dark sea around."""
     lot = abs(fract(p.xz) - 0.5)
     middle = 0.5 - max(lot.x, lot.y)
     city = step(max(abs(p.x), abs(p.z)), 30.5)

@@ -1,4 +1,4 @@
-"""Course, step 4: the scene also says what is nearest, so that each sphere has its own colour."""
+"""Course, step 4: the scene also returns the nearest sphere, so that each has its own colour."""
 
 from distal.lang import Frame, dot, func, image, length, max, normalize, vec2, vec3
 

@@ -1,6 +1,6 @@
 """A sphere and an orbiting torus melt into each other above a checkered floor.
 
-The founding scene: soft shadow, hemisphere light, rim, fog and a sun disc, tone-mapped; all of it
+Our first scene: soft shadow, hemisphere light, rim, fog and a sun disc, tone-mapped; all of it
 moves with time. Ported from the daslang tutorial "Signed-Distance-Field Raymarcher".
 """
 

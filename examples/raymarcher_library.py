@@ -1,7 +1,7 @@
 """The picture of ``raymarcher_objects``, written as a shader that calls the library's functions.
 
-What a scene does by itself is spelled out here: the distance to its shapes, their materials, the
-lights, how far rays go, and how light becomes what a display shows.
+It writes out what a scene object does by itself: the distance to the shapes, their materials, the
+lights, how far rays go, and how linear light is encoded for a display.
 """
 
 from distal.fields.combine.smooth import cubic
@@ -70,7 +70,7 @@ def blob_color(p: vec3, time: float) -> vec3:
 
 @func
 def material(p: vec3, time: float) -> Surface:
-    """What is seen at a place of the surface."""
+    """The material at a point on the surface."""
     if floor(p) < blob(p, time):
         return matte(mix(decode_srgb(DARK), decode_srgb(LIGHT), checker(p)))
     return matte(blob_color(p, time))
@@ -78,7 +78,7 @@ def material(p: vec3, time: float) -> Surface:
 
 @func
 def sun(p: vec3) -> LightSample:
-    """A sun that shades a 32nd of the way to what hides it."""
+    """A sun so wide that the edge of a shadow blurs by 1/32 of the distance to its caster."""
     return distant_light(p, SUN, 0.85, vec3(1.0), 2.0 * atan(1.0 / 32.0))
 
 

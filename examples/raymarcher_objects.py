@@ -1,8 +1,8 @@
-"""The founding raymarcher's scene, made of objects: a sphere and an orbiting torus melt together.
+"""The scene of ``raymarcher``, made of objects: a sphere and an orbiting torus melt together.
 
 The same shapes, places, sun and camera as ``raymarcher``, and its colors, read as sRGB: light is
-linear here. Marching, shadows, shading and fog are the library's; ``raymarcher_library`` makes this
-very picture from the library's functions.
+linear here. Marching, shadows, shading and fog are the library's; ``raymarcher_library`` makes the
+same picture from the library's functions.
 Ported from the daslang tutorial "Signed-Distance-Field Raymarcher".
 """
 

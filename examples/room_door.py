@@ -1,7 +1,7 @@
-"""A dark room, and light that falls through its open door: soft edges, and corners in shade.
+"""A dark room, and light that falls through its open door: soft shadows and dark corners.
 
-One sun, as wide as a lamp, makes the beam; what little light comes from everywhere is hidden by
-ambient occlusion. Try: the door's opening, and the sun's width.
+One wide sun makes the beam. There is a little light from all around; ambient occlusion darkens it
+in the corners. Try: the door's opening, and the sun's width.
 """
 
 from distal import (

@@ -1,7 +1,7 @@
 """A sphere under a red, a green and a blue light, and a little light from all around.
 
 The first picture of the article "Raytracing and Raycasting with Signed Distance Functions"
-(sdfray): two point lights, one far away, seen from 10 units through a screen of 5 cm.
+(sdfray): two point lights and a distant one; the camera is 10 units away and its lens narrow.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 """A box that scatters, a glass ball and a cylinder that mirrors, in a row on a fine checker.
 
-Three materials mixed of the same weights: diffuse, specular, transmission. From the article
+Three materials with the same three weights: diffuse, specular, transmission. From the article
 "Raytracing and Raycasting with Signed Distance Functions" (sdfray), seen from a little higher.
 """
 

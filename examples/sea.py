@@ -1,7 +1,7 @@
-"""Sunset on the sea: rays stride over the waves, then find where they went in between two steps.
+"""Sunset on the sea: rays take long steps over the waves, then search for the surface in between.
 
-The cost is a picture, too: ``--view steps``, here and of ``sea_sphere_tracing``, which asks the
-waves several times as often for the same sea. After "Sunset on the sea" of a graphics blog.
+``--view steps`` shows the cost of each pixel: ``sea_sphere_tracing`` evaluates the waves several
+times as often for the same picture. After "Sunset on the sea" of a graphics blog.
 """
 
 from typing import Any
@@ -32,7 +32,7 @@ SHORTER, FLATTER = 1.42, 0.62  # from a wave to the next
 SPREAD = 1.1  # how far waves turn from the wind, in radians
 GRAVITY = 2.5
 
-# What the waves' sums keep below. A wave is exp(sin(x) - 1), 0.135 to 1, 0.466 on average, and its
+# Upper bounds of sums of waves. A wave is exp(sin(x) - 1), 0.135 to 1, 0.466 on average, and its
 # derivative at most 0.537.
 AMPLITUDES = HIGHEST * (1.0 - FLATTER**WAVES) / (1.0 - FLATTER)
 CREST, TROUGH = 0.534 * AMPLITUDES, -0.331 * AMPLITUDES

@@ -1,6 +1,6 @@
 """The sea by sphere tracing: the picture of ``sea``, at several times the cost.
 
-Rays that skim the waves nearly stop: look at ``--view steps`` of both.
+Rays that pass close above the waves nearly stop: compare ``--view steps`` of both.
 """
 
 from sea import sea
