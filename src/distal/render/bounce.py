@@ -54,7 +54,7 @@ def seen_plain(
         lights: The light of a number, from 0, as a point receives it.
         ambient: Light from all around on a white surface, by its normal.
         background: Light from a direction in which there is no surface.
-        bounds: Box that the surface lies in.
+        bounds: Box around the surface.
         numbers: The numbers of the march.
         look: Ambient occlusion and fog.
         steps: The largest number of steps of a ray.

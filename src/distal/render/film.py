@@ -1,4 +1,7 @@
-"""From pixels to rays and back: samples within a pixel, spread and filtered."""
+"""Samples within a pixel: their places, and their filtered mean.
+
+Input: a pixel, a camera, and the light along a ray. Output: linear light and straight alpha.
+"""
 
 from __future__ import annotations
 

@@ -2,13 +2,13 @@
 
 Input: a field that is a height over ground, roughly (positive above), a ray, the height
 that all of it stays below. Output: a ``Hit``. Sphere tracing nearly stops where a ray
-skims a surface; this one strides on and finds the crossing between its last two steps.
+skims a surface; this one takes long steps and finds the crossing between the last two.
 
-Source: the founding blog's "Sunset on the sea": steps of the larger of the distance and a length
-that grows, then a search that takes off the interval what the field's value at each probe rules
-out. It halves what is left; here the line through both ends' values tells where to look (the rule
-of false position in its "Illinois" form: Dowell and Jarratt, 1971), and the line through the last
-two values how long a step may be: fewer probes, and nearer to the surface.
+Source: the blog post "Sunset on the sea": steps of the larger of the distance and a length
+that grows, then a search that removes from the interval what the field's value at each probe rules
+out. The post halves what is left. Here the line through both ends' values gives the next probe (the
+rule of false position in its "Illinois" form: Dowell and Jarratt, 1971), and the line through the
+last two values the length of a step: fewer probes, and nearer to the surface.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from distal.render.march import Hit, March, crossing
 
 UPRIGHT = 1e-6
 # A step is taken to where the line through the last two values meets 0, and past it by this much:
-# the next probe should lie below. It goes so far beyond the field's promise at most.
+# the next probe should lie below. LONGEST limits it, in safe steps of the field.
 PAST = 1.02
 LONGEST = 6.0
 # The search ends so many thresholds from the surface: the line's last crossing is far nearer.

@@ -1,8 +1,8 @@
-"""What else is known of a pixel besides its color, as plain values: for compositing and denoising.
+"""Layers of a picture: depth, normal, albedo and material as plain values, for compositing.
 
-Input: the ray through a pixel's middle, and what a renderer may ask for. What flows out:
-values, not colors: up to three numbers, and in w whether anything was met. Each is asked once for
-each pixel: a mean of depths or of numbers of materials is a place or a material that is nowhere.
+Input: the ray through a pixel's middle, and the functions and numbers of a scene. Output: values,
+not colors: up to three numbers, and in w whether there is a surface. A pixel has one sample: a
+mean of depths or of numbers of materials means nothing.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ def through_middle(
     camera: Callable[[vec2], Ray],
     radiance: Callable[[Ray], vec4],
 ) -> vec4:
-    """What the ray through a pixel's middle brings back, as it is."""
+    """The value of the ray through a pixel's middle, unfiltered."""
     return radiance(camera((2.0 * coord - resolution) / resolution.y))
 
 
 @func
 def refined(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
-    """How far the surface is, closer than a march ends: a picture needs a share of a pixel only.
+    """The distance to the surface, more exact than a march, which stops at a share of a pixel.
 
-    Newton's steps along the ray, no farther than a hit may be off; a ray that passes by within the
-    march's threshold has no better answer.
+    Newton's method along the ray, no farther than the error of a hit. A ray that only passes by
+    within the threshold keeps its distance.
     """
     t = hit.t
     room = FORGIVING * numbers.threshold * hit.t
@@ -117,7 +117,7 @@ def layer_material(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """The number of the material of which most shows."""
+    """The number of the material with the largest share."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING

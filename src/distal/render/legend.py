@@ -1,4 +1,4 @@
-"""A legend over a picture of costs: a bar of the colours in use, with numbers at its ends.
+"""A legend over the view of steps: a bar of its colours, with numbers at the ends.
 
 Input: a pixel's colour and place. Output: the colour, or the legend's. Numbers are
 drawn by arithmetic, so that every target can.

@@ -13,7 +13,7 @@ UNREACHED = vec4(0.08, 0.08, 0.1, 1.0)
 
 @func
 def shown_number(value: float, reached: bool) -> vec4:
-    """0 to 1 as black to white; below 0 ever more blue, above 1 warmer, a line at each unit."""
+    """0 to 1 as black to white; bluer below 0, warmer above 1, with a line at each unit."""
     below = vec3(0.15, 0.4, 1.0) * (1.0 - exp(at_most_zero(value)))
     within = vec3(clamp(value, 0.0, 1.0))
     warm = mix(vec3(0.75, 0.2, 0.05), vec3(1.0, 0.95, 0.85), exp(-0.5 * max(value - 1.0, 0.0)))

@@ -1,6 +1,7 @@
-"""What one ray of a picture meets: the picture's own march, told in numbers instead of a color.
+"""The probe of one pixel: what its ray meets, as numbers.
 
-Input: a pixel and the scene's own functions. Output: a ``Seen``.
+Input: a pixel, and the functions and numbers of a scene. Output: a ``Seen``. The ray marches as in
+the picture itself.
 """
 
 from __future__ import annotations

@@ -1,8 +1,10 @@
 """Sphere tracing: along a ray to the nearest surface.
 
-Each step goes as far as the field promises no surface, and on to where the next ball would touch
-were the surface ahead flat (Bálint and Valasek, "Accelerating Sphere Tracing", 2018); when the two
-balls do not touch, the step is taken back (Keinert et al., "Enhanced Sphere Tracing", 2014).
+Input: a ray, a field, a box and the numbers of a march. Output: a ``Hit``. The field guarantees
+that there is no surface within a ball around each point. A step goes across this ball and on to
+where the next ball would touch it if the surface ahead were flat (Bálint and Valasek, "Accelerating
+Sphere Tracing", 2018). If the two balls do not touch, the step is taken back (Keinert et al.,
+"Enhanced Sphere Tracing", 2014).
 """
 
 from __future__ import annotations
@@ -11,8 +13,8 @@ from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct, vec2
 from distal.render.camera import Ray
 
-# How much of the ball that is guessed to come next is stepped over, and the largest it may be, in
-# radii of the one before.
+# The share of the predicted next ball that a step crosses, and the largest predicted radius, in
+# radii of the ball before.
 RELAXATION = 0.9
 LONGEST = 8.0
 # When steps run out, the closest approach is a hit if it came within so many thresholds.
@@ -23,8 +25,11 @@ FORGIVING = 4.0
 class March:
     """The numbers of a march.
 
-    ``divisor``: what distances are divided by for a safe step. ``near`` and ``far``: where rays
-    begin and end. ``threshold``: how near is a hit, as a share of the way along the ray.
+    Attributes:
+        divisor: What distances are divided by for a safe step.
+        near: Distance along the ray where rays begin.
+        far: Distance along the ray where rays end.
+        threshold: How near to the surface a hit is, as a share of the distance along the ray.
     """
 
     divisor: float
@@ -35,9 +40,13 @@ class March:
 
 @struct
 class Hit:
-    """Where a ray ended: how far along, whether at a surface, after how many steps.
+    """Where a ray ended.
 
-    ``side`` is -1 when the ray began inside.
+    Attributes:
+        t: Distance along the ray, in scene units.
+        found: Whether there is a surface.
+        steps: How often the field was evaluated.
+        side: -1 if the ray began inside a solid, else 1.
     """
 
     t: float
@@ -65,7 +74,13 @@ def crossing(ray: Ray, bounds: Bounds) -> vec2:
 def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -> Hit:
     """The first surface along a ray.
 
-    ``bounds`` have room around the surface (``settings.grown_bounds``): rays end at their sides.
+    Args:
+        field: Signed distance.
+        ray: Ray.
+        bounds: Box with a margin around the surface (``settings.grown_bounds``): rays end at its
+            sides.
+        numbers: The numbers of the march.
+        steps: The largest number of steps.
     """
     span = crossing(ray, bounds)
     t = max(span.x, numbers.near)
@@ -87,11 +102,12 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
             value = -value
         d = value / numbers.divisor
         if step > free and d + free < step:
-            # The balls do not touch: something may lie between. Back to the first one's edge.
+            # The balls do not touch: a surface may be between. Back to the first one's edge.
             t += free - step
             step = free
         else:
-            # A hit is judged by the value itself: where the field is steep its share is far away.
+            # A hit depends on the value, not on the safe step: where the field is steep, the
+            # safe step is small far away from the surface too.
             error = value / max(t, 1e-3)
             if error < best:
                 best = error
@@ -108,10 +124,10 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
             free = d
             t += step
             if t > end and t - step + free < end:
-                # The promise ends before the ray does: the longer step is tried at the ray's end.
+                # The free ball ends before the ray does: the longer step is tried at the ray's end.
                 step += end - t
                 t = end
-    # A near miss long before the ray ran out of steps is none: that surface was passed.
+    # An early near miss is not a hit: the ray passed that surface.
     ran_out = taken == steps and not found and t < end and best_t > 0.7 * t
     if ran_out and best < FORGIVING * numbers.threshold:
         found = True

@@ -1,7 +1,8 @@
-"""Direct light: what a place on a surface sends to the eye.
+"""Direct light: what a point on a surface sends to the eye.
 
-Lights are asked one after the other in a loop with one shadow march; a surface facing away from a
-light casts none. Glass casts shadows like anything else here: caustics are for path tracing.
+Input: a ray, the ``SurfacePoint`` that it met, lights and ambient light. Output: linear light. The
+lights are evaluated in a loop with one shadow march; there is none for a light behind the surface.
+Glass casts shadows as solids do: caustics need path tracing.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from distal.render.material import highlight
 from distal.render.trace import SurfacePoint, ray_offset
 
 SHARPEST = 0.003  # tangent of the smallest half angle a light fills: sharper is noise
-HURRY = 0.04  # the least stride of a shadow ray late on its way, as a share of the way
+HURRY = 0.04  # smallest step of a shadow ray in its second half, as a share of the distance
 OCCLUSION_TAPS = 5
 
 
@@ -40,7 +41,7 @@ class Look:
 def soft_shadow(
     field: Field3, origin: vec3, light: LightSample, bounds: Bounds, numbers: March, steps: int
 ) -> float:
-    """1 where all of a light arrives, 0 where none; rays that pass nearby are dimmed.
+    """1 where all of a light arrives, 0 where none; rays that pass near a surface are dimmed.
 
     The share of the light's disc that a straight edge hides, judged by the closest approach to the
     ray on both sides of it (Inigo Quilez, "Soft shadows in raymarched SDFs").
@@ -55,8 +56,8 @@ def soft_shadow(
             break
         d = field(origin + t * light.direction) / numbers.divisor
         open_share = min(open_share, d / (width * t))
-        # A ray that grazes a surface for half of its steps strides on with the others, or what
-        # hides the light farther on would be missed: bright lines within shadows.
+        # A ray that grazes a surface for half of its steps takes longer ones after that. Else it
+        # would end before what hides the light farther away: bright lines within shadows.
         least = (HURRY if 2 * i > steps else 0.1 * width) * t + numbers.threshold
         t += clamp(abs(d), least, max(0.5, 0.25 * t))
     open_share = max(open_share, -1.0)
@@ -65,7 +66,7 @@ def soft_shadow(
 
 @func
 def ambient_occlusion(field: Field3, p: vec3, n: vec3, reach: float, divisor: float) -> float:
-    """How much of what is around reaches a place: a few distances along the normal."""
+    """The share of ambient light that reaches a point: from a few distances along the normal."""
     hidden = 0.0
     share = 1.0
     for i in range(OCCLUSION_TAPS):
@@ -107,7 +108,7 @@ def direct_light(
         field: Signed distance.
         lights: The light of a number, from 0, as a point receives it.
         ambient: Light from all around on a white surface, by its normal.
-        bounds: Box that the surface lies in.
+        bounds: Box around the surface.
         numbers: The numbers of the march.
         look: Ambient occlusion and fog.
         light_count: How many lights there are.

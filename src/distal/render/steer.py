@@ -1,7 +1,7 @@
-"""A camera moved by hand: around what it looks at, nearer, sideways.
+"""A camera moved by hand: around its target, nearer, sideways.
 
-Input: any camera's rays, and how far a person turned, dragged and zoomed. What flows out:
-the rays of the camera moved so. Whoever shows a picture keeps five numbers and knows no camera.
+Input: the rays of any camera, and five numbers: how far a person orbited, dragged and zoomed.
+Output: the rays of the moved camera. Windows and pages keep the five numbers and know no camera.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from distal.lang import (
 )
 from distal.render.camera import Ray
 
-# How far from the middle of the picture it is found out where right and up are.
+# Distance from the middle of the picture at which right and up are measured.
 _ASIDE = 0.05
 _LEAST = 1e-3
 _FAR = 1e6

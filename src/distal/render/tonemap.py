@@ -1,4 +1,7 @@
-"""From linear light to what a display shows."""
+"""Tone maps: from linear light to display values.
+
+Input: linear light, an exposure, the number of a tone map. Output: sRGB values from 0 to 1.
+"""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def first_surface(
     Args:
         field: Signed distance.
         ray: Ray.
-        bounds: Box that the surface lies in.
+        bounds: Box around the surface.
         numbers: The numbers of the march.
         steps: The largest number of steps.
         hybrid: Whether to march as over terrain and water; a constant.

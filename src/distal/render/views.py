@@ -1,4 +1,7 @@
-"""What a renderer knows besides color, as pictures; display-ready colors."""
+"""Views: normal, depth, steps, slope and others as pictures.
+
+Input: a ray, and the functions and numbers of a scene. Output: display-ready colors and alpha.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,7 @@ def heat(x: float) -> vec3:
 
 @func
 def isolines(d: float, spacing: float) -> vec3:
-    """A distance as warm outside and cool inside, with a line for every ``spacing``."""
+    """A distance: warm colors outside, cool ones inside, with a line for every ``spacing``."""
     tint = vec3(0.95, 0.6, 0.3) if d > 0.0 else vec3(0.4, 0.65, 0.95)
     color = tint * (1.0 - exp(-3.0 * abs(d)))
     color *= 0.85 + 0.15 * cos(6.283185307 * d / spacing)
@@ -62,7 +65,7 @@ def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
 
 @func
 def view_depth(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """How far away: near is bright, halving every few units."""
+    """Distance: near is bright; the brightness halves at 20/3 units."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(vec3(0.0), 0.0)
@@ -79,7 +82,7 @@ def view_steps(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """What a ray costs: how many times the field was asked, of the most allowed."""
+    """The cost of a ray: how often the field was evaluated, as a share of the limit."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     return vec4(heat(float(hit.steps) / float(steps)), 1.0)
 
@@ -92,7 +95,7 @@ def view_coordinate(ray: Ray, field: Field3, bounds: Bounds, numbers: March, ste
 
 @func
 def view_signal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """The number behind the color: how far the ray went, before anything is colored."""
+    """The distance along the ray as a gray value, before any color."""
     hit = march(field, ray, bounds, numbers, steps)
     return vec4(vec3(exp(-0.2 * hit.t) if hit.found else 0.0), 1.0)
 
@@ -101,7 +104,7 @@ def view_signal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
 def view_slope(
     ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int, slope: float
 ) -> vec4:
-    """|gradient| on the surface, of the bound that the field promises; above it: magenta."""
+    """|gradient| on the surface, of the field's Lipschitz bound (slope); magenta above it."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
@@ -120,7 +123,7 @@ def view_material(
     numbers: March,
     steps: int,
 ) -> vec4:
-    """The material's own color, without light; what shines shows its light."""
+    """The material's own color, without light; emission is added."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
