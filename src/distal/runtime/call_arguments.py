@@ -61,16 +61,16 @@ def call_arguments(
     else:
         mistake: TypeError | None = None
         for overload in function.overloads:
-            signature = read_signature(overload)
-            if signature.problems:
+            declared = read_signature(overload)
+            if declared.problems:
                 lower(function)  # raises with the author's lines
             try:
-                defaults = {slot.name: slot.default for slot in signature.parameters}
-                values = bind(signature.name, defaults, args, kwargs)
+                defaults = {slot.name: slot.default for slot in declared.parameters}
+                values = bind(declared.name, defaults, args, kwargs)
             except TypeError as error:
                 mistake = error
                 continue
-            found = choose_types(signature, values, dtype)
+            found = choose_types(declared, values, dtype)
             if found is not None:
                 types, rows = found
                 return types, values, rows
