@@ -47,17 +47,17 @@ class Addition:
 
 ADDITIONS: Final = (
     Addition("an intrinsic", "sinh", ("sinh",)),
-    Addition("a built-in written in scene code", "smoothstep", ("smoothstep",)),
+    Addition("a built-in in scene code", "outer", ("outer_product",)),
     Addition("a shape", "CappedTorus", ("CappedTorus", "capped_torus")),
     Addition("an operator", "twist", ("twist",)),
     Addition("a light", "SpotLight", ("SpotLight", "spot_light")),
     Addition("a camera", "FisheyeCamera", ("FisheyeCamera", "fisheye")),
     Addition("a pattern", "stripes", ("stripes",)),
-    Addition("a background", "GradientBackground", ("GradientBackground", "gradient_background")),
+    Addition("a background", "Sky", ("Sky",), users=("scene/objects/backgrounds.py",)),
     Addition("a view", "slope", ("view_slope",)),
-    Addition("a pass", "one_way", ("one_way",)),
+    Addition("a pass", "specialise", ("specialise",)),
     Addition("a text target", "glsl-330", ("glsl-330",)),
-    Addition("a command", "probe", ("probe",)),
+    Addition("a command", "probe", ("probe",), users=("scene/checks/probe.py", "cli/doctor.py")),
 )
 
 

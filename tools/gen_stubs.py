@@ -20,7 +20,7 @@ from distal.ir.types import Vector
 from distal.lang.functions import Func
 from distal.scene.objects import backgrounds, cameras, lights, materials, patterns, shapes
 from distal.scene.objects.declared import annotation_of
-from distal.scene.tree.arguments import RESERVED_OF_SHAPES, SPLATTED, Slot, slots_of
+from distal.scene.tree.arguments import RESERVED_OF_SHAPES, SPLATTED, FunctionParameter, slots_of
 
 PACKAGE: Final = Path(__file__).parents[1] / "src" / "distal"
 OBJECTS: Final = "distal.scene.objects"
@@ -188,21 +188,21 @@ def _shape_signatures(function: Func) -> list[list[str]]:
     return found
 
 
-def _given(slot: Slot) -> str:
+def _given(slot: FunctionParameter) -> str:
     annotation = annotation_of(slot.type)
     if slot.name in SPLATTED and annotation == "Vector":
         annotation = "Vector | Number"
     return _parameter(slot.name, annotation, slot.default)
 
 
-def _parts(slot: Slot) -> list[str]:
+def _parts(slot: FunctionParameter) -> list[str]:
     """A vector's numbers, or a number itself; passed by position."""
     if not slot.is_vector:
         return [f"{slot.name}: {annotation_of(slot.type)}"]
     return [f"{slot.name}_{letter}: Number" for letter in LETTERS[: _size(slot)]]
 
 
-def _size(slot: Slot) -> int:
+def _size(slot: FunctionParameter) -> int:
     assert isinstance(slot.type, Vector)
     return slot.type.size
 
