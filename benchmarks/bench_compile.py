@@ -1,4 +1,4 @@
-"""How long a person waits: import, cold and warm compile of the raymarcher, the whole command.
+"""Waiting times: import, cold and warm compile of the raymarcher, the whole command.
 
 Every figure is of fresh processes, the median of several; cold means an empty kernel cache. Prints
 a table with the project's goal beside each.

@@ -3,7 +3,7 @@
 Both on the same adapter, interleaved frame by frame, every frame at another time, on both paths:
 computed into a buffer, drawn into a texture; each time until the floats are in an array. The rival
 keeps its pipeline, buffers and bind groups, as a shader author would. The last pictures are
-compared, so that nothing remembered is measured. Prints a table: medians, then our time through
+compared, so that no cached frame is measured. Prints a table: medians, then our time through
 the rival's: of medians, of the fastest frames, and in core time, which a busy machine disturbs
 least (in software the driver works in this process; with a real GPU it is what the host adds).
 

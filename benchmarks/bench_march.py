@@ -1,4 +1,4 @@
-"""What rays and normals cost: the hybrid march against sphere tracing, exact normals against taps.
+"""Cost of rays and normals: the hybrid march against sphere tracing, exact normals against taps.
 
 The rays of ``example:sea`` at several times: evaluations of the field by each march, and how far
 each ends from the true sea, which sphere tracing finds in 64 bits with a hundred thousandth of the

@@ -2,7 +2,7 @@
 
 ``example:raymarcher_objects`` and ``example:raymarcher_library`` are one picture. One run,
 interleaved frame by frame, two threads, 640x480, every frame at another time; the last pictures are
-compared, so that nothing remembered is measured. Prints a table: wall time, and the time that the
+compared, so that no cached frame is measured. Prints a table: wall time, and the time that the
 cores worked, which other work on the machine does not change much.
 
     python benchmarks/bench_objects.py [--frames 40]

@@ -1,4 +1,4 @@
-"""How large the raymarcher's page is, and how soon it shows its first picture.
+"""Size of the raymarcher's page, and time to its first picture.
 
 The goals: at most 60 kB; the first frame in headless Chromium on SwiftShader within 1.5 s of the
 navigation, at 320x240. The page itself marks the moment its first picture is finished

@@ -1,7 +1,7 @@
 """The raymarcher's frame: our CPU device and our GLSL against the hand-written shader.
 
 One run, interleaved round by round, two threads for everything, 640x480, every frame at another
-time; the last pictures are compared, so that nothing remembered is measured. Prints a table.
+time; the last pictures are compared, so that no cached frame is measured. Prints a table.
 
     python benchmarks/bench_raymarcher.py [--rounds 7] [--frames 10]
 """

@@ -1,11 +1,12 @@
 """A video of the raymarcher: rendering alone, encoding alone, both as ``distal.video`` does them.
 
-640x480, 10 s at 60 fps, mp4, on the CPU. A round runs the three one after the other, so that what
-else the machine does falls on all of them. Rendering alone makes and drops the pictures; encoding
-alone takes 60 pictures held in memory again and again, with as many threads as in a video, joined
+640x480, 10 s at 60 fps, mp4, on the CPU. A round runs the three one after the other: other work on
+the machine affects all of them. Rendering alone makes and drops the pictures; encoding
+alone encodes 60 pictures from memory repeatedly, with as many threads as in a video, joined
 at the end. The ratio is that of a whole video to the slower of the two; the sum shows what doing
-one after the other would take. Where two processors are kept busy by rendering alone, nothing
-overlaps for free: then the bound is all the processor time, shared evenly (last column).
+one after the other would take. Where rendering alone keeps both processors busy, encoding
+cannot overlap with it for free: then the bound is all the processor time, shared evenly (last
+column).
 
     python benchmarks/bench_video.py [--rounds 3] [--seconds 10]
 """

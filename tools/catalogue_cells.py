@@ -1,8 +1,8 @@
-"""What the catalogue sheet shows: a shape of every row of the field library, under its name.
+"""What the catalogue sheet shows: every shape and operator of the field library, under its name.
 
-Input: the library's rows. Output: cells, grouped. A row that needs data, or that
-shows little as it stands, has its numbers here; every other row is shown with its defaults, so a
-new row is on the sheet by itself. It does not know how a cell is drawn.
+Input: the library's declarations. Output: cells, grouped. A shape or operator that needs data, or
+that shows little with its defaults, has its numbers here. All others are shown with their defaults,
+so a new one is on the sheet by itself. Does not know how a cell is drawn.
 """
 
 from __future__ import annotations

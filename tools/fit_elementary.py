@@ -1,14 +1,14 @@
-"""Fits the polynomials of ``distal.lang.prelude.elementary`` and prints them.
+"""Fit the polynomials of ``distal.lang.prelude.elementary`` and print them.
 
-In: for each function the form of its polynomial, its interval and the error that is to be small.
-Out: for each its coefficients, rounded to 32 bits, lowest power first, and the largest error that
-the rounded polynomial has when it is computed exactly. It knows nothing of distal.
+Input: for each function the form of its polynomial, its interval and the error to minimize.
+Output: for each its coefficients, rounded to 32 bits, lowest power first, and the largest error
+that the rounded polynomial has when it is computed exactly. Does not depend on distal.
 
 The method is Lawson's: fit by weighted least squares, multiply each point's weight by its error,
 repeat; the largest error falls toward the smallest possible. (Remez's exchange is quicker and
 fails here, because the higher powers alone all vanish at 0.) Coefficients are rounded one after
-the other from the lowest power, the rest fitted anew each time, so that later coefficients make
-up for the rounding of earlier ones.
+the other from the lowest power, the rest fitted again each time, so that later coefficients correct
+the rounding of earlier ones.
 
 Run: ``python tools/fit_elementary.py``.
 """

@@ -1,9 +1,9 @@
-"""Write ``docs/reference/catalogue.md``: every shape and operator with its claims, held against it.
+"""Write ``docs/reference/catalogue.md``: every shape and operator, its guarantees and measurements.
 
-Input: the field library's rows; what the checks of ``tests/fields`` measure. What flows
-out: the page. ``--changed`` measures only rows that say something new. ``--check`` measures nothing
-and fails when the page's names, numbers, claims, slopes or sources are not the library's; what was
-measured may differ from machine to machine.
+Input: the field library; what the checks of ``tests/fields`` measure. Output: the page.
+``--changed`` measures only what changed. ``--check`` measures nothing and fails when the page's
+names, numbers, guarantees, slopes or sources differ from the library's; measurements may differ
+between machines.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tests.fields.subject import subject_of  # noqa: E402
 from tests.fields.trees import accepted_tree, operator_slots  # noqa: E402
 
 PAGE: Final = ROOT / "docs/reference/catalogue.md"
-SAMPLES: Final = 2  # sets of random numbers for a shape, besides its defaults; trees of an operator
+SAMPLES: Final = 2  # sets of random numbers for a shape, next to its defaults; trees of an operator
 MEASURED: Final = 2  # how many columns at the end of each table are measured
 
 HEAD: Final = """\

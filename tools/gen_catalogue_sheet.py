@@ -36,7 +36,7 @@ MOST_BYTES: Final = 200_000
 PAPER: Final = (250, 249, 246)
 INK: Final = (40, 42, 48)
 BACKGROUND: Final = (0.93, 0.92, 0.89)
-# What a shape promises, as its color: exact, a bound, an estimate of nothing but its slope.
+# A shape's guarantee as its color: exact, a bound, or a bounded slope only.
 CLAY: Final = {"exact": "#e2824a", "bound": "#5f93b8", "slope": "#8d9a6b", "part": "#c9ad7c"}
 # An endless shape is shown as far as this.
 ROOM: Final = 1.9
@@ -54,7 +54,7 @@ class Drawn:
 
 
 def draw(cell: Cell, size_px: int, samples: int) -> Drawn:
-    """The picture of one cell; a problem is told in it, not raised."""
+    """The picture of one cell; a problem is shown in it, not raised."""
     try:
         shape = cell.make()
         check_slopes(shape.node)
@@ -188,7 +188,7 @@ def _fitting(text: str, width_px: int) -> Any:
 
 
 def _save(picture: Image.Image, path: Path) -> None:
-    """Write a PNG with as many colors as it has room for."""
+    """Write a PNG with as many colors as the size limit allows."""
     for colors in (224, 128, 96, 64):
         picture.quantize(colors, dither=Image.Dither.NONE).save(path, optimize=True)
         if path.stat().st_size <= MOST_BYTES:

@@ -28,7 +28,7 @@ PICTURES: Final = ROOT / "docs/pictures"
 SIZE: Final = (480, 360)
 SAMPLES: Final = 4
 MOST_BYTES: Final = 150_000
-# When an example that moves shows itself best, in seconds; 0 for the others.
+# The time at which a moving example is drawn, in seconds; 0 for the others.
 SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7}
 # Groups of the page: the examples in them by how their names begin, in this order.
 GROUPS: Final = {
@@ -102,7 +102,7 @@ def draw(name: str) -> None:
 
 
 def _save(picture: Image.Image, path: Path) -> None:
-    """Write a PNG; with fewer colors where all of them take too much room."""
+    """Write a PNG, with fewer colors where all of them take too many bytes."""
     picture.save(path, optimize=True)
     for colors in (256, 128, 64):
         if path.stat().st_size <= MOST_BYTES:

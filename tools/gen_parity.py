@@ -1,7 +1,7 @@
-"""Write ``docs/parity.md``: how far every example is from the CPU's picture, wherever it is drawn.
+"""Write ``docs/parity.md``: how much each example differs from the CPU's picture on each target.
 
-Input: the gallery, and every way of drawing it (``tests/parity/gallery.py``). What flows
-out: the page, a table for each way; names draw only these examples anew and keep the other rows.
+Input: the gallery, and every way to draw it (``tests/parity/gallery.py``). Output: the page, a
+table for each way; names draw only these examples again and keep the other rows.
 Exits with 1 where a picture disagrees, or cannot be drawn where it should be.
 """
 

@@ -118,7 +118,7 @@ class Translator:
                 self.refuse(node)
 
     def expression(self, node: ast.expr) -> str:
-        """An expression; what stands inside another is in parentheses."""
+        """An expression; a nested one is in parentheses."""
         text = self.bare(node)
         inner = isinstance(node, ast.BinOp | ast.BoolOp | ast.Compare | ast.IfExp | ast.UnaryOp)
         return f"({text})" if inner else text

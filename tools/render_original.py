@@ -1,8 +1,8 @@
-"""Renders one GLSL fragment text to a PNG file: the tool behind the pictures in tests/originals.
+"""Render one GLSL fragment text to a PNG file: makes the pictures in tests/originals.
 
-In: a shader text, a size, a time and further uniform values. Out: an 8-bit RGB picture, top row
-first, of exactly what the shader wrote (no colour conversion); with ``--record`` also an entry in
-the ``index.json`` beside it. It knows nothing of distal: its pictures are what distal is judged by.
+Input: a shader text, a size, a time and further uniform values. Output: an 8-bit RGB picture, top
+row first, of exactly what the shader wrote (no colour conversion); with ``--record`` also an entry
+in the ``index.json`` next to it. Does not use distal: distal is compared with its pictures.
 
     python tools/render_original.py shader.frag out.png --time 1.7 --set u_blend=0.3
 """

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-LONGEST_SHOWN: Final = 200  # characters of a text that others wrote
+LONGEST_SHOWN: Final = 200  # characters of a text from outside
 LONGEST_MESSAGE: Final = 1000  # characters of a whole line that may hold several
 
 # Control, format (bidirectional overrides, zero width), surrogates, line and paragraph separators.
@@ -34,7 +34,7 @@ _INVISIBLE: Final = frozenset(
 
 
 def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
-    """A text that others wrote, on one line: control characters escaped, cut where it is long.
+    """A text from outside, on one line: control characters escaped, cut where it is long.
 
     Args:
         text: Anything; shown as ``str`` gives it.
@@ -46,7 +46,7 @@ def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
 
 
 def printable_lines(text: object) -> str:
-    """A message of ours, which may quote what others wrote: line ends and tabs stay."""
+    """A message that may quote text from outside: line ends and tabs stay."""
     return "".join(c if c in "\n\t" else _escaped(c) for c in str(text))
 
 
@@ -91,7 +91,7 @@ class Diagnostic:
         return self.told("error")
 
     def told(self, kind: str) -> str:
-        """The text, with what is to be thought of it in front: "error", "warning", "note"."""
+        """The text, with its severity in front: "error", "warning", "note"."""
         lines = [f"{kind}: {self.message}"]
         if self.span is not None:
             lines += excerpt(self.span)
@@ -105,7 +105,7 @@ def excerpt(span: Span) -> list[str]:
     """The place in the author's file, and the line with carets below."""
     number = _line_number(span)
     gutter = " " * len(number)
-    # Tabs stay tabs under a tab, so that the caret stands where the editor shows the mistake.
+    # Tabs stay tabs under a tab, so that the caret is where the editor shows the mistake.
     lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
     carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
     return [
@@ -143,4 +143,4 @@ class LoadError(Exception):
 
 
 class DeviceError(Exception):
-    """A device that is missing, was lost or cannot do the work: why, and what would mend it."""
+    """A device that is missing, was lost or cannot do the work: why, and how to fix it."""

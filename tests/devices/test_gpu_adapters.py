@@ -100,7 +100,7 @@ def test_auto_is_hardware_or_the_cpu_with_a_reason(
 
 def test_a_named_device_asks_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(adapters, "asked_apart", lambda: pytest.fail("asked"))
-    assert resolve("gpu-fragment:arc") == adapters.Resolved("gpu-fragment", "arc", "as asked for")
+    assert resolve("gpu-fragment:arc") == adapters.Resolved("gpu-fragment", "arc", "as requested")
     assert resolve("reference").device == "reference"
 
 
@@ -125,7 +125,7 @@ def test_a_missing_package_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("answer", "reason"),
     [
-        (subprocess.CompletedProcess([], -11, "", ""), "crashed when it was asked (signal 11)"),
+        (subprocess.CompletedProcess([], -11, "", ""), "crashed when its GPUs were listed"),
         (subprocess.CompletedProcess([], 1, "", "a\nRuntimeError: no driver"), "no driver"),
         (subprocess.CompletedProcess([], 0, "", ""), "the drivers gave no answer"),
     ],

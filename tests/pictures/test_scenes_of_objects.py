@@ -1,4 +1,4 @@
-"""Scenes of objects: the founding raymarcher agrees with the library called by hand; sdfray's show
+"""Scenes of objects: the first raymarcher agrees with the library called by hand; sdfray's show
 the light that its article's formulas give, and their sliders move them."""
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def test_objects_draw_what_the_library_draws(time):
 
 
 def test_the_softness_of_objects_is_the_shaders_blend():
-    # smooth=0.05 of the cubic blend is the founding shader's k of 0.3: 6 times as much.
+    # smooth=0.05 of the cubic blend is the first shader's k of 0.3: 6 times as much.
     scene = distal.load("example:raymarcher_objects")
     points = np.random.default_rng(3).uniform(-1.2, 1.2, (200, 3)).astype(np.float32)
     original = distal.load("example:raymarcher", "scene")

@@ -157,7 +157,7 @@ class _Finder(ast.NodeVisitor):
         self.found.append((self._start(node), self._end(node), new))
 
     def _operator(self, left: ast.expr, right: ast.expr, old: str, new: str) -> None:
-        """Replace what stands between two operands."""
+        """Replace the operator between two operands."""
         begin, end = self._end(left), self._start(right)
         between = self.data[begin:end].decode()
         pattern = r"\s+".join(map(re.escape, old.split()))

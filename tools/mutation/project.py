@@ -37,7 +37,7 @@ class Project:
         return [path for path in found if path.name != "__init__.py"]
 
     def name(self, path: Path) -> str:
-        """The path relative to the source folder, as it stands in lists."""
+        """The path relative to the source folder, as in lists."""
         return path.relative_to(self.source).as_posix()
 
     def module(self, name: str) -> str:
@@ -87,11 +87,11 @@ class Index:
         return owners
 
     def owner(self, line: int) -> str:
-        """The outermost function that a line stands in, decorators included."""
+        """The outermost function that contains a line, decorators included."""
         return self._owners.get(line, MODULE_LEVEL)
 
     def statement(self, line: int) -> ast.stmt:
-        """The module-level statement that a line stands in."""
+        """The module-level statement that contains a line."""
         for node in self.tree.body:
             if node.lineno <= line <= (node.end_lineno or node.lineno):
                 return node

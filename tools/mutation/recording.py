@@ -5,8 +5,8 @@ that it executed as Python or that the front end lowered for it. Scene code is n
 Python: the trace sees the front end take its source apart instead. Each test runs in a process
 forked after collection, so that no cache hides what it needs.
 
-The record is a file with a line for each test. A line is used as long as the test's file is as it
-was; a recording that was broken off goes on where it stopped.
+The record is a file with a line for each test. A line is used as long as the test's file is
+unchanged; an interrupted recording continues where it stopped.
 """
 
 from __future__ import annotations

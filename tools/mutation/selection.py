@@ -1,8 +1,8 @@
 """Which tests are run for a mutation, and in which order.
 
-Input: a mutation, recorded tests. Output: tests that ran the mutated function, most
-telling first. A test that runs few functions is about them; one that runs thousands draws a
-picture of everything.
+Input: a mutation, recorded tests. Output: tests that ran the mutated function, the most
+specific first. A test that runs few functions is specific to them; one that runs thousands draws
+a whole picture.
 """
 
 from __future__ import annotations

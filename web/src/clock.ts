@@ -1,7 +1,7 @@
 /**
  * The scene's time: plays, pauses, jumps, loops.
  *
- * Pure: the host tells how many seconds went by. It knows neither a frame nor a slider.
+ * Pure: the host says how many seconds went by. Does not depend on frames or sliders.
  */
 
 import * as rules from "./generated/interaction";

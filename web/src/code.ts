@@ -31,7 +31,7 @@ function literal(parameter: Parameter, value: Value): string {
   return tuple(value);
 }
 
-/** `params={...}` of what differs from the defaults, and what else `render` must be told. */
+/** `params={...}` of the parameters that are not at their defaults, and the other arguments. */
 export function pythonOf(
   parameters: readonly Parameter[],
   values: Values,

@@ -1,7 +1,7 @@
 /**
  * A parameter as a row of the panel: label, field, slider, what it does, its own reset.
  *
- * In: a parameter. Out: an element, and `show` for values that came from elsewhere. A row reports
+ * Input: a parameter. Output: an element, and `show` for values that came from elsewhere. A row reports
  * what a person did through `give`; it does not keep the value.
  */
 
@@ -17,7 +17,7 @@ export interface Row {
   show(value: Value): void;
 }
 
-/** What stands in a row beside label and reset. */
+/** The control in a row, next to its label and reset button. */
 interface Control {
   /** Beside the label. */
   field: HTMLElement;

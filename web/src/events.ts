@@ -7,7 +7,7 @@ import type { FrameReport } from "./renderer";
 export interface Events {
   /** A person changed a parameter. */
   change: { name: string; value: Value };
-  /** A parameter has another value, whoever gave it. */
+  /** A parameter has another value, set by the user or by the page. */
   parameter: { name: string; value: Value };
   time: { time: number; playing: boolean };
   speed: { speed: number };

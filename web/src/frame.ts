@@ -1,7 +1,7 @@
 /**
  * The elements around a picture: canvas, poster, bar, panel, notices, all in a shadow root.
  *
- * In: a player. Out: elements; the size and visibility of the canvas as they change. It decides
+ * Input: a player. Output: elements; the size and visibility of the canvas as they change. It decides
  * what is beside what, and nothing about pictures.
  */
 
@@ -166,13 +166,13 @@ export class Frame {
     try {
       this.#sizes.observe(this.canvas, { box: "device-pixel-content-box" });
     } catch {
-      this.#sizes.observe(this.canvas); // Not every browser tells device pixels.
+      this.#sizes.observe(this.canvas); // Not every browser reports device pixels.
     }
   }
 
   #arrange(): void {
     const isNarrow = this.#player.host.clientWidth < NARROW_PX;
-    // A sheet would hide half of a small screen: it opens when asked for.
+    // A sheet would hide half of a small screen: it opens on request.
     const isOpen = this.#isOpen ?? (!isNarrow && this.#player.payload.panel);
     this.#box.classList.toggle("narrow", isNarrow);
     this.#box.classList.toggle("open", isOpen);

@@ -1,7 +1,7 @@
 /**
  * Pointers and wheels to movements of a hand.
  *
- * In: events of the canvas. Out: drags in parts of the picture's height, places in parts of the
+ * Input: events of the canvas. Output: drags in parts of the picture's height, places in parts of the
  * picture from its lower left, zoom factors, notches. It knows neither camera nor scene.
  */
 

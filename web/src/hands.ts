@@ -1,7 +1,7 @@
 /**
  * What a hand does to the camera, or to the mouse that a picture reads: drags, wheels, arrow keys.
  *
- * In: movements in picture heights, places in parts of the picture. Out: the camera's or the
+ * Input: movements in picture heights, places in parts of the picture. Output: the camera's or the
  * mouse's new state; `changed` is called then. It knows neither events nor elements.
  */
 

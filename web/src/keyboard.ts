@@ -2,7 +2,7 @@
 
 import { KEYS, type Action } from "./generated/bindings";
 
-/** What keys do, told whether shift is held; false where a key means nothing and stays the page's. */
+/** What keys do, with or without shift; false for a key that has no meaning and is left to the page. */
 export type Actions = Record<Action, (shift: boolean) => boolean>;
 
 /** Acts on a key unless the element that has the focus needs it. */

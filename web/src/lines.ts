@@ -1,5 +1,5 @@
 /**
- * A driver's complaint about a shader, told in the author's lines.
+ * A driver's message about a shader, with the author's line numbers.
  *
  * Pure. In: the info log and the program's line table. Out: rows of text, each with the place in
  * the Python file where it is known. Drivers write "ERROR: 0:12: ..." (ANGLE), "0:12(5): error"

@@ -1,5 +1,5 @@
 /**
- * The script of a page: mounts every payload that stands in the document.
+ * The script of a page: mounts every payload in the document.
  *
  * As a module it gives `mount`, and `render` for notebooks; there it finds nothing to mount.
  */
@@ -14,7 +14,7 @@ export type { Options, Payload, Player };
 export function mount(host: HTMLElement, payload: Payload, options: Options = {}): Player {
   if (payload.format !== 1) throw new TypeError(`a payload of format ${payload.format} is too new`);
   const player = new Player(host, payload, options);
-  // For who measures pages: the first picture stands.
+  // For measurements of pages: the first picture is finished.
   const end = player.on("frame", () => {
     performance.mark("distal:first-frame");
     end();

@@ -1,7 +1,7 @@
 /**
- * What stands over the picture: "compiling", a lost context, an error in the author's lines.
+ * Notices over the picture: "compiling", a lost context, an error in the author's lines.
  *
- * In: states and errors. Out: elements. Everything is said to screen readers as well.
+ * Input: states and errors. Output: elements. Everything is said to screen readers as well.
  */
 
 import { make } from "./dom";
@@ -16,7 +16,7 @@ export interface Failure {
 
 const NO_WEBGL = "This browser offers no WebGL 2, so the scene does not move.";
 
-/** What to tell of an error: one sentence, and the details for who wants them. */
+/** The notice of an error: one sentence, and details to unfold. */
 export function failureOf(error: unknown, files: readonly string[], isUnsupported: boolean): Failure {
   if (error instanceof ShaderError) {
     const rows = complaints(error.log, error.lines, files);

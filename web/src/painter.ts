@@ -1,7 +1,7 @@
 /**
  * One WebGL 2 context: draws bands of a picture into a hidden target and shows whole pictures.
  *
- * In: linked programs, inputs, sizes. Out: the canvas. The hidden target lets a large still grow
+ * Input: linked programs, inputs, sizes. Output: the canvas. The hidden target lets a large still grow
  * over several frames while the old picture stays, and lets a picture be smaller or larger than the
  * canvas. It knows no time and no schedule.
  */
@@ -54,13 +54,13 @@ export class Painter {
     gl.disable(gl.DITHER);
   }
 
-  /** The linked program; each is compiled once, when it is first asked for. */
+  /** The linked program; each is compiled once, when it is first used. */
   program(source: Program): Promise<Linked> {
     let made = this.#programs.get(source);
     if (!made) {
       made = this.#link(source);
       this.#programs.set(source, made);
-      // Whoever asks again after a failure tries again.
+      // A call after a failure tries again.
       made.catch(() => this.#programs.delete(source));
     }
     return made;

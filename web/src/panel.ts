@@ -2,7 +2,7 @@
  * The panel at the side: the scene's name, its views, its parameters in groups, the picture's
  * quality, and what can be done with all of them at once.
  *
- * In: the player. Out: an element that follows the player's events.
+ * Input: the player. Output: an element that follows the player's events.
  */
 
 import { rowOf, type Row } from "./controls";

@@ -1,7 +1,7 @@
 /**
  * What a page says of a scene: the types of the payload, and how its programs are unpacked.
  *
- * In: the JSON that `distal export` writes. Out: plain objects. The one place that knows the format.
+ * Input: the JSON that `distal export` writes. Output: plain objects. The one place that knows the format.
  */
 
 export type Value = number | boolean | number[];
@@ -101,7 +101,7 @@ export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
 
 /**
  * The programs of a payload, unpacked where they came packed: then field by field, all programs'
- * vertex stages first, since what is alike packs well only where it stands close together.
+ * vertex stages first, since similar texts compress well only close together.
  */
 export async function programsOf(payload: Payload): Promise<Program[]> {
   const { programs } = payload;

@@ -1,8 +1,8 @@
 /**
- * A scene on a page: its state, and who is told when it changes.
+ * A scene on a page: its state, and the events of its changes.
  *
- * In: a host element and a payload; later what people and programs do. Out: the picture in the
- * host's shadow root, events. Styles and names stay inside; nothing is asked of any network.
+ * Input: a host element and a payload; later what people and programs do. Output: the picture in the
+ * host's shadow root, events. Styles and names stay inside; no network is used.
  */
 
 import { Camera, type Steering } from "./camera";
@@ -24,7 +24,7 @@ export interface Options {
   embed?: boolean;
   /** Colors of the panel; as the system has them where not given. */
   theme?: Theme;
-  /** What is transparent in the scene lets the page through. */
+  /** The page shows through where the scene is transparent. */
   transparent?: boolean;
   /** Whether time runs from the start; else it does where the scene moves and people like it. */
   playing?: boolean;
@@ -118,7 +118,7 @@ export class Player {
     this.#renderer.change();
   }
 
-  /** The same by a person's hand: whoever listens is told. */
+  /** The same by the user: listeners are notified. */
   change(name: string, value: Value): void {
     if (same(value, this.#values[name])) return;
     this.setParameter(name, value);
@@ -238,7 +238,7 @@ export class Player {
     this.#frame.notices.brief(isCopied ? `Copied: ${code}` : code);
   }
 
-  /** Resolves when the sharp picture of all that was asked for stands: to false where none can. */
+  /** Resolves to true when the sharp picture of the current state is shown, to false where none can be. */
   settled(): Promise<boolean> {
     return this.#renderer.rest();
   }

@@ -1,7 +1,7 @@
 /**
  * Shader texts to a program, without holding up the page.
  *
- * In: a `Program` of the payload. Out: a linked WebGLProgram with its uniforms' places, or a
+ * Input: a `Program` of the payload. Output: a linked WebGLProgram with its uniforms' places, or a
  * `ShaderError` with the driver's words and the table that maps them to the author's lines.
  */
 

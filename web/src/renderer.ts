@@ -1,7 +1,7 @@
 /**
  * When to draw what: the schedule of one canvas.
  *
- * In: "something changed", the view's program, whether anybody looks. Out: pictures, as sharp as
+ * Input: "something changed", the view's program, whether anybody looks. Output: pictures, as sharp as
  * time allows: small ones while things move, a full one, in bands, once they rest. Nothing is
  * drawn when nothing changed, when the canvas is out of sight, or while the context is lost.
  */
@@ -26,10 +26,10 @@ export interface FrameReport {
   fps: number;
 }
 
-/** What the schedule asks of the scene it draws. */
+/** What the schedule needs to know of the scene it draws. */
 export interface Subject {
   readonly playing: boolean;
-  /** A sharp picture stands in until ours does: no coarse one may come between. */
+  /** A sharp picture is shown until ours is sharp: no coarse one in between. */
   readonly hasPoster: boolean;
   /** A new frame is about to be drawn; `now` in milliseconds. */
   tick(now: number): void;
@@ -55,7 +55,7 @@ const LONG_MS = 300;
 const FEW = 64;
 /** The way to the GPU and back takes a few milliseconds; what takes longer is something else. */
 const LONGEST_WAY_MS = 8;
-/** So much longer than the way a draw must take to tell of its pixels. */
+/** A draw must take this many times the overhead for its time to measure its pixels. */
 const CLEAR_MS = 6;
 
 export class Renderer {
@@ -156,7 +156,7 @@ export class Renderer {
     });
   }
 
-  /** Whether the sharp picture of all that was asked for stands, as soon as that is known. */
+  /** Whether the sharp picture of the current state is shown, as soon as that is known. */
   rest(): Promise<boolean> {
     return new Promise((resolve) => {
       this.#resting.push(resolve);
@@ -229,7 +229,7 @@ export class Renderer {
   }
 
   #endRest(): void {
-    // The old view's picture is not what was asked for while the new one compiles.
+    // The old view's picture is outdated while the new one compiles.
     const isThere = this.#isSharp && this.#program?.source === this.#wanted;
     if (!isThere && !this.#isBroken) return;
     for (const resolve of this.#resting.splice(0)) resolve(isThere);

@@ -45,7 +45,7 @@ export class Resolution {
   moving(pixels: number): number {
     const cost = this.cost ?? 0;
     const fits = ([scale, budget]: readonly [number, number]) => {
-      // Up only with room to spare, else two scales take turns.
+      // Up only with a margin, else two scales alternate.
       const room = scale > this.#scale ? 0.7 : 1;
       return cost * pixels * scale * scale <= budget * room;
     };

@@ -1,7 +1,7 @@
 /**
  * Textures and buffers of a scene on the GPU.
  *
- * In: the payload's resources (base64) and what a program reads. Out: texture units that are bound
+ * Input: the payload's resources (base64) and what a program reads. Output: texture units that are bound
  * before each draw. A buffer is a texture of one texel an element, row by row.
  */
 

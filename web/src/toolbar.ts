@@ -1,7 +1,7 @@
 /**
  * The bar below the picture: play, the time, what a frame costs, and what is done with the picture.
  *
- * In: the player. Out: an element that follows the player's events. An embedded page has only the
+ * Input: the player. Output: an element that follows the player's events. An embedded page has only the
  * smallest of it.
  */
 

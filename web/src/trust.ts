@@ -1,7 +1,7 @@
 /**
  * Whether the driver's own sine and the like are good enough to draw with.
  *
- * In: what draws. Out: the names of those built-ins that a scene's text may use in place of its
+ * Input: what draws. Output: the names of those built-ins that a scene's text may use in place of its
  * careful ones, and the text that does. Measured once for a page, beside JavaScript's own.
  */
 
@@ -39,7 +39,7 @@ c=vec4(uvec4(b,b>>8,b>>16,b>>24)&255u)/255.;}`,
 
 let known: Promise<readonly string[]> | null = null;
 
-/** The built-ins that are good enough; none where that cannot be told. */
+/** The built-ins that are good enough; none where that is not known. */
 export function trusted(painter: Painter): Promise<readonly string[]> {
   known ??= painter.bytes(SOURCE, COUNT, NAMES.length).then(good, () => {
     forget();
@@ -58,7 +58,7 @@ export function trusting({ fragment, trust }: Program, names: readonly string[])
   const macros = names.flatMap((name) => trust[name] ?? []);
   if (!macros.length) return fragment;
   const lines = macros.map((macro) => `#define ${macro}\n`).join("");
-  return fragment.replace("\n", `\n${lines}#line 2\n`); // Nothing may stand before the version.
+  return fragment.replace("\n", `\n${lines}#line 2\n`); // Nothing may precede the version.
 }
 
 function good({ buffer }: Uint8Array): string[] {

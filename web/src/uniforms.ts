@@ -1,7 +1,7 @@
 /**
  * Values to uniforms, by the types of GLSL.
  *
- * In: a program in use and values by the author's names. It knows no parameter and no camera.
+ * Input: a program in use and values by the author's names. It knows no parameter and no camera.
  */
 
 import type { UniformEntry, Value } from "./payload";

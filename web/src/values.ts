@@ -1,5 +1,5 @@
 /**
- * Parameters as numbers: where a slider stands for a value and back, ranges. Pure.
+ * Parameters as numbers: the position of a slider for a value and back, ranges. Pure.
  */
 
 import * as rules from "./generated/interaction";
@@ -14,12 +14,12 @@ export function positionCount({ low, high, step }: Parameter): number {
   return rules.positionCount(low!, high!, step);
 }
 
-/** Where a slider stands for a value. */
+/** The position of a slider for a value. */
 export function positionOf({ low, high, step, log }: Parameter, value: number): number {
   return rules.positionOf(value, low!, high!, step, log);
 }
 
-/** The value for which a slider stands. */
+/** The value for a position of a slider. */
 export function valueAt(parameter: Parameter, position: number): number {
   const { low, high, step, log, default: fallback } = parameter;
   return rules.valueAt(position, low!, high!, step, log, fallback as number);

@@ -8,13 +8,13 @@ export function pause(ms: number): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, ms));
 }
 
-/** Milliseconds until the GPU has done all it was asked so far; null where it was lost. */
+/** Milliseconds until the GPU has finished all submitted work; null where it was lost. */
 export async function gpuDone(gl: WebGL2RenderingContext): Promise<number | null> {
   const begin = performance.now();
   const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
   gl.flush();
   if (!fence) return null;
-  // A blocking wait would freeze the page: ask again and again, ever more patiently.
+  // A blocking wait would freeze the page: poll, at growing intervals.
   for (let round = 0; ; round++) {
     await pause(round < 8 ? 0 : 4);
     if (gl.isContextLost()) return null;

@@ -1,8 +1,8 @@
 /**
  * The same player in a notebook (anywidget's `render`), its state bound both ways to the model.
  *
- * In: a model with the traits "payload", "params", "time", "playing", "view", "steering", "error".
- * Out: a player in the cell, disposed of with the cell. What a person does reaches the model, what
+ * Input: a model with the traits "payload", "params", "time", "playing", "view", "steering", "error".
+ * Output: a player in the cell, disposed of with the cell. What a person does reaches the model, what
  * Python sets reaches the player; several cells may show one model.
  */
 
@@ -75,7 +75,7 @@ export function render({ model, el }: { model: Model; el: HTMLElement }): () => 
   };
 }
 
-/** The element of the player: the picture has its size, and the panel stands beside it. */
+/** The element of the player: the picture has its size, and the panel is next to it. */
 function hostOf({ size: [width, height], panel }: Payload): HTMLElement {
   const host = document.createElement("div");
   // No narrower than where the panel would go below the picture.
@@ -90,7 +90,7 @@ function hostOf({ size: [width, height], panel }: Payload): HTMLElement {
   return host;
 }
 
-/** What is to be told to Python: the newest of each, a few times a second. */
+/** What to send to Python: the newest of each, a few times a second. */
 class Outbox {
   #waiting = new Map<string, unknown>();
   #sent = new Map<string, unknown>();

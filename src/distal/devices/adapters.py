@@ -1,6 +1,6 @@
 """The GPUs of this machine, and one open device for each that is used.
 
-Input: a person's wish, such as "auto", a number or part of a name. Output: an
+Input: a requested device, such as "auto", a number or part of a name. Output: an
 adapter's row, and an open ``Gpu``. wgpu is imported only when somebody asks. Knows no kernels.
 """
 
@@ -38,7 +38,7 @@ _LIMITS: Final = (
     "max-samplers-per-shader-stage",
     "max-bindings-per-bind-group",
 )
-_TOLD: Final = ("device", "adapter_type", "backend_type", "vendor", "description")
+_INFO_KEYS: Final = ("device", "adapter_type", "backend_type", "vendor", "description")
 _NEEDED: Final = ("gpu", "GPUError", "GPUOutOfMemoryError")
 _NO_WGPU: Final = "wgpu is not installed: pip install 'distal[gpu]'"
 NO_ADAPTER: Final = (
@@ -71,11 +71,11 @@ class Adapter:
 
     @staticmethod
     def of(number: int, info: dict[str, Any]) -> Adapter:
-        """The row of what wgpu says of an adapter."""
-        told = {key: printable(info.get(key) or "") for key in _TOLD}
-        name = told["device"] or told["vendor"] or "a GPU without a name"
-        driver = told["description"]
-        return Adapter(number, name, told["adapter_type"], told["backend_type"], driver)
+        """The adapter of this number, from wgpu's information about it."""
+        text = {key: printable(info.get(key) or "") for key in _INFO_KEYS}
+        name = text["device"] or text["vendor"] or "a GPU without a name"
+        driver = text["description"]
+        return Adapter(number, name, text["adapter_type"], text["backend_type"], driver)
 
     @property
     def is_software(self) -> bool:
@@ -95,7 +95,7 @@ class Adapter:
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """What a wish comes to.
+    """The device that a request means.
 
     Attributes:
         device: As ``render`` takes it, with "auto" decided and without the adapter.
@@ -108,14 +108,14 @@ class Resolved:
     reason: str
 
 
-# Asking
+# Listing
 
 
 def resolve(device: str) -> Resolved:
     """The device that a name means: "auto" becomes a GPU in hardware, or else the CPU."""
     if device != "auto":
-        name, _, wish = device.partition(":")
-        return Resolved(name, wish or None, "as asked for")
+        name, _, adapter = device.partition(":")
+        return Resolved(name, adapter or None, "as requested")
     if importlib.util.find_spec("wgpu") is None:
         return Resolved("cpu", None, "wgpu is not installed")
     found, complaint = asked_apart()
@@ -131,7 +131,7 @@ def resolve(device: str) -> Resolved:
 
 
 def hardware() -> Adapter | None:
-    """The best adapter that is no software, or None; asks as ``resolve("auto")`` does."""
+    """The best hardware adapter, or None; lists the adapters as ``resolve("auto")`` does."""
     if importlib.util.find_spec("wgpu") is None:
         return None
     return _best_hardware(asked_apart()[0])
@@ -143,11 +143,11 @@ def _best_hardware(found: Sequence[Adapter]) -> Adapter | None:
 
 @functools.cache
 def asked_apart() -> tuple[list[Adapter], str]:
-    """The adapters, asked once in a process of its own; and a complaint, or "".
+    """The adapters, listed once, in a process of its own; and what failed, or "".
 
-    Nobody who leaves the choice to us asked for a GPU, so a driver that hangs or crashes when it
-    is asked must not take the picture along. That costs 0.4 s once a process; with an adapter named
-    we ask in this process.
+    With "auto" the user did not request a GPU, so a driver that hangs or crashes must not stop the
+    rendering. That costs 0.4 s once per process. For a named adapter, ``adapters`` lists them in
+    this process.
     """
     try:
         answer = subprocess.run(
@@ -161,9 +161,9 @@ def asked_apart() -> tuple[list[Adapter], str]:
     except subprocess.TimeoutExpired:
         return [], f"the driver did not answer within {_ANSWER_TIMEOUT_S} s"
     except OSError as error:
-        return [], f"the drivers cannot be asked: {error}"
+        return [], f"the drivers cannot be listed: {error}"
     if answer.returncode < 0:
-        return [], f"the driver crashed when it was asked (signal {-answer.returncode})"
+        return [], f"the driver crashed when its GPUs were listed (signal {-answer.returncode})"
     if answer.returncode > 0:
         last = answer.stderr.strip().splitlines()[-1:] or [f"exit code {answer.returncode}"]
         return [], printable(last[0])
@@ -175,7 +175,7 @@ def asked_apart() -> tuple[list[Adapter], str]:
 
 
 def adapters() -> list[Adapter]:
-    """The adapters, asked in this process.
+    """The adapters, listed in this process.
 
     Raises:
         DeviceError: wgpu is not installed.
@@ -183,7 +183,7 @@ def adapters() -> list[Adapter]:
     return [Adapter.of(i, dict(handle.info)) for i, handle in enumerate(_handles())]
 
 
-def chosen(wish: str | None = None) -> Adapter:
+def chosen(request: str | None = None) -> Adapter:
     """The adapter of a number or of a part of its name; the best when None or "".
 
     Raises:
@@ -192,15 +192,15 @@ def chosen(wish: str | None = None) -> Adapter:
     found = adapters()
     if not found:
         raise DeviceError(NO_ADAPTER)
-    wanted = (wish or "").strip().lower()
+    wanted = (request or "").strip().lower()
     if wanted.isdecimal():
-        fitting = [a for a in found if a.number == int(wanted)]
+        matching = [a for a in found if a.number == int(wanted)]
     else:
-        fitting = [a for a in found if wanted in a.name.lower()]
-    if not fitting:
+        matching = [a for a in found if wanted in a.name.lower()]
+    if not matching:
         known = "; ".join(map(str, found))
-        raise DeviceError(f"there is no adapter '{printable(wish, 80)}'; adapters: {known}")
-    return min(fitting, key=lambda a: a.rank)
+        raise DeviceError(f"there is no adapter '{printable(request, 80)}'; adapters: {known}")
+    return min(matching, key=lambda a: a.rank)
 
 
 @functools.cache
@@ -227,10 +227,10 @@ def wgpu_module() -> Any:
             for name in _NEEDED:  # half an installation lacks them
                 getattr(module, name)
     except PackageError as error:
-        told = _NO_WGPU if error.is_missing else f"{error}; or --device cpu"
-        raise DeviceError(told) from error
-    # Without a handler Python prints them; whoever has set up logging still gets them. The logger
-    # is of wgpu's own class, so wgpu has to make it.
+        message = _NO_WGPU if error.is_missing else f"{error}; or --device cpu"
+        raise DeviceError(message) from error
+    # Without a handler Python prints the warnings; an application that configures logging still
+    # gets them. The logger is of wgpu's own class, so wgpu has to make it.
     logger = logging.getLogger("wgpu")
     if not logger.handlers:
         logger.addHandler(logging.NullHandler())
@@ -316,7 +316,7 @@ class Gpu:
         )
 
     def drop(self) -> None:
-        """Never give this device out again."""
+        """Do not return this device again."""
         self.is_lost = True
         with _OPENING:
             for number, gpu in list(_OPEN.items()):

@@ -1,6 +1,6 @@
-"""What a device gives back: a kernel, ready to run.
+"""The interface of a device: a kernel, ready to run.
 
-Input: a module fresh from the front end. Output: pictures, or values at points.
+Input: a module from the front end. Output: pictures, or values at points.
 Knows nothing of how the work is done.
 """
 
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import DeviceError as DeviceError
 
-# Called with the finished share, 0 to 1, from the calling thread.
+# Called with the finished share, 0 to 1, in the calling thread.
 Progress: TypeAlias = Callable[[float], None]
-# Asked from the calling thread whether to end.
+# Called in the calling thread: whether to stop. An event stops the work when it is set.
 Cancel: TypeAlias = Callable[[], bool] | threading.Event
 # An array with one row for each point (a struct or tuple: a tuple of them).
 Values: TypeAlias = "NDArray[Any] | tuple[Values, ...]"
@@ -57,8 +57,8 @@ class Kernel(Protocol):
             resources: For every texture and buffer, by name, what the author declared, or an array
                 (texels in the order of their indices: (height, width, 4), depth or face first).
             threads: How many to use; as many as the process may use when None.
-            progress: Told now and then how much is done.
-            cancel: Asked now and then whether to end.
+            progress: Called now and then with the finished share.
+            cancel: Called now and then: whether to stop.
 
         Raises:
             Cancelled: ``cancel`` said so.
@@ -79,7 +79,7 @@ class Kernel(Protocol):
 
         Arrays have one row for each point: (n,) for scalars, (n, 3) for vec3, (n, 3, 3) for mat3 in
         NumPy's layout (row, column), (n, length, …) for arrays, a tuple of arrays for a struct. A
-        row count of 1 stands for the same value at every point.
+        row count of 1 means the same value at every point.
 
         Raises:
             Cancelled: ``cancel`` said so.
@@ -104,7 +104,7 @@ class Kernel(Protocol):
 
 
 def cancel_test(cancel: Cancel | None) -> Callable[[], bool]:
-    """A question to ask now and then: does the caller want the work to end?"""
+    """A function to call now and then: whether the caller wants the work to stop."""
     match cancel:
         case None:
             return lambda: False

@@ -33,8 +33,8 @@ OFF: Final = "off"
 SIZE_LIMIT: Final = 256 * 2**20  # bytes; then the longest unused go
 _SUFFIX: Final = ".kernel"
 _TEMPORARY: Final = re.compile(r"\.new-[A-Za-z0-9_]{8,16}\Z")
-# Of a temporary file whose writer was killed. Writing takes milliseconds; a lock tells a writer
-# that was only stopped, as by a suspended machine.
+# Of a temporary file whose writer was killed. Writing takes milliseconds; a lock shows that a
+# writer is only stopped, as by a suspended machine.
 LEFTOVER_AGE_S: Final = 3600.0
 _MAGIC: Final = b"distal kernel 2\n"
 _DIGEST = 32
@@ -43,7 +43,7 @@ _warned: set[Path] = set()
 
 
 def default_folder() -> Path | None:
-    """Where kernels are kept; None when that is nowhere.
+    """The folder where kernels are kept; None if there is none.
 
     ``DISTAL_CACHE_DIR`` decides, ``off`` meaning nowhere; else the system's folder for caches.
     """
@@ -112,7 +112,7 @@ class Cache:
         return True
 
     def discard(self, key: str) -> None:
-        """Forget what is stored under a key."""
+        """Remove what is stored under a key."""
         with self._opened() as folder, suppress(OSError):
             if folder is not None:
                 os.unlink(key + _SUFFIX, dir_fd=folder)
@@ -152,7 +152,7 @@ class Cache:
             warnings.warn(f"the kernel cache {self.folder} {what}", RuntimeWarning, stacklevel=4)
 
     def _drop_leftovers(self, folder: int) -> None:
-        """Remove the temporary files of writers that were killed, never those of living ones."""
+        """Remove the temporary files of writers that were killed, never those of running ones."""
         with suppress(OSError), os.scandir(folder) as entries:
             for entry in entries:
                 if _TEMPORARY.match(entry.name):

@@ -1,8 +1,8 @@
 """What the processor can do, and the vector shape that suits it.
 
-Input: the operating system's list of features, or a level by name. Output: a
-``CpuLevel``: what LLVM is told, and how many lanes a kernel has. Needs no LLVM, so that a stored
-kernel is found without loading it.
+Input: the operating system's list of features, or a level by name. Output: a ``CpuLevel``: the
+processor that LLVM compiles for, and the lanes of a kernel. Needs no LLVM, so that a stored kernel
+is found without loading it.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def machine() -> str:
 
 @cache
 def host_features() -> frozenset[str]:
-    """The processor's features in Linux's spelling; empty where they cannot be told."""
+    """The processor's features in Linux's spelling; empty where they are not known."""
     if machine() == "aarch64":
         return frozenset({"asimd"})
     if sys.platform.startswith("linux"):

@@ -276,7 +276,7 @@ class GpuKernel:
         return self._mapped(program, encoder, staging, size)
 
     def _mapped(self, program: GpuProgram, encoder: Any, staging: Any, size: int) -> Any:
-        """Submit, wait, and see the bytes; whoever calls unmaps."""
+        """Submit, wait, and return the mapped bytes; the caller unmaps them."""
         program.gpu.device.queue.submit([encoder.finish()])
         staging.map_async(wgpu_module().MapMode.READ, 0, size).sync_wait()
         return staging.read_mapped(0, size, copy=False)

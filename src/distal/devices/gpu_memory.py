@@ -168,7 +168,7 @@ class Resources:
             values = np.swapaxes(values.reshape(len(values), *[int(entry["element"][3])] * 2), 1, 2)
         if values.ndim > 1 and values.shape[-1] == 3:
             room = [(0, 0)] * (values.ndim - 1) + [(0, 1)]
-            values = np.pad(values, room)  # a column of three takes the room of four
+            values = np.pad(values, room)  # a column of three takes the space of four
         bytes_ = np.ascontiguousarray(values)
         most = self._gpu.limit("max-storage-buffer-binding-size")
         if bytes_.nbytes > most:
@@ -200,7 +200,7 @@ def _sampler(device: Any, entry: Mapping[str, Any]) -> Any:
 
 
 def _state(source: Any) -> Any:
-    """What is told of a source without loading it: its files' states, or a copy of its array.
+    """What identifies a source without loading it: its files' states, or a copy of its array.
 
     An array is compared, not hashed: that reads 5 GB/s where a hash makes 1, and is exact.
     """

@@ -25,11 +25,11 @@ LARGEST_DISPATCH: Final = 65535  # workgroups along one axis that every GPU allo
 
 
 class GpuProgram:
-    """One text on one device; whoever calls holds the device (``Gpu.commands``).
+    """One text on one device; the caller holds the device's lock (``Gpu.commands``).
 
     Attributes:
         gpu: The device.
-        interface: What the text says of itself.
+        interface: The text's description of its inputs.
         made: How many pipelines were made.
         resources: The author's textures and buffers.
     """
@@ -46,7 +46,7 @@ class GpuProgram:
         size = self.interface["uniform_buffer"]["size"]
         if size > gpu.limit("max-uniform-buffer-binding-size"):
             raise DeviceError(
-                f"{gpu.adapter.name} has no room for {size} bytes of parameters; or --device cpu"
+                f"{gpu.adapter.name} cannot hold {size} bytes of parameters; or --device cpu"
             )
         self._uniforms = device.create_buffer(size=size, usage=usage.UNIFORM | usage.COPY_DST)
         self._written: bytes = b""

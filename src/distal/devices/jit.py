@@ -19,7 +19,7 @@ from distal.diagnostics import printable
 from distal.packages import loading
 
 _APART: Final = "from distal.devices.jit import _serve; _serve()"
-_LLVM_BYTES: Final = 32 * 2**20  # its tables of targets and a loader, with room to spare
+_LLVM_BYTES: Final = 32 * 2**20  # its tables of targets and a loader, with a margin
 
 
 @cache
@@ -93,7 +93,7 @@ def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
 
 
 def _serve() -> None:
-    """Compile what stands on stdin; what ``_compiled_apart`` runs."""
+    """Compile the text on stdin; what ``_compiled_apart`` runs."""
     name, assembly = sys.argv[1:]
     text = sys.stdin.buffer.read().decode()
     made = _compiled(text, level_named(name), assembly == "1")

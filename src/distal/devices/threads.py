@@ -64,7 +64,7 @@ def run(
         except BaseException as error:
             failures.append(error)
 
-    # Daemons: a run that is told to end ends soon, but an interpreter on its way out won't wait.
+    # Daemon threads: a cancelled run ends soon, but an interpreter that exits does not wait for it.
     workers = [threading.Thread(target=worker, daemon=True) for _ in range(count)]
     started: list[threading.Thread] = []
     try:
@@ -103,7 +103,9 @@ def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> 
             for thread in workers:
                 try:
                     thread.start()
-                except RuntimeError:  # the system lends no more; those that run do all the work
+                except (
+                    RuntimeError
+                ):  # the system starts no more threads; the running ones do all the work
                     if not started:
                         raise MemoryError("the system starts no thread") from None
                     break
@@ -115,7 +117,7 @@ def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> 
 def _watch(
     workers: list[threading.Thread], work: Work, progress: Progress | None, cancel: Cancel | None
 ) -> None:
-    told = time.monotonic()
+    reported = time.monotonic()
     wanted = cancel_test(cancel)
     for thread in workers:
         while True:
@@ -125,6 +127,6 @@ def _watch(
             if not thread.is_alive():
                 break
             now = time.monotonic()
-            if progress is not None and now - told >= 0.1:
-                told = now
+            if progress is not None and now - reported >= 0.1:
+                reported = now
                 progress(work.done())

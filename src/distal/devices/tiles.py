@@ -1,9 +1,9 @@
-"""How a large picture is cut into parts, each of a length that no driver takes for a hanging one.
+"""Cut a large picture into parts that are short enough for the GPU's driver.
 
 Input: a picture's size and the time that each part took. Output: the next part.
 Drivers reset a GPU that works on one submission for more than about two seconds (Windows) or five
-to ten (Linux), and a window on the same GPU stands still meanwhile. So parts are sized by measured
-time. Knows no GPU.
+to ten (Linux), and a window on the same GPU does not react meanwhile. So parts are sized by
+measured time. Knows no GPU.
 """
 
 from __future__ import annotations
@@ -12,10 +12,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-TARGET_S: Final = 0.05  # a part's length: 20 answers a second to cancel, and little waiting
+TARGET_S: Final = (
+    0.05  # time of a part: ``cancel`` is checked 20 times a second, and little time is lost
+)
 WHOLE_S: Final = 0.1  # a picture that is expected to take no longer is one part
-FIRST_PIXELS: Final = 64 * 64  # at 50 µs a pixel, a slow scene in software, 0.2 s
-_GROWTH: Final = 8  # from one part to the next: the first pixels may be the easy ones
+FIRST_PIXELS: Final = 64 * 64  # 0.2 s at 50 µs a pixel: a slow scene in software
+_GROWTH: Final = 8  # largest factor from one part to the next: the first pixels may be the fastest
 _ROW: Final = 8  # sides of workgroups
 
 
@@ -65,14 +67,14 @@ class TileSizer:
         return self._budget
 
     def measured(self, tile: Tile, seconds: float) -> None:
-        """Take in what a part took."""
-        if not self._is_warm:  # drivers compile at the first use: that time tells nothing
+        """Record how long a part took."""
+        if not self._is_warm:  # drivers compile at the first use: not a measure of speed
             self._is_warm = True
             return
         self._pixels += tile.pixels
         self._seconds += max(seconds, 1e-6)
         self._picture_rate = self._pixels / self._seconds
-        # Of two neighbours the slower one tells what the next part may take.
+        # The slower of two neighbours predicts the next part.
         rate = tile.pixels / max(seconds, 1e-6)
         slower = min(rate, self._part_rate or rate)
         self._part_rate = rate
@@ -85,9 +87,9 @@ class TileSizer:
 
 
 def tiles(width: int, height: int, tile_sizer: TileSizer) -> Iterator[Tile]:
-    """The parts of a picture, top row first, each sized when it is asked for.
+    """The parts of a picture, top row first, each sized when it is requested.
 
-    The caller tells the pace what each took before it asks for the next one.
+    The caller reports each part's time to ``tile_sizer`` before it requests the next part.
     """
     y, budget = 0, tile_sizer.start(width * height)
     while y < height:

@@ -66,7 +66,7 @@ class Block:
 
 
 @dataclass(slots=True)
-class Loop:
+class OpenLoop:
     """An open loop: what is assigned at each ``break``, or None where there was none yet."""
 
     at_break: set[Variable] | None = None
@@ -94,7 +94,7 @@ class FunctionBody:
         self.blocks: list[Block] = []
         self.assigned: set[Variable] = set()
         self.reachable = True
-        self.loops: list[Loop] = []
+        self.loops: list[OpenLoop] = []
         self.captures: dict[Variable, Read] = {}
         self.bindings: dict[TypeVar, Type] = {}
         self.result: Type | None = None

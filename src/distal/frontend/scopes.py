@@ -27,7 +27,7 @@ class BlockLocal:
 
 
 @dataclass(slots=True)
-class _Block:
+class _BlockUses:
     """Uses of names in one block, without its inner blocks."""
 
     statements: list[ast.stmt]
@@ -35,7 +35,7 @@ class _Block:
     reads: set[str] = field(default_factory=set)
     whole: dict[str, int] = field(default_factory=lambda: defaultdict(int))
     partial: set[str] = field(default_factory=set)
-    inner: list[_Block] = field(default_factory=list)
+    inner: list[_BlockUses] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ def analyse_scopes(statements: list[ast.stmt], parameters: set[str]) -> ScopeAna
     return ScopeAnalysis(dict(blocks), names, loops, frozenset(stored & parameters))
 
 
-def _loop_names(block: _Block) -> Iterator[str]:
+def _loop_names(block: _BlockUses) -> Iterator[str]:
     for inner in block.inner:
         if inner.hidden:
             yield inner.hidden
@@ -78,8 +78,8 @@ def _loop_names(block: _Block) -> Iterator[str]:
 
 def _collect(
     statements: list[ast.stmt], captures: dict[str, set[str]], hidden: str | None
-) -> _Block:
-    block = _Block(statements, hidden)
+) -> _BlockUses:
+    block = _BlockUses(statements, hidden)
     for stmt in statements:
         match stmt:
             case ast.If(test, body, orelse):
@@ -109,7 +109,7 @@ def _collect(
     return block
 
 
-def _uses(node: ast.AST, block: _Block, captures: dict[str, set[str]]) -> None:
+def _uses(node: ast.AST, block: _BlockUses, captures: dict[str, set[str]]) -> None:
     """Note every name in a statement or expression that has no inner blocks."""
     match node:
         case ast.Name(name, ast.Load()):
@@ -143,7 +143,7 @@ def _uses(node: ast.AST, block: _Block, captures: dict[str, set[str]]) -> None:
                 _uses(child, block, captures)
 
 
-def _part(base: ast.expr, block: _Block, captures: dict[str, set[str]]) -> None:
+def _part(base: ast.expr, block: _BlockUses, captures: dict[str, set[str]]) -> None:
     while isinstance(base, ast.Attribute | ast.Subscript):
         if isinstance(base, ast.Subscript):
             _uses(base.slice, block, captures)
@@ -179,28 +179,28 @@ def free_names(function: ast.FunctionDef | ast.Lambda) -> set[str]:
     return (loads - own) | defaults
 
 
-def _stored(block: _Block) -> set[str]:
+def _stored(block: _BlockUses) -> set[str]:
     names = set(block.whole)
     for inner in block.inner:
         names |= _stored(inner) - ({inner.hidden} if inner.hidden else set())
     return names
 
 
-def _partly_stored(block: _Block) -> set[str]:
+def _partly_stored(block: _BlockUses) -> set[str]:
     names = set(block.partial)
     for inner in block.inner:
         names |= _partly_stored(inner)
     return names
 
 
-def _mentions(block: _Block, name: str) -> bool:
+def _mentions(block: _BlockUses, name: str) -> bool:
     if name == block.hidden:
         return False
     direct = name in block.reads or name in block.whole or name in block.partial
     return direct or any(_mentions(inner, name) for inner in block.inner)
 
 
-def _place(block: _Block, name: str, blocks: dict[int, list[BlockLocal]]) -> None:
+def _place(block: _BlockUses, name: str, blocks: dict[int, list[BlockLocal]]) -> None:
     """Find the innermost block for a name; several where the uses are independent."""
     direct = name in block.reads or name in block.whole or name in block.partial
     holders = [inner for inner in block.inner if _mentions(inner, name)]
@@ -214,7 +214,7 @@ def _place(block: _Block, name: str, blocks: dict[int, list[BlockLocal]]) -> Non
         _place(holder, name, blocks)
 
 
-def _sites(block: _Block, name: str) -> Iterator[_Block]:
+def _sites(block: _BlockUses, name: str) -> Iterator[_BlockUses]:
     """The block of each whole assignment."""
     if name == block.hidden:
         return
@@ -224,7 +224,7 @@ def _sites(block: _Block, name: str) -> Iterator[_Block]:
         yield from _sites(inner, name)
 
 
-def _partly(block: _Block, name: str) -> bool:
+def _partly(block: _BlockUses, name: str) -> bool:
     if name == block.hidden:
         return False
     return name in block.partial or any(_partly(inner, name) for inner in block.inner)

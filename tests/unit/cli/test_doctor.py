@@ -62,7 +62,7 @@ def test_a_hanging_or_dying_driver_is_a_finding(monkeypatch, asked_anew):
     died = subprocess.CompletedProcess([], -11, "", "")
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: died)
     found = find(doctor._gpu(), "adapters")
-    assert found.detail == "the driver crashed when it was asked (signal 11)"
+    assert found.detail == "the driver crashed when its GPUs were listed (signal 11)"
     assert "apt-get install mesa-vulkan-drivers" in found.remedy
 
 

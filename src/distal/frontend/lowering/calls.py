@@ -56,7 +56,7 @@ from distal.lang.names import (
 _HINTS: Final[dict[Any, str]] = {
     builtins.print: "nothing is printed per pixel; return the value as a color to see it",
     builtins.sum: "add in a loop: for x in values: total += x",
-    builtins.range: "range stands in a for loop: for i in range(n)",
+    builtins.range: "range belongs in a for loop: for i in range(n)",
     builtins.enumerate: "write for i in range(len(values))",
     builtins.zip: "write for i in range(len(values))",
     builtins.sorted: "arrays have a fixed order here",

@@ -11,7 +11,7 @@ import builtins
 from collections.abc import Callable
 from typing import Any, Final
 
-from distal.frontend.function_body import FunctionBody, Loop, Variable
+from distal.frontend.function_body import FunctionBody, OpenLoop, Variable
 from distal.frontend.lowering.assignment import assign, augment, value_node
 from distal.frontend.lowering.expressions import arguments_of_range, array_name, make_closure
 from distal.frontend.lowering.refusals import refusal
@@ -159,7 +159,7 @@ def _while(body: FunctionBody, stmt: ast.While) -> None:
 
         test = _guarded(body, lower_head)
     before = set(body.assigned)
-    loop = Loop()
+    loop = OpenLoop()
     body.loops.append(loop)
     with body.block(stmt.body) as inner:
         lower_statements(body, stmt.body)
@@ -212,7 +212,7 @@ def _loop_body(
     array: Expr | None,
 ) -> None:
     before, reachable, span = set(body.assigned), body.reachable, body.span(stmt)
-    body.loops.append(Loop())
+    body.loops.append(OpenLoop())
     with body.block(stmt.body) as block:
         block.variables[variable.name] = variable
         body.assigned.add(variable)
