@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import FollowupError, SceneError, did_you_mean
@@ -106,24 +106,20 @@ def match(body: FunctionBody, signature: FunctionSignature, args: Sequence[Argum
     bindings = _bind(body, signature, args)
     types, coerced = [], []
     for parameter, argument in zip(signature.parameters, args, strict=True):
-        type = parameter_type(body, signature, parameter, bindings)
+        type = parameter_type(body, parameter, bindings)
         types.append(type)
         coerced.append(_coerce_argument(body, signature, parameter, type, argument))
     return Match(tuple(types), tuple(coerced), bindings)
 
 
 def parameter_type(
-    body: Any,
-    signature: FunctionSignature,
-    parameter: SignatureParameter,
-    bindings: dict[TypeVar, Type],
+    body: FunctionBody, parameter: SignatureParameter, bindings: dict[TypeVar, Type]
 ) -> Type:
     """The type of a parameter."""
     if parameter.annotation is MISSING:
         raise FollowupError
     try:
-        adopted: Type = body.compilation.adopt(to_type(parameter.annotation, bindings))
-        return adopted
+        return body.compilation.adopt(to_type(parameter.annotation, bindings))
     except AnnotationError as error:
         raise SceneError(error.message, parameter.span, error.hint) from None
     except UnboundVariableError as error:
@@ -205,7 +201,7 @@ def closeness(
     try:
         bindings = _bind(body, signature, args)
         for parameter, argument in zip(signature.parameters, args, strict=True):
-            score = _parameter_closeness(body, signature, parameter, argument, bindings)
+            score = _parameter_closeness(body, parameter, argument, bindings)
             if score is None:
                 return None
             total += score
@@ -216,12 +212,11 @@ def closeness(
 
 def _parameter_closeness(
     body: FunctionBody,
-    signature: FunctionSignature,
     parameter: SignatureParameter,
     argument: Argument,
     bindings: dict[TypeVar, Type],
 ) -> int | None:
-    type = parameter_type(body, signature, parameter, bindings)
+    type = parameter_type(body, parameter, bindings)
     value = argument.value
     if isinstance(type, FunctionType):
         return 2 if is_callable(value) else None

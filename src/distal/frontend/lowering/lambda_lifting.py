@@ -85,7 +85,7 @@ def _signature_value(
         for p, t in zip(parameters, type.params, strict=False)
         if getattr(p.annotation, "__constraints__", None) is not None
     }
-    types = tuple(parameter_type(body, signature, p, bindings) for p in signature.parameters)
+    types = tuple(parameter_type(body, p, bindings) for p in signature.parameters)
     if types[:count] != type.params:
         return None
     captures = tuple(
