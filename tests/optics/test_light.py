@@ -197,7 +197,7 @@ def middle_of(light):
 
 @pytest.mark.parametrize("bead", [(0.3, 0.8, 0.0), (-0.5, 0.4, -1.0)])
 def test_a_mirror_shows_a_lamp_where_its_image_is(bead):
-    """The image stands as far behind the mirror as the lamp before it.
+    """The image is as far behind the mirror as the lamp is in front of it.
 
     Mirrored rays begin a hit's tolerance above the mirror: up to a pixel, as the tolerance is.
     """

@@ -1,4 +1,4 @@
-"""The bunny: alike on both sides, fatter by its weight, turned by the camera, painted as told."""
+"""The bunny: alike on both sides, fatter by its weight, turned by the camera, painted as given."""
 
 from __future__ import annotations
 

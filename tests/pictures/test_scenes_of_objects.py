@@ -33,7 +33,7 @@ def test_the_softness_of_objects_is_the_shaders_blend():
 
 def test_the_sphere_shows_the_light_of_the_inverse_square_law():
     pixels = distal.load("example:sdfray_default_sphere").render(size=(641, 481)).linear
-    # In the middle the sphere's normal faces the eye; red stands at (2, 2.5, -1) from there.
+    # In the middle the sphere's normal faces the eye; red is at (2, 2.5, -1) from there.
     red = 10.0 / np.dot((2, 2.5, -1), (2, 2.5, -1)) ** 1.5
     assert np.allclose(pixels[240, 320, :3], (0.8 * (0.1 + red), 0.08, 0.08), atol=2e-3)
     assert (pixels[0, 0, :3] == 0.0).all()

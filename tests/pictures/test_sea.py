@@ -1,4 +1,4 @@
-"""The sea: both marches show one sea, one at a third of the cost; waves keep their promises."""
+"""The sea: both marches show one sea, one at a third of the cost; waves keep their bounds."""
 
 from __future__ import annotations
 

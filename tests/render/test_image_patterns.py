@@ -1,4 +1,4 @@
-"""Pictures laid on shapes: one whose colors are its own coordinates tells where it was read."""
+"""Pictures laid on shapes: one whose colors are its own coordinates shows where it was read."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def test_samples_are_a_stratified_lattice_of_the_golden_ratio(count):
 
 @func
 def pixel(coord: vec2, samples: int, transparent: bool) -> vec4:
-    """A camera that tells where it looks, a picture that is there right of 0.1 and glows by y."""
+    """A camera that shows its direction, a picture that begins right of 0.1 and glows by y."""
     return film.exposed(
         coord,
         vec2(30.0, 20.0),

@@ -1,4 +1,8 @@
-"""From a decorated Python function to typed IR, with every mistake shown at the author's line."""
+"""From a decorated Python function to typed IR, with every mistake shown at the author's line.
+
+The packages depend downwards: ``lowering`` -> ``types`` -> ``signatures`` -> the modules of this
+folder (values, scopes, source, problems). Only ``python_expressions`` is above ``lowering``.
+"""
 
 from distal.frontend.lowering.assembly import Assembly
 from distal.frontend.lowering.lower import (

@@ -1,1 +1,1 @@
-"""Signatures, scopes and overloads of scene functions."""
+"""What annotations mean, and what the ``def`` line of a function declares."""
