@@ -1,1 +1,1 @@
-"""The typing rules of scene code: Python objects, coercion, unification, operators, constructors."""
+"""The typing rules of scene code: Python values, coercion, unification, operators, constructors."""
