@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from distal.images.metadata import LARGEST_SIDE_PX
+from distal.lang.render_options import LARGEST_SIDE_PX
 
 _MAGIC: Final = b"\x76\x2f\x31\x01"
 _VERSION: Final = 2

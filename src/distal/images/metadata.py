@@ -21,8 +21,6 @@ from distal.version import __version__
 _First = TypeVar("_First")
 
 PREFIX: Final = "distal:"
-# What is larger was not rendered here: refused before its pixels take memory.
-LARGEST_SIDE_PX: Final = 16384
 # Characters of a text, and modules beside a scene: more was not written here.
 _LONGEST_TEXT: Final = 2**20
 _MOST_NEIGHBOURS: Final = 10_000

@@ -19,7 +19,8 @@ from PIL import Image as PillowImage
 from PIL.PngImagePlugin import PngImageFile, PngInfo, putchunk
 
 from distal.devices.levels import levels as fast_levels
-from distal.images.metadata import LARGEST_SIDE_PX, PREFIX, ReadError
+from distal.images.metadata import PREFIX, ReadError
+from distal.lang.render_options import LARGEST_SIDE_PX
 
 BITS: Final = (8, 16)
 

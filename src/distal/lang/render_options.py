@@ -65,7 +65,7 @@ class RenderOptions:
         for name, value in (
             ("size", checked_size(self.size)),
             ("time", checked_time(self.time)),
-            ("mouse", checked_mouse(self.mouse)),
+            ("mouse", _checked_mouse(self.mouse)),
             ("index", _checked_int("index", self.index)),
             ("seed", _checked_int("seed", self.seed)),
         ):
@@ -101,7 +101,7 @@ def checked_time(seconds: Any) -> float:
     return value
 
 
-def checked_mouse(mouse: Any) -> tuple[float, float, float, float]:
+def _checked_mouse(mouse: Any) -> tuple[float, float, float, float]:
     """The four numbers of ``frame.mouse``."""
     try:
         x, y, click_x, click_y = (float(part) for part in mouse)
