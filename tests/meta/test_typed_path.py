@@ -14,10 +14,11 @@ from mypy import api
 import distal
 from distal.export.page_options import PageOptions
 from distal.lang import Image
-from distal.lang.presentable import ExportOptions
+from distal.lang.presentable import ExportOptions, ShowOptions, VideoOptions
 from distal.lang.render_options import RenderOptions
 from distal.scene.scene import Scene
 from distal.scene.view_options import ViewOptions
+from distal.video import recording
 
 ROOT = Path(__file__).parents[2]
 SOURCE = Path(distal.__file__).parent
@@ -117,6 +118,14 @@ def test_a_public_method_documents_options_as_they_are_declared(method):
 
 def test_exports_take_the_options_of_pages():
     assert ExportOptions.__annotations__.keys() == declared(PageOptions).keys()
+
+
+def test_videos_and_widgets_take_the_options_of_what_makes_them():
+    video = inspect.signature(recording.video).parameters.keys()
+    assert VideoOptions.__annotations__.keys() == video - {"obj", "path", "duration"}
+    widget = pytest.importorskip("distal.notebook.widget")
+    live_view = inspect.signature(widget.LiveView).parameters.keys()
+    assert ShowOptions.__annotations__.keys() == live_view - {"obj"}
 
 
 def test_nothing_passes_untyped_options():

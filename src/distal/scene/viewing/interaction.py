@@ -1,4 +1,4 @@
-"""What a hand does to a camera, a time and a slider: the same in windows, pages and notebooks.
+"""What gestures do to a camera, a time and a slider: the same in windows, pages and notebooks.
 
 Input: movements in parts of the picture's height, notches of a wheel, steps, positions.
 Output: numbers. ``tools/gen_player.py`` translates this module to TypeScript for the page's

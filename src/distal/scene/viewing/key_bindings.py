@@ -16,8 +16,8 @@ class Binding:
 
     Attributes:
         action: Its name.
-        keys: Typed characters, or the names of keys as browsers have them; a small letter stands
-            for the capital too, unless that has an action of its own.
+        keys: Typed characters, or the names of keys as browsers have them; a small letter means
+            the capital too, unless that has an action of its own.
         in_page: Whether pages and notebooks have it; what concerns a window they leave alone.
         window_keys: Further keys of windows, which a browser needs itself.
     """
