@@ -107,3 +107,5 @@ value_and_gradient = LangForm(
 sample = LangForm("sample", "sample(texture, coord)", "The filtered value of a texture, a vec4.")
 texel = LangForm("texel", "texel(texture, index)", "One texel, a vec4; the index is clamped.")
 size = LangForm("size", "size(resource)", "The size of a texture in texels, or of a buffer.")
+
+FORMS = (select, gradient, value_and_gradient, sample, texel, size)
