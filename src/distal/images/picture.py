@@ -8,13 +8,12 @@ were made.
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +21,15 @@ from numpy.typing import NDArray
 from distal.images import metadata, png
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.metadata import Provenance
+from distal.lang.lazy_module import LazyModule
 from distal.lang.runtime_access import executor
 from distal.lang.srgb import decode_srgb
 from distal.packages import PackageError, imported
+
+if TYPE_CHECKING:
+    from distal.images import exr
+else:
+    exr = LazyModule("distal.images.exr")  # OpenEXR is an extra, and heavy
 
 # Suffix -> the bits of a channel that its files may have; the first are its usual ones.
 FORMATS: Final = {".png": (8, 16), ".exr": (16, 32)}
@@ -123,9 +128,7 @@ class Picture:
         destination = Path(path)
         suffix, bits = check_savable(destination, bits)
         if suffix == ".exr":
-            # Asked for by name: OpenEXR is an extra, and heavy.
-            encode = importlib.import_module("distal.images.exr").encode
-            data = encode(self.linear, self.layers, self.metadata, bits)
+            data = exr.encode(self.linear, self.layers, self.metadata, bits)
         else:
             data = png.encode(self.array, self.metadata, bits)
         with replacement(destination) as file:

@@ -1,6 +1,6 @@
 """Video: a moving picture, rendered frame by frame and written as one file or as many.
 
-Takes anything that can be viewed, and how long it is shown; gives mp4, webm, gif, apng, webp or
+Input: anything that can be viewed, and how long it is shown. Output: mp4, webm, gif, apng, webp or
 numbered PNG files.
 """
 
