@@ -129,22 +129,25 @@ def given_arguments(
     Raises:
         SceneTypeError: An argument is unknown, missing, passed twice or one too many.
     """
-    signature = signature_of(declaration)
-    takes = f"it takes {', '.join(signature.parameters)}"
-    unknown = next((name for name in kwargs if name not in signature.parameters), None)
-    if unknown is not None:
-        hint = did_you_mean(unknown, signature.parameters) or takes
-        refuse_kind(f"{what} has no '{unknown}'", hint, place)
+    parameters = signature_of(declaration).parameters
+    for name in kwargs:
+        if name not in parameters:
+            hint = did_you_mean(name, parameters) or _takes(declaration)
+            refuse_kind(f"{what} has no '{name}'", hint, place)
     try:
-        bound = signature.bind_partial(*args, **kwargs).arguments
+        bound = signature_of(declaration).bind_partial(*args, **kwargs).arguments
     except TypeError as error:
         message = f"{what}: {error}"
-        refuse_kind(message, takes, place)
-    for name, parameter in signature.parameters.items():
+        refuse_kind(message, _takes(declaration), place)
+    for name, parameter in parameters.items():
         if name not in bound and parameter.default is parameter.empty:
-            refuse_kind(f"{what} needs '{name}'", takes, place)
+            refuse_kind(f"{what} needs '{name}'", _takes(declaration), place)
     optional = declaration.family.optional
     return {n: v for n, v in bound.items() if not (v is None and n in optional)}
+
+
+def _takes(declaration: Declaration) -> str:
+    return f"it takes {', '.join(signature_of(declaration).parameters)}"
 
 
 def scene_call(

@@ -12,13 +12,13 @@ from collections.abc import Iterator
 from typing import Any, ClassVar, Final
 
 from distal.diagnostics import Span
-from distal.ir.types import VEC3
 from distal.lang.functions import Func
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
 from distal.render import lights as _lights  # noqa: F401 (declares lights)
 from distal.render.declarations import LIGHTS
 from distal.scene.objects.declared import declared_call, declared_class, given_arguments
 from distal.scene.objects.scene_object import SceneObject
+from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
@@ -42,7 +42,7 @@ class Light(SceneObject):
         place, what = author_place(), type(self).__name__
         given = given_arguments(self.declaration, args, kwargs, what, place)
         call = declared_call(self.declaration, given, place, what=what)
-        everywhere = call.result is VEC3
+        everywhere = any(slot.name == "n" for slot in slots_of(call.func))
         self._keep(sample=None if everywhere else call, ambient=call if everywhere else None)
 
     def functions(self) -> Iterator[Func]:
