@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from distal.images.picture import Picture
 
 
-class Array(Protocol):
+class ArrayLike(Protocol):
     """NumPy's numbers and arrays, and what converts to Python's numbers in the same way."""
 
     def tolist(self) -> Any:
@@ -28,15 +28,15 @@ class Array(Protocol):
 
 
 # A number: plain, a parameter, or an expression of parameters and time.
-Number: TypeAlias = "float | Parameter | Expression | Array"
+Number: TypeAlias = "float | Parameter | Expression | ArrayLike"
 # Two or three numbers.
-Vector: TypeAlias = "Sequence[Number] | vec2 | vec3 | vec4 | Parameter | Expression | Array"
+Vector: TypeAlias = "Sequence[Number] | vec2 | vec3 | vec4 | Parameter | Expression | ArrayLike"
 # "#rrggbb", linear red, green and blue, or one number for a grey.
 Color: TypeAlias = "str | Vector | Number"
 # A list of points or of numbers.
-Points: TypeAlias = "Sequence[Vector] | Sequence[float] | Buffer | Array"
+Points: TypeAlias = "Sequence[Vector] | Sequence[float] | Buffer | ArrayLike"
 # A picture: its file, an array, or a texture.
-Image: TypeAlias = "str | PathLike[str] | Array | Picture | TextureValue"
+Image: TypeAlias = "str | PathLike[str] | ArrayLike | Picture | TextureValue"
 Images: TypeAlias = "Iterable[Image] | TextureCube"
 # What differs from place to place on a surface: a pattern, or a @func of a place.
 Varying: TypeAlias = "Pattern | Func"
