@@ -10,6 +10,7 @@ import pytest
 from distal.fields.guarantees import EXACT, Guarantee, Limit, Operator, Primitive
 from distal.ir.types import Buffer, Texture
 from distal.lang import Func
+from distal.scene.objects.in_plane import IN_PLANE
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES
 from tests.fields.library import MODULES, docstring, measured, operators, primitives
 from tests.fields.rows import PLACE, default_of, header_of, slots_of
@@ -142,3 +143,18 @@ def test_an_operator_is_declared_soundly(row: Operator):
 def _arguments(function) -> set[str]:
     code = function.__code__
     return set(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
+
+
+def test_usual_limits_hold_unless_a_shape_says_otherwise():
+    limits = {name: row.limits.get("height") for name, row in primitives().items()}
+    assert limits["Cone"] is Limit.POSITIVE
+    assert limits["CutDisk"] is None
+    assert limits["Heightfield"] is Limit.NOT_ZERO
+
+
+def test_operators_in_the_plane_are_those_of_space():
+    for solid, flat in IN_PLANE.items():
+        assert flat.name == f"flat {solid.name}"
+        assert (solid.lies_flat(False), flat.lies_flat(True)) == (False, True)
+    paired = {flat.name for flat in IN_PLANE.values()} | {"flat rotate"}
+    assert paired == {name for name in operators() if name.startswith("flat ")}

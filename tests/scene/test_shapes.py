@@ -10,6 +10,8 @@ import pytest
 import distal
 from distal import Box, Circle, CompileError, Plane, Scene, Shape, Sphere, Torus, time
 from distal.lang import func, length, sin, slider, vec2, vec3
+from distal.packages import PackageError
+from distal.scene.lowering import known_bounds
 
 POINTS = np.random.default_rng(7).uniform(-2.0, 2.0, (200, 3))
 
@@ -156,3 +158,12 @@ def test_mistakes_are_told_at_the_authors_line(make, message):
         make()
     assert message in str(caught.value)
     assert "test_shapes.py" in str(caught.value)
+
+
+@pytest.mark.parametrize("is_missing", [True, False])
+def test_without_numpy_an_operator_is_made_all_the_same(monkeypatch, is_missing):
+    def refused(module):
+        raise PackageError(f"{module} cannot be loaded", is_missing=is_missing)
+
+    monkeypatch.setattr(known_bounds, "imported", refused)
+    assert Sphere(0.5).twist(1.25).node.rule.name == "twist"

@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from distal.fields.guarantees import UNBOUNDED, Bounds, Bounds2
+from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds, Bounds2
 from distal.lang import Vectors, abs, func, length, mat2, mat3, max, min, select, vec2, vec3
 
-# A side beyond this is infinite.
-ENDLESS = UNBOUNDED / 1000.0
 # What is left of infinity after turning a box by a rounded zero; no shape is that large.
 LEAK = 1e9
 

@@ -7,8 +7,9 @@ times the largest stretch of the map, and a folded shape answers at least the di
 
 from __future__ import annotations
 
-from distal.fields.extents import ENDLESS, box_distance, reach
+from distal.fields.extents import box_distance, reach
 from distal.fields.guarantees import (
+    ENDLESS,
     INSIDE_AND_BOUND,
     UNBOUNDED,
     Bounds,

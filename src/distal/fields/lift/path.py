@@ -16,9 +16,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from distal.fields.extents import ENDLESS
 from distal.fields.flats.edges import TINY
-from distal.fields.guarantees import LOWER_BOUND, UNBOUNDED, Bounds, Bounds2, operator
+from distal.fields.guarantees import ENDLESS, LOWER_BOUND, UNBOUNDED, Bounds, Bounds2, operator
 from distal.fields.lift.extrude import circle_around
 from distal.lang import (
     Buffer,

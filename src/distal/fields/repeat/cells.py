@@ -26,8 +26,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.extents import ENDLESS, largest, smallest
-from distal.fields.guarantees import UNBOUNDED, Bounds, Site
+from distal.fields.extents import largest, smallest
+from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds, Site
 from distal.lang import (
     Vectors,
     abs,

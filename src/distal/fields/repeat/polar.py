@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.extents import ENDLESS, drum_distance
+from distal.fields.extents import drum_distance
 from distal.fields.guarantees import (
+    ENDLESS,
     INSIDE_AND_BOUND,
     LOWER_BOUND,
     UNBOUNDED,
