@@ -7,6 +7,7 @@ operators rest on. All rise everywhere.
 
 from __future__ import annotations
 
+from distal.fields.constants import PI
 from distal.lang import clamp, cos, func
 
 LINEAR = 0
@@ -18,7 +19,6 @@ SLOW_END = 5
 CUBIC = 6  # slow at both ends, fast in the middle
 
 EASES = ("linear", "smooth", "smoother", "sine", "slow start", "slow end", "cubic")
-PI = 3.141592653589793
 
 
 @func

@@ -7,6 +7,7 @@ times the largest stretch of the map, and a folded shape answers at least the di
 
 from __future__ import annotations
 
+from distal.fields.constants import PI
 from distal.fields.extents import box_distance, reach
 from distal.fields.guarantees import (
     ENDLESS,
@@ -37,8 +38,6 @@ from distal.lang import (
     sqrt,
     vec3,
 )
-
-PI = 3.141592653589793
 
 # Wrapped around the y axis
 

@@ -8,16 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.flats.edges import (
-    HALF_ROOT,
-    LEFT,
-    RIGHT,
-    TINY,
-    centred_bounds,
-    inside_both,
-    nearer,
-    turned_from,
-)
+from distal.fields.constants import HALF_ROOT, TINY
+from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, inside_both, nearer, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, clamp, dot, floor, func, length, max, min, round, select, vec2, vec4
 

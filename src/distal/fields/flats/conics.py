@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.flats.edges import HALF_ROOT, TINY, centred_bounds, disc_bounds, nearer
+from distal.fields.constants import HALF_ROOT, TINY
+from distal.fields.flats.edges import centred_bounds, disc_bounds, nearer
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, dot, func, length, max, min, pow, select, sqrt, vec2
 

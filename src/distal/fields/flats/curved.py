@@ -8,15 +8,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from distal.fields.flats.edges import (
-    HALF_ROOT,
-    LEFT,
-    RIGHT,
-    TINY,
-    centred_bounds,
-    nearer,
-    turned_from,
-)
+from distal.fields.constants import HALF_ROOT, TINY
+from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, nearer, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, dot, func, length, max, min, select, sqrt, vec2, vec3
 

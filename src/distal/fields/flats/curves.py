@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.fields.flats.edges import LEFT, RIGHT, TINY, from_segment, nearer
+from distal.fields.constants import TINY
+from distal.fields.flats.edges import LEFT, RIGHT, from_segment, nearer
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, primitive
 from distal.lang import Buffer, Vectors, abs, clamp, dot, func, length, max, min, select, size, vec2
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.constants import PI, TINY
 from distal.fields.guarantees import Bounds2
 from distal.lang import (
     Buffer,
@@ -34,10 +35,6 @@ from distal.lang import (
 # The default ends of shapes between two points.
 LEFT: Final = vec2(-0.5, 0.0)
 RIGHT: Final = vec2(0.5, 0.0)
-PI: Final = 3.141592653589793
-HALF_ROOT: Final = 0.7071067811865476  # sqrt(1/2)
-# Keeps a division defined where numbers vanish; far below any length that a scene has.
-TINY: Final = 1e-12
 
 
 @func

@@ -10,8 +10,9 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from distal.fields.constants import PI
 from distal.fields.flats.curves import from_arc_pair
-from distal.fields.flats.edges import PI, centred_bounds, disc_bounds, from_segment, nearer
+from distal.fields.flats.edges import centred_bounds, disc_bounds, from_segment, nearer
 from distal.fields.flats.round import from_arc
 from distal.fields.guarantees import EXACT_OUTSIDE, UNBOUNDED, Bounds2, Limit, primitive
 from distal.lang import (

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.constants import PI, ROOT_THREE
 from distal.fields.flats.edges import (
-    PI,
     disc_bounds,
     fold_past,
     fold_sectors,
@@ -24,7 +24,6 @@ from distal.lang import abs, cos, func, length, max, min, select, sin, vec2
 LEFT_CORNER: Final = vec2(-0.5, -0.4)
 RIGHT_CORNER: Final = vec2(0.5, -0.3)
 TOP_CORNER: Final = vec2(0.1, 0.5)
-ROOT_3: Final = 1.7320508075688772
 # Where the edges of a five-pointed star cross, as a share of its radius: (3 - sqrt(5)) / 2.
 PENTAGRAM_INNER: Final = 0.3819660112501051
 
@@ -67,7 +66,9 @@ def past_corner(q: vec2, radius: float, angle: float) -> float:
 @func
 def triangle_bounds(size: float) -> Bounds2:
     """From the base to the tip."""
-    return Bounds2(vec2(-0.5 * size, -size / (2.0 * ROOT_3)), vec2(0.5 * size, size / ROOT_3))
+    return Bounds2(
+        vec2(-0.5 * size, -size / (2.0 * ROOT_THREE)), vec2(0.5 * size, size / ROOT_THREE)
+    )
 
 
 @primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds)
@@ -87,7 +88,7 @@ def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
         equilateral_triangle((0.5, -4.0), 3.4641016151377544) = 3.0
     """
     q = fold_past(fold_past(vec2(abs(p.x), p.y), 2.0 * PI / 3.0), PI / 3.0)
-    return past_corner(q, size / ROOT_3, PI / 3.0)
+    return past_corner(q, size / ROOT_THREE, PI / 3.0)
 
 
 @func
@@ -264,7 +265,7 @@ def hexagram(p: vec2, radius: float = 0.5) -> float:
         hexagram((0.0, 0.0), 3.0) = -1.7320508075688772
     """
     q = fold_past(fold_past(abs(p), PI / 3.0), PI / 6.0)
-    return past_point_of_star(q, radius, radius / ROOT_3, PI / 6.0)
+    return past_point_of_star(q, radius, radius / ROOT_THREE, PI / 6.0)
 
 
 @primitive("Pentagram", EXACT, bounds=disc_bounds)

@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.constants import PI
 from distal.fields.flats.boxes import UNIT_SQUARE, rectangle_bounds
 from distal.fields.flats.curved import egg, egg_bounds, uneven_capsule, uneven_capsule_bounds
-from distal.fields.flats.edges import PI, disc_bounds, fold_sectors, from_segment
+from distal.fields.flats.edges import disc_bounds, fold_sectors, from_segment
 from distal.fields.flats.round import from_arc
 from distal.fields.guarantees import EXACT, NOTHING, Bounds2, Limit, primitive
 from distal.lang import (

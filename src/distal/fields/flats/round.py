@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from distal.fields.flats.edges import PI, disc_bounds, turned_from
+from distal.fields.constants import PI
+from distal.fields.flats.edges import disc_bounds, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2
 

@@ -7,6 +7,7 @@ stand along z, their middle at z = 0.
 
 from __future__ import annotations
 
+from distal.fields.constants import HALF_ROOT, TINY
 from distal.fields.ease import ease_requirement, ease_slope, eased
 from distal.fields.extents import (
     at_least_one,
@@ -15,7 +16,7 @@ from distal.fields.extents import (
     rectangle_distance,
     unless_endless,
 )
-from distal.fields.flats.edges import HALF_ROOT, TINY, inside_both
+from distal.fields.flats.edges import inside_both
 from distal.fields.guarantees import EXACT, Bounds, Bounds2, Growth, Limit, operator
 from distal.lang import abs, clamp, cos, func, length, max, min, mix, sin, sqrt, vec2, vec3
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from distal.fields.flats.edges import TINY
+from distal.fields.constants import TINY
 from distal.fields.guarantees import ENDLESS, LOWER_BOUND, UNBOUNDED, Bounds, Bounds2, operator
 from distal.fields.lift.extrude import circle_around
 from distal.lang import (

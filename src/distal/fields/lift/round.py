@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.constants import PI, TINY
 from distal.fields.extents import (
     at_least_one,
     box_distance,
@@ -16,7 +17,7 @@ from distal.fields.extents import (
     turned,
     unless_endless,
 )
-from distal.fields.flats.edges import PI, TINY, inside_both
+from distal.fields.flats.edges import inside_both
 from distal.fields.guarantees import (
     LOWER_BOUND,
     UNBOUNDED,

@@ -10,11 +10,10 @@ lost where the shape reaches through a mirror: what lies behind it is not seen, 
 
 from __future__ import annotations
 
+from distal.fields.constants import PI
 from distal.fields.extents import hull_of, turned
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Growth, Limit, operator
 from distal.lang import abs, atan2, cos, dot, func, length, mat3, max, min, round, sin, vec2, vec3
-
-PI = 3.141592653589793
 
 
 @func

@@ -27,9 +27,6 @@ from distal.lang import (
     vec4,
 )
 
-PI = 3.141592653589793
-
-
 # Moved and turned
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from distal.fields.constants import PI
 from distal.fields.extents import drum_distance
 from distal.fields.guarantees import (
     ENDLESS,
@@ -45,8 +46,6 @@ from distal.lang import (
     vec2,
     vec3,
 )
-
-PI = 3.141592653589793
 
 
 @struct

@@ -9,12 +9,10 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.constants import TINY
 from distal.fields.guarantees import Bounds, named
 from distal.lang import dot, func, length, max, min, sqrt, vec2, vec3
 from distal.lang.functions import Func
-
-# Keeps a division defined where numbers vanish; far below any length that a scene has.
-TINY: Final = 1e-12
 
 # The default ends of shapes between two points.
 LOW_END: Final = vec3(0.0, -0.5, 0.0)

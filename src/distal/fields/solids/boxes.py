@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.constants import HALF_ROOT, ROOT_THREE
 from distal.fields.guarantees import (
     EXACT,
     EXACT_OUTSIDE,
@@ -19,9 +20,6 @@ from distal.fields.guarantees import (
 from distal.lang import abs, func, length, max, min, sqrt, vec3
 
 UNIT_CUBE: Final = vec3(1.0)
-HALF_ROOT: Final = 0.7071067811865476
-# A point that is past three sides by r each is this times r from the box.
-ROOT_THREE: Final = 1.7320508075688772
 
 
 @primitive("Corner", EXACT)

@@ -5,13 +5,9 @@ Input: a point and the numbers of a coil. Output: a lower bound of the distance.
 
 from __future__ import annotations
 
-from typing import Final
-
+from distal.fields.constants import PI, TAU
 from distal.fields.guarantees import LOWER_BOUND, Bounds, primitive
 from distal.lang import abs, atan2, func, length, max, round, sqrt, vec2, vec3
-
-PI: Final = 3.141592653589793
-TAU: Final = 6.283185307179586
 
 
 @func

@@ -6,11 +6,11 @@ looked at as how far from the axis and how high above the middle.
 
 from __future__ import annotations
 
+from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
-    TINY,
     apart,
     around_axis,
     around_y,

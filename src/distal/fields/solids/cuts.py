@@ -7,8 +7,8 @@ about the y axis: the point is looked at as how far from the axis, and how high.
 from __future__ import annotations
 
 import math
-from typing import Final
 
+from distal.fields.constants import PI
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
@@ -22,8 +22,6 @@ from distal.fields.solids.axes import (
     upright_bounds,
 )
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
-
-PI: Final = math.pi
 
 
 @func

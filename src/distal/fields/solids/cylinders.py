@@ -5,12 +5,12 @@ Input: a point and the numbers of a shape. Output: the distance.
 
 from __future__ import annotations
 
+from distal.fields.constants import TINY
 from distal.fields.flats.edges import inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
-    TINY,
     apart,
     around_axis,
     around_y,

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.constants import TINY
 from distal.fields.guarantees import LOWER_BOUND, NOTHING, Bounds, primitive
 from distal.lang import (
     abs,
@@ -35,7 +36,6 @@ from distal.lang import (
     vec4,
 )
 
-TINY: Final = 1e-12
 NEAR_AXIS: Final = 1e-10
 # Beyond this the orbit is gone; large, because the estimate is the better the farther it went.
 ESCAPED: Final = 256.0

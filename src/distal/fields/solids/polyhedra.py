@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from distal.fields.constants import HALF_ROOT, ROOT_THREE
 from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, primitive
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
-from distal.fields.solids.boxes import ROOT_THREE, UNIT_CUBE, box_bounds
+from distal.fields.solids.boxes import UNIT_CUBE, box_bounds
 from distal.fields.solids.regular import DIAGONAL
 from distal.lang import (
     Buffer,
@@ -30,7 +31,6 @@ from distal.lang import (
 )
 from distal.lang import size as count_of
 
-HALF_ROOT: Final = math.sqrt(0.5)
 CUT_CORNERS: Final = Buffer(
     [
         vec4(x * DIAGONAL, y * DIAGONAL, z * DIAGONAL, 0.6)

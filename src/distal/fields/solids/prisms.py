@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.constants import PI
 from distal.fields.flats.edges import fold_past, fold_sectors, inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.lang import abs, cos, dot, func, length, max, min, sin, vec2, vec3
 
 DIAGONALS: Final = vec2(1.0, 0.6)
-PI: Final = math.pi
 
 # Half of a side, and how far the corners are, for a side at distance 1 from the centre.
 TRIANGLE_HALF_SIDE: Final = math.sqrt(3.0)

@@ -14,9 +14,9 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from distal.fields.constants import ROOT_THREE
 from distal.fields.guarantees import INSIDE_AND_BOUND, primitive
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
-from distal.fields.solids.boxes import ROOT_THREE
 from distal.lang import abs, func, max, vec3
 from distal.lang.functions import Func
 

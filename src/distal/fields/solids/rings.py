@@ -7,12 +7,10 @@ around the y axis.
 from __future__ import annotations
 
 import math
-from typing import Final
 
+from distal.fields.constants import PI
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Limit, primitive
 from distal.lang import abs, cos, func, length, max, select, sin, vec2, vec3
-
-PI: Final = math.pi
 
 
 @func

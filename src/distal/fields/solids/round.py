@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, primitive
-from distal.fields.solids.axes import TINY, sphere_bounds
+from distal.fields.solids.axes import sphere_bounds
 from distal.fields.solids.regular import along_vertices
 from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec3
 

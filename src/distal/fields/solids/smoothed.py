@@ -19,8 +19,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from distal.fields.constants import TINY
 from distal.fields.guarantees import LOWER_BOUND, Bounds, named, primitive
-from distal.fields.solids.axes import TINY
 from distal.fields.solids.regular import (
     DIAGONAL,
     DODECAHEDRON_FACE,

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, primitive
-from distal.fields.solids.axes import TINY
 from distal.fields.solids.cones import opening
 from distal.fields.solids.cylinders import to_segment
 from distal.lang import abs, cross, dot, func, length, max, min, select, vec2, vec3

@@ -20,12 +20,11 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from distal.fields.constants import TAU
 from distal.fields.extents import moved_out
 from distal.fields.guarantees import NOTHING, Bounds, Growth, Limit, operator, primitive
 from distal.lang import abs, clamp, cos, dot, func, max, sin, vec3
 from distal.lang.functions import Func
-
-TAU: Final = 6.283185307179586
 
 GYROID_STEEPEST: Final = 1.7320508075688772  # sqrt(3)
 GYROID_TYPICAL: Final = 1.53

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.constants import TINY
 from distal.fields.flats.curves import from_bezier
 from distal.fields.flats.edges import from_segment, nearer
 from distal.fields.guarantees import EXACT_OUTSIDE, Bounds, Limit, primitive
-from distal.fields.solids.axes import TINY
 from distal.fields.solids.cones import round_cone_between
 from distal.lang import Buffer, abs, clamp, func, length, max, min, select, size, vec3, vec4
 
