@@ -1,4 +1,4 @@
-"""How steep a field really is, and whether it keeps within its box: measured at random points.
+"""Measurements of a field at random points: its steepness, and whether it stays within its box.
 
 Input: a shape, its box, a seed. Output: figures. A measurement finds mistakes; it
 proves nothing: what is steep in a place too small to be met stays unseen.
@@ -23,9 +23,9 @@ POINTS: Final = 4096
 SEARCHED: Final = 32
 AROUND: Final = 24
 ROUNDS: Final = 4
-# How far around its box a shape is looked at, in sizes of the box.
+# How far around its box a shape is measured, in sizes of the box.
 MARGIN: Final = 0.5
-# Where a shape has no end it is looked at within this.
+# A shape without end is measured within this.
 REACH: Final = 4.0
 # A point is on the surface if its foot is, within this share of the box.
 FOOT: Final = 2e-3
@@ -62,12 +62,12 @@ class Measured:
 
     @property
     def slope(self) -> float:
-        """The steepest that was found, either way."""
+        """The largest slope that was found by either method."""
         return max(self.steepest, self.largest_change)
 
 
 class _Asked:
-    """A shape for one time and one set of parameters, asked in 64 bits."""
+    """A shape for one time and one set of parameters, evaluated in 64 bits."""
 
     def __init__(self, shape: Field, params: Mapping[str, Any], time: float) -> None:
         self._shape, self._params, self._time = shape, params, time
@@ -102,7 +102,7 @@ def measure(
         nowhere = (0.0,) * n
         pair = (nowhere, nowhere)
         return Measured(0, 0.0, 0.0, 0.0, nowhere, 0.0, pair, 0.0, None, undefined)
-    # Half of all are drawn to the surface, where marchers ask most.
+    # Half of all are drawn to the surface, where marchers evaluate most.
     steep = np.linalg.norm(slopes, axis=1)
     foot = p - values[:, None] * slopes / np.maximum(steep**2, 1e-12)[:, None]
     near = foot[::2] + random.normal(0.0, 0.01 * size, foot[::2].shape)

@@ -1,4 +1,4 @@
-"""What one pixel of a scene's picture saw: its ray, the march, the shape and the material it met.
+"""One pixel of a scene's picture: its ray, the march, the shape and the material that it hit.
 
 Input: a scene and a pixel. Output: a ``Probed``, in plain values and with the
 tree's own nodes. One small program over the scene's functions, with the march of the picture.
@@ -33,7 +33,7 @@ _COLORS = ("color", "emission", "absorption")
 
 @dataclass(frozen=True, slots=True)
 class Probed:
-    """What a pixel saw.
+    """The ray, the hit and the shading of a pixel.
 
     Attributes:
         pixel: Column and row, from the upper left.
@@ -57,7 +57,7 @@ class Probed:
 
     @property
     def hit(self) -> bool:
-        """Whether a surface was met."""
+        """Whether a surface was hit."""
         return bool(self.seen.found)
 
     def as_json(self) -> dict[str, Any]:
@@ -96,7 +96,7 @@ def probe(
     params: Mapping[str, Any] | None = None,
     time: float = 0.0,
 ) -> Probed:
-    """What a pixel saw.
+    """The ray, the hit and the shading of a pixel.
 
     Args:
         scene: The scene.
@@ -187,7 +187,7 @@ class _Paint(SurfaceAttribute):
         self.materials: list[Any] = []
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """The one of which more shows."""
+        """The one with the larger share."""
         return select(compare(CompareOp.GT, share, number(0.5)), b, a)
 
     def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:

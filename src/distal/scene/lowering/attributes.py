@@ -27,15 +27,15 @@ class Attribute(ABC):
 
     @abstractmethod
     def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
-        """What the subtree gives as a whole, or None to look into it."""
+        """The attribute of the whole subtree, or None to descend into it."""
 
     @abstractmethod
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """Two joined, where a blend shows ``share`` (0 to 1) of b."""
+        """Both attributes combined, with ``share`` (0 to 1) of b."""
 
     @abstractmethod
     def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
-        """What a face shows that the subtree cut; None: what is cut shows itself."""
+        """The attribute of faces that the subtree cuts; None keeps that of the cut shape."""
 
 
 class AttributePoint:
@@ -188,7 +188,7 @@ class MaterialNumber(SurfaceAttribute):
         self.materials: list[Any] = []
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """The one of which more shows."""
+        """The one with the larger share."""
         return _more_shown(a, b, share)
 
     def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
@@ -213,7 +213,7 @@ class Part(Attribute):
         return number(float(len(self.nodes) - 1))
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """The one of which more shows."""
+        """The one with the larger share."""
         return _more_shown(a, b, share)
 
     def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:

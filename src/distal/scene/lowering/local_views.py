@@ -1,4 +1,4 @@
-"""A local of an ``@image`` as a picture of its own: an image's coordinate, its signal.
+"""Views of an ``@image`` that show one of its locals: its coordinate, its signal.
 
 Input: an author's image and the name of a local. Output: an image whose function is
 the author's, changed to return the color of the local's last value, whichever way it leaves.
@@ -223,7 +223,7 @@ def _watched(
         yield map_statement(
             stmt, lambda e: e, lambda inner: tuple(_watched(inner, name, kept, color))
         )
-        # A local whose first value stands in an inner block is declared before it with a zero.
+        # A local whose first value is set in an inner block is declared before it with a zero.
         hoisted = isinstance(stmt, Var) and stmt.name == name and id(stmt.span) in ahead
         if _gives(stmt, name) and not hoisted:
             value, reached = kept

@@ -295,7 +295,7 @@ class Field(Composed, Presentable):
         return changed
 
     def named(self, name: str) -> Self:
-        """Give a name, for its function in emitted text and for messages."""
+        """Set a name, for the function in emitted text and for messages."""
         if not isinstance(name, str) or not name.strip():
             refuse(f"a name is a text, not {name!r}", None, author_place())
         changed: Self = self._of(replace(self.node, label=name))

@@ -1,8 +1,8 @@
-"""What an author gives for a number becomes a ``Number``; mistakes are told at the author's line.
+"""Conversion of an author's values to ``Number``s; errors are reported at the author's line.
 
 Input: Python's and NumPy's numbers, tuples, lists, arrays, vectors, ``"#hex"`` colours,
 parameters and expressions, also mixed. Output: checked plain numbers, or one expression.
-Knows limits (``fields.claims``), but no function that the numbers are for (``numbers``).
+Checks limits (``fields.guarantees``); does not depend on the functions that take the numbers.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ Plain: TypeAlias = "float | tuple[float, ...]"
 
 _OF_ARRAYS: Final = {TEXTURE_2D: Texture2D, TEXTURE_3D: Texture3D}
 _WORDS: Final = {2: "two", 3: "three", 4: "four"}
-# A direction typed with six digits is meant to have length 1.
+# A direction written with six digits counts as one of length 1.
 _UNIT_TOLERANCE: Final = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A float or a vector of floats that a scene object is given.
+    """A float or a vector of floats among a scene object's arguments.
 
     Attributes:
         type: float, vec2, vec3 or vec4.
@@ -271,7 +271,7 @@ def _check_plain(known: Plain, asked: Asked) -> None:
     if wrong is not None:
         refuse(
             f"'{asked.label}' must be {wrong}, not {shown(known)}",
-            _mend(known, asked.limit),
+            _direction_hint(known, asked.limit),
             asked.place,
         )
 
@@ -321,7 +321,7 @@ def complaint(known: Plain, limit: Limit) -> str | None:
     return None if kept else limit.value
 
 
-def _mend(known: Plain, limit: Limit) -> str | None:
+def _direction_hint(known: Plain, limit: Limit) -> str | None:
     if limit is not Limit.UNIT:
         return None
     parts = components(known)
@@ -357,7 +357,7 @@ def _texture(value: Any, asked: Asked, type: Texture) -> TextureValue:
 
 
 def beside(value: str | os.PathLike[str], place: Span | None) -> str | os.PathLike[str]:
-    """A file's name made whole where such a file stands beside the author's own."""
+    """The path of a file in the folder of the author's file, if there is one; else the name."""
     if place is None:
         return value
     candidate = os.path.join(os.path.dirname(os.path.abspath(place.file)), os.fspath(value))
