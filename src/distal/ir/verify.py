@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from distal.ir import nodes
+from distal.ir.exits import never_ends
 from distal.ir.nodes import (
     Apply,
     Assign,
@@ -94,9 +95,8 @@ class Verifier:
         self._context: _CheckContext | None = None
         self._depths: dict[Expr, int] = {}
         self._checked: set[Expr] = set()
-        self._records: dict[
-            int, _CheckedFunction
-        ] = {}  # by the function's id; a record keeps it alive
+        # By the function's id: a record keeps the function alive.
+        self._records: dict[int, _CheckedFunction] = {}
 
     def verify(self, module: Module, stage: str | None = None) -> None:
         """Raise AssertionError when the module breaks a rule; see ``verify``."""
@@ -236,7 +236,7 @@ class _Checker:
         assert not is_static(function.result), f"{where} returns a {function.result}"
         walker = _Walker(self, function, set(scope))
         walker.block(function.body, scope, frozenset(), in_loop=False)
-        assert _ends(function.body), f"{where}: a path ends without return"
+        assert never_ends(function.body), f"{where}: a path ends without return"
 
     def _check_boundary_type(self, type: Type, where: str) -> None:
         if self._context.no_frame:
@@ -398,30 +398,3 @@ class _Walker:
                 assert len(set(part.lanes)) == len(part.lanes), f"{where}: {part.lanes} as a target"
             part = part.base
         assert root_of(target).name in vars, f"{where}: {part.name} is no var"
-
-
-def _ends(body: tuple[Stmt, ...]) -> bool:
-    """True when no path runs off the end of the block."""
-    return any(_stops(stmt) for stmt in body)
-
-
-def _stops(stmt: Stmt) -> bool:
-    match stmt:
-        case Return() | Break() | Continue():
-            return True
-        case If(_, then, otherwise):
-            return _ends(then) and _ends(otherwise)
-        case While(Const(True), body):
-            return not _breaks(body)
-        case _:
-            return False
-
-
-def _breaks(body: tuple[Stmt, ...]) -> bool:
-    """True when a Break in the block leaves the loop the block belongs to."""
-    for stmt in body:
-        if isinstance(stmt, Break):
-            return True
-        if isinstance(stmt, If) and (_breaks(stmt.then) or _breaks(stmt.otherwise)):
-            return True
-    return False

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
+from distal.ir.exits import may_exit
 from distal.ir.nodes import (
     Assign,
     Call,
@@ -35,7 +36,6 @@ from distal.ir.walk import map_statement, names_read, statements_in
 from distal.passes.context import Context
 from distal.passes.cost import size
 from distal.passes.naming import FreshNames, local_names, module_names
-from distal.passes.regions import leaves
 from distal.passes.versions import assigned_in
 
 # The largest function of the examples has 3600. A union of 150 shapes has 5700: cut, it compiles in
@@ -123,7 +123,7 @@ class _Outlining:
         return runs
 
     def _stays(self, stmt: Stmt) -> bool:
-        if leaves((stmt,)):
+        if may_exit(stmt):
             return True
         names = names_read((stmt,)) | _declared_in((stmt,))
         return any(_is_large(self._types[name]) for name in names)

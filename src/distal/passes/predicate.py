@@ -16,6 +16,7 @@ from typing import assert_never
 
 from distal.diagnostics import Span
 from distal.ir import build
+from distal.ir.exits import may_exit, returns
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -48,7 +49,7 @@ from distal.ir.types import (
     Type,
     Vector,
 )
-from distal.ir.walk import blocks, statements_in
+from distal.ir.walk import statements_in
 from distal.passes.context import Context
 
 _Block = tuple[Stmt, ...]
@@ -97,21 +98,6 @@ class _LoopFlags:
     skip: str | None = None  # this round ends
 
 
-def _exits(stmt: Stmt) -> bool:
-    """Whether control may leave past the end of a statement."""
-    match stmt:
-        case Return() | Break() | Continue():
-            return True
-        case If():
-            return any(_exits(s) for block in blocks(stmt) for s in block)
-        case For(_, _, _, _, body) | While(_, body):
-            return _returns(body)  # its own breaks stay inside
-        case Let() | Var() | Assign():
-            return False
-        case _:
-            assert_never(stmt)
-
-
 def _always_exits(block: _Block) -> bool:
     """Whether the end of a block is never reached."""
     if not block:
@@ -123,10 +109,6 @@ def _always_exits(block: _Block) -> bool:
             return _always_exits(then) and _always_exits(otherwise)
         case _:
             return False
-
-
-def _returns(block: _Block) -> bool:
-    return any(isinstance(s, Return) for s in statements_in(block))
 
 
 class _Predicate:
@@ -158,7 +140,7 @@ class _Predicate:
                     done.append(If(condition, *inner, span=stmt.span))
                 case For() | While():
                     done.append(replace(stmt, body=self._guarded(stmt.body, in_loop=True)))
-                    if _returns(stmt.body):
+                    if returns(stmt.body):
                         leave: Stmt = Break(span=stmt.span)
                         if not in_loop:
                             leave = Return(self._result(), span=stmt.span)
@@ -200,7 +182,7 @@ class _Predicate:
                 case Continue():
                     assert loop is not None
                     return tuple(done)
-                case If() if _exits(stmt):
+                case If() if may_exit(stmt):
                     done.extend(self._branch(stmt, rest, loop))
                     return tuple(done)
                 case For() | While():

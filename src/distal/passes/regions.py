@@ -10,8 +10,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
-from distal.ir.nodes import Break, Const, Continue, For, If, Return, Stmt, While
-from distal.ir.walk import blocks
+from distal.ir.exits import may_exit
+from distal.ir.nodes import Const, For, If, Stmt, While
 
 
 @dataclass(eq=False, slots=True)
@@ -120,7 +120,7 @@ def is_certain(region: Region, sites: UseSites, start: int = 0) -> bool:
         stmt = region.body[position]
         if _inner_certain(stmt, region.inner.get(position, ()), inner):
             return True
-        if leaves((stmt,)):
+        if may_exit(stmt):
             return False
     return False
 
@@ -146,21 +146,3 @@ def _runs_once(loop: For) -> bool:
     if not isinstance(loop.start, Const) or not isinstance(loop.stop, Const):
         return False
     return bool(range(int(loop.start.value), int(loop.stop.value), loop.step))
-
-
-def leaves(body: Collection[Stmt], *, in_loop: bool = False) -> bool:
-    """True when a block may end other than by running through."""
-    for stmt in body:
-        match stmt:
-            case Return():
-                return True
-            case Break() | Continue():
-                if not in_loop:
-                    return True
-            case For() | While():
-                if leaves(stmt.body, in_loop=True):
-                    return True
-            case _:
-                if any(leaves(b, in_loop=in_loop) for b in blocks(stmt)):
-                    return True
-    return False

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from distal.ir.constant_arithmetic import ConstantArithmetic
+from distal.ir.exits import never_goes_on
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -162,32 +163,3 @@ class _Folder:
                 return ()
         body = self.block(stmt.body)
         return (For(stmt.name, start, stop, stmt.step, body, span=stmt.span),) if body else ()
-
-
-def never_goes_on(stmt: Stmt) -> bool:
-    """True when the statement after this one is never reached."""
-    match stmt:
-        case Return() | Break() | Continue():
-            return True
-        case If(_, then, otherwise):
-            return bool(then and otherwise) and (
-                never_goes_on(then[-1]) and never_goes_on(otherwise[-1])
-            )
-        case While(Const(True), body):
-            return not _leaves(body)
-        case Let() | Var() | Assign() | For() | While():
-            return False
-
-
-def _leaves(body: tuple[Stmt, ...]) -> bool:
-    """True when a Break in this block leaves the loop whose body it is."""
-    for stmt in body:
-        match stmt:
-            case Break():
-                return True
-            case If(_, then, otherwise):
-                if _leaves(then) or _leaves(otherwise):
-                    return True
-            case _:
-                pass
-    return False

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from distal.ir import build
+from distal.ir.exits import returns
 from distal.ir.nodes import (
     Assign,
     Construct,
@@ -27,7 +28,6 @@ from distal.ir.nodes import (
     While,
 )
 from distal.ir.types import Array, Matrix, Scalar, Struct, Type, Vector
-from distal.ir.walk import statements_in
 from distal.passes.cost import Costs
 
 # Both values of a Select are computed on a vector machine; an If may be skipped.
@@ -55,7 +55,7 @@ def straighten(function: Function, result: str, costs: Costs) -> Straight | None
     if not body:
         return None
     last = body[-1]
-    if isinstance(last, Return) and not _returns(body[:-1]):
+    if isinstance(last, Return) and not returns(body[:-1]):
         return Straight(body[:-1], last.value)
     target = Read(result, function.result)
     ladder = _ladder(body, target, costs)
@@ -67,10 +67,6 @@ def straighten(function: Function, result: str, costs: Costs) -> Straight | None
     return Straight((Var(result, zero(function.result)), *ladder), target)
 
 
-def _returns(body: tuple[Stmt, ...]) -> bool:
-    return any(isinstance(s, Return) for s in statements_in(body))
-
-
 def _ladder(body: tuple[Stmt, ...], result: Read, costs: Costs) -> list[Stmt] | None:
     """Each Return becomes an assignment; what follows a branch that returned goes to the other."""
     done: list[Stmt] = []
@@ -79,14 +75,14 @@ def _ladder(body: tuple[Stmt, ...], result: Read, costs: Costs) -> list[Stmt] | 
             case Return(value):
                 done.append(Assign(result, value, span=stmt.span))
                 return done
-            case If(condition, then, otherwise) if _returns((stmt,)):
+            case If(condition, then, otherwise) if returns((stmt,)):
                 rest = body[i + 1 :]
                 if not _always_returns(then):
-                    if _returns(then):
+                    if returns(then):
                         return None
                     then += rest
                 if not _always_returns(otherwise):
-                    if _returns(otherwise) or len(then) != len(stmt.then):
+                    if returns(otherwise) or len(then) != len(stmt.then):
                         return None
                     otherwise += rest
                 yes, no = _ladder(then, result, costs), _ladder(otherwise, result, costs)
@@ -95,7 +91,7 @@ def _ladder(body: tuple[Stmt, ...], result: Read, costs: Costs) -> list[Stmt] | 
                 picked = _pick(condition, yes, no, result, costs)
                 done.append(picked or If(condition, tuple(yes), tuple(no), span=stmt.span))
                 return done
-            case For() | While() if _returns((stmt,)):
+            case For() | While() if returns((stmt,)):
                 return None
             case _:
                 done.append(stmt)

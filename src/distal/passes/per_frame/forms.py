@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 from distal.ir import build
 from distal.ir.constant_arithmetic import ConstantArithmetic
+from distal.ir.exits import never_ends
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -48,7 +49,6 @@ from distal.ir.walk import (
     statements_in,
 )
 from distal.passes.cost import rounds
-from distal.passes.fold.fold import never_goes_on
 from distal.passes.fold.rules import Rules
 from distal.passes.versions import assigned_in
 
@@ -230,9 +230,9 @@ class FlowWalk:
         before = dict(before)
         otherwise = self._block(stmt.otherwise)
         no, self._memo = self._env, {}
-        if stmt.then and never_goes_on(stmt.then[-1]):
+        if never_ends(stmt.then):
             self._env = no
-        elif stmt.otherwise and never_goes_on(stmt.otherwise[-1]):
+        elif never_ends(stmt.otherwise):
             self._env = yes
         else:
             self._env = before
