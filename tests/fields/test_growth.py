@@ -8,7 +8,7 @@ import pytest
 from distal.diagnostics import CompileError
 from distal.fields.guarantees import Growth, Guarantee, Operator, Primitive
 from distal.lang import Func, func, length, slider, vec3
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import (
     Box,
@@ -89,7 +89,7 @@ def test_a_shape_says_how_its_box_grows(row: Primitive):
 def test_what_says_nothing_has_no_box_when_moved_out():
     silent = Operator("silent")
     node = Node(silent, False, (Sphere().node,))
-    shape = Field._of(node)
+    shape = BaseShape._of(node)
     assert shape.bounds() == Sphere().bounds()
     assert not np.isfinite(shape.round(0.1).bounds()).any()
     assert shape.round(0.0).bounds() == Sphere().bounds()

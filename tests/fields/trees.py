@@ -22,11 +22,11 @@ from distal.scene.lowering.derived import BoundsOf
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.objects import shapes  # the classes come from the rows that importing it declares
 from distal.scene.objects.binding import bound
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.tree.arguments import RESERVED
 from distal.scene.tree.arguments import slots_of as scene_slots_of
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody
+from distal.scene.tree.values import StatementList
 from tests.fields.drawing import drawn, fits, random_sample
 from tests.fields.rows import Doubles, Slot, endless
 from tests.fields.subject import Subject
@@ -235,7 +235,7 @@ class SiteOf(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function in a program."""
-        node, body = self._node, FunctionBody(taken={"p"})
+        node, body = self._node, StatementList(taken={"p"})
         assert isinstance(node.rule, Operator)
         composer = ShapeComposer(assembly, [node])
         p = Read("p", self._point)
@@ -278,7 +278,7 @@ class Tree:
 
     def __init__(self, node: Node) -> None:
         self.node = node
-        self.shape: Field = Field._of(node)
+        self.shape: BaseShape = BaseShape._of(node)
         self._devices: dict[str, Prepared] = {}
 
     def evaluate(self, points: Doubles, device: str = "cpu") -> tuple[Doubles, Doubles]:

@@ -25,7 +25,9 @@ def _tool() -> ModuleType:
 
 TOOL = _tool()
 COUNTED = TOOL.count(ROOT)
-STATED = {what: int(number) for what, number in LINE.findall((ROOT / "ARCHITECTURE.md").read_text())}
+STATED = {
+    what: int(number) for what, number in LINE.findall((ROOT / "ARCHITECTURE.md").read_text())
+}
 
 
 @pytest.mark.parametrize("what", COUNTED)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from distal.lang.functions import Image
     from distal.lang.parameter_values import Value
     from distal.loading import SceneCode
-    from distal.scene.objects.field import Field
+    from distal.scene.objects.field import BaseShape
     from distal.scene.scene import Scene
     from distal.scene.viewing.viewable import Viewable
 
@@ -179,7 +179,7 @@ def load(scene: str) -> SceneCode:
 
 def load_picture(
     scene: str, assignments: Sequence[str] | None
-) -> tuple[Image | Scene | Field, dict[str, Value]]:
+) -> tuple[Image | Scene | BaseShape, dict[str, Value]]:
     """What FILE[:NAME] means, and the values of its parameters that --set gives.
 
     Raises:

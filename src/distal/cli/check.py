@@ -47,13 +47,13 @@ def check(
 ) -> None:
     """Show what shapes guarantee, where slope comes from, and which guarantees do not hold."""
     from distal.scene.checks.validation import check as run_checks
-    from distal.scene.objects.field import Field
+    from distal.scene.objects.field import BaseShape
     from distal.scene.scene import Scene
 
     seconds = read_time(at)
     check_processor()
     obj: Any = load(scene)
-    if not isinstance(obj, Field | Scene):
+    if not isinstance(obj, BaseShape | Scene):
         message = f"'{obj.name}' is no scene and no shape; claims are checked of these"
         raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())

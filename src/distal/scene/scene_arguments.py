@@ -15,7 +15,7 @@ from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, INT
 from distal.lang import func, vec3
 from distal.scene.objects.cameras import BaseCamera
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.lights import Light
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.conversion import Asked, choice, number
@@ -82,18 +82,18 @@ def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> st
     return str(name)
 
 
-def one_shape(shape: Any, place: Span | None) -> Field:
+def one_shape(shape: Any, place: Span | None) -> BaseShape:
     """One solid of what the author gave: a shape, or several."""
     shapes = listed(shape)
     if not shapes:
         refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
     for one in shapes:
-        if not isinstance(one, Field):
+        if not isinstance(one, BaseShape):
             refuse_kind(f"a scene shows shapes, not {one!r:.60}", None, place)
         if one.flat:
             hint = "make it solid: .extrude(height) or .revolve()"
             refuse(f"'{one.name}' is a flat shape; a scene shows solids", hint, place)
-    first: Field = shapes[0]
+    first: BaseShape = shapes[0]
     return first.union(*shapes[1:]) if len(shapes) > 1 else first
 
 

@@ -38,7 +38,7 @@ class _Carried:
 
 
 @dataclass(slots=True)
-class _OpenLoop:
+class _VectorLoop:
     """A loop under construction."""
 
     header: str
@@ -189,7 +189,7 @@ class Loops:
 
     # What goes round
 
-    def _begin(self, body: tuple[Stmt, ...], others: list[Leaf]) -> _OpenLoop:
+    def _begin(self, body: tuple[Stmt, ...], others: list[Leaf]) -> _VectorLoop:
         """Begin a loop with phis for the Vars that the body changes, and for other leaves."""
         writer, environment = self.writer, self.expressions.environment
         assigned = {root_of(s.target).name for s in statements_in(body) if isinstance(s, Assign)}
@@ -199,7 +199,7 @@ class Loops:
                 entering[name] = held
         # Outer values are made ready before the jump, inner ones after all phis.
         variables = {name: [self._carried(leaf) for leaf in v] for name, v in entering.items()}
-        loop = _OpenLoop(
+        loop = _VectorLoop(
             writer.label("loop"), writer.block, 0, variables, list(map(self._carried, others))
         )
         writer.jump(loop.header)
@@ -225,7 +225,7 @@ class Loops:
             self.arithmetic.to_carried(leaf.kind, name, uniform=leaf.uniform) for name in leaf.names
         )
 
-    def _end(self, loop: _OpenLoop, ahead: dict[str, Leaves | Stored], others: list[Leaf]) -> str:
+    def _end(self, loop: _VectorLoop, ahead: dict[str, Leaves | Stored], others: list[Leaf]) -> str:
         """At a round's end: hand on what goes round. The block it ends in."""
         end = self.writer.block
         pairs = list(zip(loop.others, others, strict=True))
@@ -277,7 +277,7 @@ class Loops:
         return leave
 
     def _kept(
-        self, loop: _OpenLoop, live: Leaf | None, body: tuple[Stmt, ...]
+        self, loop: _VectorLoop, live: Leaf | None, body: tuple[Stmt, ...]
     ) -> dict[str, Leaves | Stored]:
         """The locals at a round's end; lanes that left before it keep their values."""
         environment = dict(self.expressions.environment)

@@ -13,7 +13,7 @@ import numpy as np
 
 from distal.backends.numpy import operations
 from distal.backends.numpy.operations import Leaf, Value
-from distal.backends.numpy.scopes import FunctionCall, Scope
+from distal.backends.numpy.scopes import ActiveCall, Scope
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Apply,
@@ -83,7 +83,7 @@ class ReferenceExpressions:
         self._calls: dict[Expr, bool] = {}
         self._constants: Memo = {}
         self._per_frame: dict[str, Value] = {}
-        nowhere = Scope(FunctionCall(1), 1)
+        nowhere = Scope(ActiveCall(1), 1)
         with np.errstate(all="ignore"):
             for name, value in module.frame:
                 self._per_frame[name] = self._evaluate(value, nowhere, {})

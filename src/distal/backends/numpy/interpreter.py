@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from distal.backends.numpy import operations
 from distal.backends.numpy.expressions import Memo, ReferenceExpressions
 from distal.backends.numpy.operations import Leaf, Value
-from distal.backends.numpy.scopes import FunctionCall, Scope, Way
+from distal.backends.numpy.scopes import ActiveCall, Scope, Way
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -69,7 +69,7 @@ class Interpreter(ReferenceExpressions):
     def _call(self, name: str, args: Sequence[Value]) -> Value:
         function = self._functions[name]
         lanes = max((operations.width(arg) for arg in args), default=1)
-        frame = FunctionCall(lanes)
+        frame = ActiveCall(lanes)
         scope = Scope(frame, lanes)
         for param, arg in zip(function.params, args, strict=True):
             scope.bind(param.name, arg)

@@ -26,7 +26,7 @@ class Way(IntEnum):
 
 
 @dataclass
-class FunctionCall:
+class ActiveCall:
     """One call of a function: its lanes and what it has returned so far."""
 
     lanes: int
@@ -60,7 +60,7 @@ class Scope:
         changed: Names of the parent's locals that were assigned here.
     """
 
-    frame: FunctionCall
+    frame: ActiveCall
     lanes: int
     parent: Scope | None = None
     within: NDArray[np.intp] | None = None

@@ -21,7 +21,7 @@ from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import RememberedBounds, ShapeBounds
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody, Values
+from distal.scene.tree.values import StatementList, Values
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[
     """The bounds of each node of a tree, by the id of the node."""
     nodes = list(root.walk())
     which = np.arange(len(nodes), dtype=np.int32)
-    asked = _NodeBounds(root, nodes)
+    asked = _BoundsByNumber(root, nodes)
     # Interpreted: machine code for the bounds of a thousand shapes takes half a minute to make.
     rows = executor().call(asked, (which,), {}, params=params, time=time, device="reference")
     slopes, divisors, lows, highs = (np.asarray(part, np.float64) for part in rows)
@@ -65,7 +65,7 @@ def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[
     }
 
 
-class _NodeBounds(Composed):
+class _BoundsByNumber(Composed):
     """The bounds of the node of a number."""
 
     def __init__(self, root: Node, nodes: Sequence[Node]) -> None:
@@ -76,7 +76,7 @@ class _NodeBounds(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function of the number."""
-        body = FunctionBody(taken={"i"})
+        body = StatementList(taken={"i"})
         values = Values(assembly)
         composer = RememberedBounds(values)
         composer.of(body, self._root, values.all(self._root))

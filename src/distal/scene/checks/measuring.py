@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.scene.checks.bounds_report import NodeBounds
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 
 Points: TypeAlias = NDArray[np.float64]
 
@@ -66,10 +66,10 @@ class Measured:
         return max(self.steepest, self.largest_change)
 
 
-class _Asked:
+class _EvaluatedShape:
     """A shape for one time and one set of parameters, evaluated in 64 bits."""
 
-    def __init__(self, shape: Field, params: Mapping[str, Any], time: float) -> None:
+    def __init__(self, shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
         self._shape, self._params, self._time = shape, params, time
         self.dimensions = 2 if shape.flat else 3
 
@@ -84,10 +84,10 @@ class _Asked:
 
 
 def measure(
-    shape: Field, promised: NodeBounds, params: Mapping[str, Any], time: float, seed: int = 0
+    shape: BaseShape, promised: NodeBounds, params: Mapping[str, Any], time: float, seed: int = 0
 ) -> Measured:
     """Measure a shape in and around its box."""
-    asked = _Asked(shape, params, time)
+    asked = _EvaluatedShape(shape, params, time)
     n = asked.dimensions
     random = np.random.default_rng(seed)
     low, high = _looked_at(promised, n)
@@ -136,7 +136,7 @@ def _looked_at(promised: NodeBounds, n: int) -> tuple[Points, Points]:
 
 
 def _steepest(
-    asked: _Asked, p: Points, steepness: Points, size: float, random: np.random.Generator
+    asked: _EvaluatedShape, p: Points, steepness: Points, size: float, random: np.random.Generator
 ) -> tuple[Points, float]:
     """The steepest place near the steepest ones found: a search that draws closer each round."""
     for round in range(ROUNDS):
@@ -151,7 +151,7 @@ def _steepest(
 
 
 def _largest_change(
-    asked: _Asked, p: Points, size: float, random: np.random.Generator
+    asked: _EvaluatedShape, p: Points, size: float, random: np.random.Generator
 ) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], float]:
     """The most that the value changes between two points, for what lies between them.
 
@@ -170,7 +170,9 @@ def _largest_change(
     return (_point(p[at]), _point(q[at])), float(change[at])
 
 
-def _on_foot(asked: _Asked, p: Points, values: Points, slopes: Points, size: float) -> float:
+def _on_foot(
+    asked: _EvaluatedShape, p: Points, values: Points, slopes: Points, size: float
+) -> float:
     foot = p - values[:, None] * slopes
     off = np.abs(asked.value(foot))
     return float(np.mean(off <= FOOT * size))

@@ -24,7 +24,7 @@ from distal.scene.lowering.picture import Picturing
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.scene import Scene
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody
+from distal.scene.tree.values import StatementList
 
 # A material's numbers, as ``render.material.Surface`` has them.
 _NUMBERS = ("diffuse", "specular", "transmission", "ior", "roughness", "metal", "fresnel")
@@ -160,7 +160,7 @@ class _Program(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function that gives a ``Seen``."""
-        body = FunctionBody(taken={"coord", "resolution"})
+        body = StatementList(taken={"coord", "resolution"})
         made = Picturing(assembly, self._scene)
         resolution = Read("resolution", VEC2)
         given = made.given(body, resolution)
@@ -190,7 +190,7 @@ class _Paint(SurfaceAttribute):
         """The one with the larger share."""
         return select(compare(CompareOp.GT, share, number(0.5)), b, a)
 
-    def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
+    def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
         self.materials.append(material)
         return number(float(len(self.materials) - 1))
 

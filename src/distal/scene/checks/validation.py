@@ -17,7 +17,7 @@ from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, measure
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
 
 # Measuring a shape may compile its function; beyond so many only those that matter most are.
@@ -110,7 +110,7 @@ class Checkup:
 
 
 def check(
-    shape: Field, params: Mapping[str, Any] | None = None, time: float = 0.0, seed: int = 0
+    shape: BaseShape, params: Mapping[str, Any] | None = None, time: float = 0.0, seed: int = 0
 ) -> Checkup:
     """Validate a shape and all its parts.
 
@@ -130,7 +130,7 @@ def check(
         own = promised[id(node)]
         measured = None
         if id(node) in chosen:
-            measured = measure(Field._of(node), own, given, time, seed)
+            measured = measure(BaseShape._of(node), own, given, time, seed)
         children = tuple(numbers[id(c)] for c in node.children)
         rows.append(ShapeRow(node, children, own, _raised(node, promised), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]

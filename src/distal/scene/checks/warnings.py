@@ -29,7 +29,7 @@ from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.lowering.picture import Picturing
 from distal.scene.lowering.shapes import ZERO_CELL
 from distal.scene.lowering.slope_limit import may_be_endless, refuse_steepness
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 
@@ -46,7 +46,7 @@ SLACK: Final = 1.05
 _looked_at: WeakSet[Node] = WeakSet()
 
 
-def doubt_functions(shape: Field, params: Mapping[str, Any], time: float) -> None:
+def doubt_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
     """Check once every function of the author's in a shape.
 
     Raises:
@@ -59,7 +59,7 @@ def doubt_functions(shape: Field, params: Mapping[str, Any], time: float) -> Non
             _looked_at.add(node)
 
 
-def check_slopes(shape: Field, params: Mapping[str, Any], time: float) -> None:
+def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
     """Refuse a shape in which parameters or the time take an operator's bound on its slope.
 
     Where nothing moves, the operator was looked at when it was made.
@@ -84,7 +84,7 @@ def _moves(node: Node) -> bool:
 
 
 def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
-    shape: Field = Field._of(node)
+    shape: BaseShape = BaseShape._of(node)
     known = _read(shape, params)
 
     def value(p: Points) -> Points:

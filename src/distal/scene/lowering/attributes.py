@@ -16,7 +16,7 @@ from distal.ir.nodes import CompareOp, Expr, Gradient
 from distal.render.material import mix_surfaces
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody
+from distal.scene.tree.values import StatementList
 
 
 class Attribute(ABC):
@@ -26,7 +26,7 @@ class Attribute(ABC):
         self.composer = composer
 
     @abstractmethod
-    def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
+    def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """The attribute of the whole subtree, or None to descend into it."""
 
     @abstractmethod
@@ -34,7 +34,7 @@ class Attribute(ABC):
         """Both attributes combined, with ``share`` (0 to 1) of b."""
 
     @abstractmethod
-    def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
+    def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """The attribute of faces that the subtree cuts; None keeps that of the cut shape."""
 
 
@@ -47,13 +47,13 @@ class AttributePoint:
         self.values = values
 
 
-def attribute(body: FunctionBody, kind: Attribute, node: Node, site: AttributePoint) -> Expr:
+def attribute(body: StatementList, kind: Attribute, node: Node, site: AttributePoint) -> Expr:
     """The attribute of the place of a subtree that is nearest to a point."""
     return _visit(body, kind, node, site, measured=False)[1]
 
 
 def _visit(
-    body: FunctionBody, kind: Attribute, node: Node, site: AttributePoint, *, measured: bool
+    body: StatementList, kind: Attribute, node: Node, site: AttributePoint, *, measured: bool
 ) -> tuple[Expr | None, Expr]:
     """A subtree's attribute, and its distance where that is wanted."""
     composer = kind.composer
@@ -81,7 +81,7 @@ def _visit(
 
 
 def _around(
-    body: FunctionBody,
+    body: StatementList,
     kind: Attribute,
     node: Node,
     site: AttributePoint,
@@ -101,7 +101,7 @@ def _around(
 
 
 def _joined(
-    body: FunctionBody,
+    body: StatementList,
     kind: Attribute,
     node: Node,
     sites: Sequence[AttributePoint],
@@ -148,7 +148,7 @@ class SurfaceAttribute(Attribute):
         self._default = default
         self._painted: dict[int, bool] = {}
 
-    def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
+    def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """The paint of a subtree; the default where nothing in it is painted."""
         material = node.material
         if material is None and (isinstance(node.rule, Primitive) or not self._paints(node)):
@@ -159,7 +159,7 @@ class SurfaceAttribute(Attribute):
         """Every number of both mixed."""
         return self.composer.call(mix_surfaces, {"a": a, "b": b, "t": share})
 
-    def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
+    def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """The cutter's ``cut_material``."""
         material = node.cut_material
         return None if material is None else self._shown(body, material, node, site)
@@ -170,7 +170,7 @@ class SurfaceAttribute(Attribute):
             found = self._painted[id(node)] = paints(node)
         return found
 
-    def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
+    def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
         given = {"p": site.p, "cell": site.cell}
         if "n" in material.uses:
             field = self.composer.field(node, site.values, site.cell)
@@ -191,7 +191,7 @@ class MaterialNumber(SurfaceAttribute):
         """The one with the larger share."""
         return _more_shown(a, b, share)
 
-    def _shown(self, body: FunctionBody, material: Any, node: Node, site: AttributePoint) -> Expr:
+    def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
         if not any(known is material for known in self.materials):
             self.materials.append(material)
         found = next(i for i, known in enumerate(self.materials, 1) if known is material)
@@ -205,7 +205,7 @@ class Part(Attribute):
         super().__init__(composer)
         self.nodes: list[Node] = []
 
-    def leaf(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
+    def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """The next number for a library shape."""
         if not isinstance(node.rule, Primitive):
             return None
@@ -216,6 +216,6 @@ class Part(Attribute):
         """The one with the larger share."""
         return _more_shown(a, b, share)
 
-    def cutter(self, body: FunctionBody, node: Node, site: AttributePoint) -> Expr | None:
+    def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """The cutter's own part: it made the face."""
         return attribute(body, self, node, site)

@@ -28,7 +28,7 @@ from distal.ir.nodes import Const, Construct, Expr
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody, Values
+from distal.scene.tree.values import StatementList, Values
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class ShapeBounds:
     growth: Expr
     side_growth: Expr
 
-    def packed(self, body: FunctionBody) -> Expr:
+    def packed(self, body: StatementList) -> Expr:
         """(slope, divisor, low, high, growth, side_growth), of ``packed_type``."""
         bounds = body.let("bounds", self.bounds)
         low, high = field(bounds, "low"), field(bounds, "high")
@@ -77,7 +77,7 @@ class BoundsComposer:
         self._values = values
         self._call = values.assembly.call
 
-    def of(self, body: FunctionBody, node: Node, values: Sequence[Expr]) -> ShapeBounds:
+    def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
         """The bounds of a subtree with these numbers."""
         own, shares = self._values.split(node, values)
         rule = node.rule
@@ -90,7 +90,7 @@ class BoundsComposer:
 
     def of_operator(
         self,
-        body: FunctionBody,
+        body: StatementList,
         rule: Operator,
         inner: Sequence[ShapeBounds],
         own: Mapping[str, Expr],
@@ -107,7 +107,7 @@ class BoundsComposer:
 
     def _halved(
         self,
-        body: FunctionBody,
+        body: StatementList,
         rule: Operator,
         inner: Sequence[ShapeBounds],
         own: Mapping[str, Expr],
@@ -120,7 +120,7 @@ class BoundsComposer:
         return self._two(body, rule, a, self._halved(body, rule, inner[middle:], own), own)
 
     def given(
-        self, body: FunctionBody, node: Node, shares: Sequence[Sequence[Expr]]
+        self, body: StatementList, node: Node, shares: Sequence[Sequence[Expr]]
     ) -> dict[str, Expr]:
         """The children's bounds, by the parameter names of an operator's functions."""
         inner = [
@@ -129,7 +129,7 @@ class BoundsComposer:
         return _named(inner[0], inner[1] if len(inner) > 1 else None)
 
     def of_primitive(
-        self, body: FunctionBody, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
+        self, body: StatementList, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
     ) -> ShapeBounds:
         """The bounds of a primitive with these numbers."""
         slope = self._number(body, "slope", rule.slope, own)
@@ -140,7 +140,7 @@ class BoundsComposer:
         return ShapeBounds(slope, ONE if lower else slope, bounds, growth, side_growth)
 
     def _growth_of_leaf(
-        self, body: FunctionBody, rule: Primitive, own: Mapping[str, Expr]
+        self, body: StatementList, rule: Primitive, own: Mapping[str, Expr]
     ) -> tuple[Expr, Expr]:
         if rule.growth is None:
             known = Guarantee.EXACT_OUTSIDE in rule.claims or rule.bounds is None
@@ -150,13 +150,15 @@ class BoundsComposer:
             return growth, growth
         return growth, self._number(body, "side_growth", rule.side_growth, own)
 
-    def _number(self, body: FunctionBody, name: str, rule: Rule, given: Mapping[str, Expr]) -> Expr:
+    def _number(
+        self, body: StatementList, name: str, rule: Rule, given: Mapping[str, Expr]
+    ) -> Expr:
         if isinstance(rule, Func):
             return body.let(name, self._call(rule, given))
         return constant_number(rule)
 
     def _one(
-        self, body: FunctionBody, rule: Operator, child: ShapeBounds, own: Mapping[str, Expr]
+        self, body: StatementList, rule: Operator, child: ShapeBounds, own: Mapping[str, Expr]
     ) -> ShapeBounds:
         given = {**own, **_named(child, None)}
         slope = self._slope(body, rule, child.slope, given)
@@ -169,7 +171,7 @@ class BoundsComposer:
 
     def _two(
         self,
-        body: FunctionBody,
+        body: StatementList,
         rule: Operator,
         a: ShapeBounds,
         b: ShapeBounds,
@@ -191,7 +193,7 @@ class BoundsComposer:
 
     def _growth(
         self,
-        body: FunctionBody,
+        body: StatementList,
         rule: Operator,
         inner: Sequence[ShapeBounds],
         bounds: Expr,
@@ -220,7 +222,7 @@ class BoundsComposer:
                 assert_never(rule.growth)
 
     def _slope(
-        self, body: FunctionBody, rule: Operator, child: Expr, given: Mapping[str, Expr]
+        self, body: StatementList, rule: Operator, child: Expr, given: Mapping[str, Expr]
     ) -> Expr:
         if rule.slope is None:
             return child
@@ -236,7 +238,7 @@ class RememberedBounds(BoundsComposer):
         super().__init__(values)
         self.found: dict[int, ShapeBounds] = {}
 
-    def of(self, body: FunctionBody, node: Node, values: Sequence[Expr]) -> ShapeBounds:
+    def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
         """The bounds of a subtree, composed once."""
         known = self.found.get(id(node))
         if known is None:
@@ -250,7 +252,7 @@ def _named(a: ShapeBounds, b: ShapeBounds | None) -> dict[str, Expr]:
     return {f"{n}{end}": getattr(of[end], n) for n in BOUNDS_OF_CHILD for end in of}
 
 
-def _larger(body: FunctionBody, name: str, a: Expr, b: Expr) -> Expr:
+def _larger(body: StatementList, name: str, a: Expr, b: Expr) -> Expr:
     """The larger of two; nothing to compute where both are constants, as for exact shapes."""
     if a is b:
         return a
@@ -259,7 +261,7 @@ def _larger(body: FunctionBody, name: str, a: Expr, b: Expr) -> Expr:
     return body.let(name, builtin("max", a, b))
 
 
-def _corner_growth(body: FunctionBody, side_growth: Expr, dimensions: int) -> Expr:
+def _corner_growth(body: StatementList, side_growth: Expr, dimensions: int) -> Expr:
     """How far from the box a point is that is as far past each side; infinity stays."""
     root = constant_number(math.sqrt(dimensions))
     if isinstance(side_growth, Const):

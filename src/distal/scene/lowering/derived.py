@@ -12,7 +12,7 @@ from distal.lang.composed import Composed
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody, Values, plain_name
+from distal.scene.tree.values import StatementList, Values, plain_name
 
 
 class GradientOf(Composed):
@@ -47,7 +47,7 @@ class BoundsOf(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function that gives (slope, divisor, low, high, growth, side_growth)."""
-        body, node = FunctionBody(), self._node
+        body, node = StatementList(), self._node
         values = Values(assembly)
         found = BoundsComposer(values).of(body, node, values.all(node))
         body.statements.append(Return(found.packed(body)))

@@ -23,7 +23,7 @@ from distal.lang.runtime_access import executor
 from distal.packages import imported
 from distal.scene.lowering.bounds import PACKED, BoundsComposer, ShapeBounds, packed_types
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody, Values
+from distal.scene.tree.values import StatementList, Values
 
 # Functions of operators and primitives are kept; those with data of their own are too many to be.
 MOST_KEPT: Final = 512
@@ -123,7 +123,7 @@ class _BoundsStep(Composed):
     def compose(self, assembly: Assembly) -> str:
         """The function in a program."""
         values = Values(assembly)
-        body = FunctionBody(taken={name for name, _ in self.signature})
+        body = StatementList(taken={name for name, _ in self.signature})
         numbers = {name: Read(name, type) for name, type in self._own.items()}
         own = values.complete(self._rule, numbers, self._constants, self.name)
         inner = [_read(assembly, f"_{i}", flat) for i, flat in enumerate(self._flat_inner)]

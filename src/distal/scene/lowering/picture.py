@@ -28,7 +28,7 @@ from distal.scene.lowering.attributes import (
 )
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.calls import expression_of
-from distal.scene.tree.values import FunctionBody
+from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
@@ -63,7 +63,7 @@ class Picturing:
     ) -> str:
         """The function of the frame that gives a pixel."""
         frame = Read("frame", FRAME)
-        body = FunctionBody(taken={"frame"})
+        body = StatementList(taken={"frame"})
         resolution = field(frame, "resolution")
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
@@ -107,7 +107,7 @@ class Picturing:
         }
         return self.composer.call(tonemap.display, given)
 
-    def given(self, body: FunctionBody, resolution: Expr) -> dict[str, Expr]:
+    def given(self, body: StatementList, resolution: Expr) -> dict[str, Expr]:
         """Everything that a renderer may take, by name."""
         composer, scene, node = self.composer, self._scene, self._node
         values = composer.values.all(node)
@@ -141,11 +141,11 @@ class Picturing:
         self,
         name: str,
         params: Sequence[tuple[str, Type]],
-        make: Callable[[FunctionBody, Mapping[str, Expr]], Expr],
+        make: Callable[[StatementList, Mapping[str, Expr]], Expr],
         captured: Sequence[Expr] = (),
     ) -> FunctionRef:
         """A function of its own, as a value; ``captured`` are given to its last parameters."""
-        body = FunctionBody(taken={n for n, _ in params})
+        body = StatementList(taken={n for n, _ in params})
         result = make(body, {n: Read(n, t) for n, t in params})
         body.statements.append(Return(result))
         declared = tuple(Param(n, t) for n, t in params)
@@ -158,7 +158,7 @@ class Picturing:
         return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
 
     def _radiance(self, shown: Func, resolution: Expr) -> FunctionRef:
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, given["resolution"]), **given}
             if shown is views.view_slice:
                 asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
@@ -178,7 +178,7 @@ class Picturing:
     def known_of_place(self, name: str, kind: Attribute) -> FunctionRef:
         """An attribute of the place of the scene that is nearest to a point, as a function."""
 
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             site = AttributePoint(given["p"], ZERO_CELL, self.composer.values.all(self._node))
             return attribute(body, kind, self._node, site)
 
@@ -190,7 +190,7 @@ class Picturing:
     def _lights(self) -> FunctionRef:
         """The light of a number, as a place sees it: one place asks for all, in a loop."""
 
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             site = {"p": given["p"]}
             calls = [light.emit(self.composer, site) for light in self._samples()]
             if not calls:
@@ -204,7 +204,7 @@ class Picturing:
         return self._function("light", (("i", INT), ("p", VEC3)), make)
 
     def _ambient(self) -> FunctionRef:
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             total: Expr = number(0.0, VEC3)
             for light in self._scene.lights:
                 if light.ambient is not None:
@@ -215,7 +215,7 @@ class Picturing:
         return self._function("ambient", (("n", VEC3),), make)
 
     def _background(self) -> FunctionRef:
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             return self._scene.background.emit(self.composer, given)
 
         return self._function("background", (("direction", VEC3),), make)
@@ -223,7 +223,7 @@ class Picturing:
     def _steered(self, resolution: Expr) -> FunctionRef:
         """The camera, moved by hand as the numbers of a ``Steering`` say."""
 
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             camera = self._scene.camera
             asked = {**given, "camera": self._camera(given["resolution"]), "up": self._up()}
             asked["pivot"] = camera.number(self.composer, "target") or self._pivot(body, asked)
@@ -249,14 +249,14 @@ class Picturing:
         found = self._scene.camera.number(self.composer, "up")
         return self._assembly.constant((0.0, 1.0, 0.0), VEC3) if found is None else found
 
-    def _pivot(self, body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+    def _pivot(self, body: StatementList, given: Mapping[str, Expr]) -> Expr:
         """What a camera without a target turns around."""
         values = self.composer.values.all(self._node)
         bounds = self.composer.bounds.of(body, self._node, values).bounds
         return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
 
     def _camera(self, resolution: Expr) -> FunctionRef:
-        def make(body: FunctionBody, given: Mapping[str, Expr]) -> Expr:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             return self._scene.camera.emit(self.composer, given)
 
         params = (("uv", VEC2), ("resolution", VEC2))

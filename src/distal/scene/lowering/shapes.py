@@ -21,7 +21,7 @@ from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import FunctionBody, Values, plain_name
+from distal.scene.tree.values import StatementList, Values, plain_name
 
 # The cell of what lies in no repetition.
 ZERO_CELL: Final = constant_number(0.0, VEC3)
@@ -105,7 +105,7 @@ class ShapeComposer:
         names = fresh_names(node) if passed else []
         params = [Param(n, v.type) for n, v in zip(names, passed, strict=True)]
         values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
-        body = FunctionBody(taken={"p", "cell", *names})
+        body = StatementList(taken={"p", "cell", *names})
         cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
         result = self._emit(body, node, Read("p", point), cell, values)
         body.statements.append(Return(result))
@@ -114,7 +114,7 @@ class ShapeComposer:
         return self.assembly.define(wish, params, FLOAT, body.statements, node.place)
 
     def distance(
-        self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+        self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> Expr:
         """A subtree's distance at a point."""
         shared = self._count.get(self.key(node), 0) > 1 and len(node.children) > 0
@@ -124,7 +124,7 @@ class ShapeComposer:
         return body.let("d", Call(name, (p, *passed), FLOAT))
 
     def _emit(
-        self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+        self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> Expr:
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
@@ -152,7 +152,7 @@ class ShapeComposer:
         return result
 
     def given(
-        self, body: FunctionBody, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+        self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
         """What a node's functions may take by name, and the numbers of each child."""
         own, shares = self.values.split(node, values)
@@ -163,14 +163,14 @@ class ShapeComposer:
         return given, shares
 
     def moved(
-        self, body: FunctionBody, rule: Operator, given: Mapping[str, Expr]
+        self, body: StatementList, rule: Operator, given: Mapping[str, Expr]
     ) -> tuple[Expr, Expr]:
         """The point and the cell at which an operator's children are evaluated."""
         if rule.point is None:
             return given["p"], given["cell"]
         return self.site(body, self.call(rule.point, given), given["cell"])
 
-    def site(self, body: FunctionBody, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
+    def site(self, body: StatementList, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
         """The point and the cell of a place that an operator gave."""
         if isinstance(place.type, Struct):
             site = body.let("site", place)

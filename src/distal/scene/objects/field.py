@@ -38,7 +38,7 @@ from distal.scene.tree.values import plain_name
 MOST_PARTS: Final = 2048
 
 
-class Field(Composed, Presentable):
+class BaseShape(Composed, Presentable):
     """What solid and flat shapes share."""
 
     flat: ClassVar[bool] = False
@@ -173,7 +173,7 @@ class Field(Composed, Presentable):
         args: Sequence[Any],
         kwargs: Mapping[str, Any],
         place: Span | None,
-        others: Sequence[Field] = (),
+        others: Sequence[BaseShape] = (),
     ) -> Any:
         """This shape, and others, under an operator.
 
@@ -198,7 +198,7 @@ class Field(Composed, Presentable):
     def _of(cls, node: Node) -> Any:
         plain = PLAIN[node.flat]
         made = plain.__new__(plain)
-        Field.__init__(made, node)
+        BaseShape.__init__(made, node)
         return made
 
     def _combined(
@@ -209,7 +209,7 @@ class Field(Composed, Presentable):
         if len(others) == 1 and isinstance(others[0], Iterable) and not isinstance(others[0], str):
             others = tuple(others[0])
         for other in others:
-            if not isinstance(other, Field):
+            if not isinstance(other, BaseShape):
                 hint = "smooth=0.1 is given by name" if isinstance(other, float) else None
                 refuse_kind(f"a {kind} joins shapes, not {other!r:.60}", hint, place)
             if other.flat != self.flat:
@@ -259,16 +259,16 @@ class Field(Composed, Presentable):
         return joined
 
     def __or__(self, other: Any) -> Self:
-        return self.union(other) if isinstance(other, Field) else NotImplemented
+        return self.union(other) if isinstance(other, BaseShape) else NotImplemented
 
     def __and__(self, other: Any) -> Self:
-        return self.intersection(other) if isinstance(other, Field) else NotImplemented
+        return self.intersection(other) if isinstance(other, BaseShape) else NotImplemented
 
     def __sub__(self, other: Any) -> Self:
-        return self.difference(other) if isinstance(other, Field) else NotImplemented
+        return self.difference(other) if isinstance(other, BaseShape) else NotImplemented
 
     def __xor__(self, other: Any) -> Self:
-        return self.xor(other) if isinstance(other, Field) else NotImplemented
+        return self.xor(other) if isinstance(other, BaseShape) else NotImplemented
 
     def __add__(self, other: Any) -> NoReturn:
         hint = "a | b joins two; a.union(b, c), or a.union(list), many"
@@ -340,7 +340,7 @@ _ASSOCIATIVE: Final = (joins.UNION, joins.INTERSECTION)
 
 
 # The classes of shapes that come from operators, by ``flat``; ``shape`` fills it.
-PLAIN: dict[bool, type[Field]] = {}
+PLAIN: dict[bool, type[BaseShape]] = {}
 
 
 def joining(

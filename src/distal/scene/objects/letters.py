@@ -13,7 +13,7 @@ from typing import Any
 
 from distal.diagnostics import Span
 from distal.fields.flats.outlines import OUTLINE
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
@@ -47,7 +47,7 @@ class Text(Shape2D):
         outline = module.text_outline(
             text, font=font, size=size, align=align, line_spacing=line_spacing, place=place
         )
-        Field.__init__(self, _node(outline, place, even_odd=False))
+        BaseShape.__init__(self, _node(outline, place, even_odd=False))
 
 
 class SvgPath(Shape2D):
@@ -66,7 +66,7 @@ class SvgPath(Shape2D):
         place = author_place()
         module = importlib.import_module("distal.scene.objects.outlines")
         outline = module.svg_path(path, size=size, place=place)
-        Field.__init__(self, _node(outline, place, even_odd=bool(even_odd)))
+        BaseShape.__init__(self, _node(outline, place, even_odd=bool(even_odd)))
 
 
 def _node(outline: Any, place: Span | None, *, even_odd: bool) -> Node:

@@ -16,7 +16,7 @@ from distal.fields.place import mirrors
 from distal.fields.place import solid as placing
 from distal.fields.repeat import grid, polar
 from distal.frontend.problems import did_you_mean
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.in_plane import IN_PLANE
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
@@ -29,7 +29,7 @@ _SHELLS: Final[Mapping[str, Operator]] = {
 }
 
 
-class Placed(Field):
+class Placed(BaseShape):
     """The methods that solid and flat shapes share."""
 
     def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
@@ -41,13 +41,15 @@ class Placed(Field):
 
     def _joined(self, operator: Operator, other: Any, **numbers: Any) -> Self:
         place = author_place()
-        if not isinstance(other, Field) or other.flat != self.flat:
+        if not isinstance(other, BaseShape) or other.flat != self.flat:
             kind = "flat" if self.flat else "solid"
             refuse(f"'{operator.name}' takes another {kind} shape, not {other!r:.60}", None, place)
         made: Self = self._under(operator, (), numbers, place, others=(other,))
         return made
 
-    def apply(self, operator: str, *args: Any, others: Sequence[Field] = (), **kwargs: Any) -> Any:
+    def apply(
+        self, operator: str, *args: Any, others: Sequence[BaseShape] = (), **kwargs: Any
+    ) -> Any:
         """Apply an operator of the library by its name in the catalogue.
 
         Args:

@@ -21,7 +21,7 @@ from distal.fields.place import solid as placing
 from distal.fields.repeat import along, grid
 from distal.fields.solids import heightfield
 from distal.ir.types import VEC2, VEC3
-from distal.scene.objects.field import PLAIN, Field
+from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
@@ -213,7 +213,9 @@ class Shape(Placed):
         """
         return self._with(folds.WARP, amount, frequency, seed)
 
-    def transition_linear(self, other: Field, start: Any, end: Any, ease: str = "linear") -> Self:
+    def transition_linear(
+        self, other: BaseShape, start: Any, end: Any, ease: str = "linear"
+    ) -> Self:
         """Change from this shape at ``start`` to another at ``end``.
 
         Args:
@@ -226,7 +228,9 @@ class Shape(Placed):
             transitions.TRANSITION_LINEAR, other, start=start, end=end, ease=ease_number(ease)
         )
 
-    def transition_radial(self, other: Field, inner: Any, outer: Any, ease: str = "linear") -> Self:
+    def transition_radial(
+        self, other: BaseShape, inner: Any, outer: Any, ease: str = "linear"
+    ) -> Self:
         """Change from this shape within a radius about the y axis to another beyond a larger one.
 
         Args:
@@ -238,19 +242,19 @@ class Shape(Placed):
         numbers = {"inner": inner, "outer": outer, "ease": ease_number(ease)}
         return self._joined(transitions.TRANSITION_RADIAL, other, **numbers)
 
-    def clearance(self, other: Field, gap: Any) -> Self:
+    def clearance(self, other: BaseShape, gap: Any) -> Self:
         """Cut away all that is nearer than ``gap`` to another shape."""
         return self._joined(joins.CLEARANCE, other, gap=gap)
 
-    def carve(self, other: Field, depth: Any) -> Self:
+    def carve(self, other: BaseShape, depth: Any) -> Self:
         """Cut the other shape into this one's surface, ``depth`` deep."""
         return self._joined(joins.CARVE, other, depth=depth)
 
-    def emboss(self, other: Field, height: Any) -> Self:
+    def emboss(self, other: BaseShape, height: Any) -> Self:
         """Raise the other shape from this one's surface, ``height`` high."""
         return self._joined(joins.EMBOSS, other, height=height)
 
-    def morph(self, other: Field, t: Any) -> Self:
+    def morph(self, other: BaseShape, t: Any) -> Self:
         """Interpolate between this shape at t = 0 and another at t = 1."""
         return self._joined(joins.MORPH, other, t=t)
 
@@ -261,22 +265,22 @@ class Shape(Placed):
             field: A shape, or a ``@func`` of a point (its slope is then taken for 1).
             height: A factor.
         """
-        other = field if isinstance(field, Field) else self.from_function(field)
+        other = field if isinstance(field, BaseShape) else self.from_function(field)
         return self._joined(joins.DISPLACE, other, height=height)
 
-    def engrave(self, other: Field, depth: Any) -> Self:
+    def engrave(self, other: BaseShape, depth: Any) -> Self:
         """Cut a groove of a depth where the other shape's surface crosses this one."""
         return self._joined(blends.ENGRAVE, other, k=depth)
 
-    def pipe(self, other: Field, radius: Any) -> Self:
+    def pipe(self, other: BaseShape, radius: Any) -> Self:
         """Keep only a round pipe along the curve where the two surfaces cross."""
         return self._joined(blends.PIPE, other, k=radius)
 
-    def groove(self, other: Field, depth: Any, width: Any) -> Self:
+    def groove(self, other: BaseShape, depth: Any, width: Any) -> Self:
         """Cut a groove of rectangular profile where the surfaces cross."""
         return self._joined(blends.GROOVE, other, depth=depth, width=width)
 
-    def tongue(self, other: Field, depth: Any, width: Any) -> Self:
+    def tongue(self, other: BaseShape, depth: Any, width: Any) -> Self:
         """Add a ridge of rectangular profile where the surfaces cross."""
         return self._joined(blends.TONGUE, other, depth=depth, width=width)
 
@@ -338,7 +342,7 @@ class Shape2D(Placed):
             return self._solid(lift.REVOLVE, offset)
         return self._solid(lift.REVOLVE_PARTLY, offset, angle)
 
-    def loft(self, other: Field, height: Any = 1.0, ease: str = "linear") -> Shape:
+    def loft(self, other: BaseShape, height: Any = 1.0, ease: str = "linear") -> Shape:
         """Connect this outline at z = -height / 2 to another at z = height / 2.
 
         Args:

@@ -12,20 +12,20 @@ from typing import Any
 from distal.fields.guarantees import Primitive
 from distal.fields.library import PRIMITIVES
 from distal.scene.objects.binding import bound
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape, Shape2D
 from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
 
 
-def _make(primitive: Primitive) -> type[Field]:
+def _make(primitive: Primitive) -> type[BaseShape]:
     """The class of one primitive."""
-    base: type[Field] = Shape2D if primitive.flat else Shape
+    base: type[BaseShape] = Shape2D if primitive.flat else Shape
 
-    def initialise(self: Field, *args: Any, **kwargs: Any) -> None:
+    def initialise(self: BaseShape, *args: Any, **kwargs: Any) -> None:
         place = author_place()
         numbers, constants = bound(primitive, args, kwargs, place)
-        Field.__init__(self, Node(primitive, primitive.flat, (), numbers, constants, place))
+        BaseShape.__init__(self, Node(primitive, primitive.flat, (), numbers, constants, place))
 
     python = inspect.signature(primitive.distance.python_function)
     own = [p for name, p in python.parameters.items() if name not in ("p", "cell")]

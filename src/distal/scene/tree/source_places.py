@@ -28,7 +28,7 @@ _REMEMBERED: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
-class _Text:
+class _CodeText:
     """What is known of a code object: where each instruction stands, and the file's lines."""
 
     code: CodeType  # kept alive: it is known by its id
@@ -36,7 +36,7 @@ class _Text:
     lines: Sequence[str]
 
 
-_texts: dict[int, _Text] = {}
+_texts: dict[int, _CodeText] = {}
 _inside: dict[str, bool] = {}
 
 
@@ -80,7 +80,7 @@ def _span(frame: FrameType) -> Span:
     return Span(frame.f_code.co_filename, line, start, end, content, end_line)
 
 
-def _text(frame: FrameType) -> _Text:
+def _text(frame: FrameType) -> _CodeText:
     code = frame.f_code
     found = _texts.get(id(code))
     if found is None:
@@ -89,7 +89,7 @@ def _text(frame: FrameType) -> _Text:
         lines = linecache.getlines(code.co_filename, frame.f_globals)
         if len(_texts) >= _REMEMBERED:
             del _texts[next(iter(_texts))]
-        found = _texts[id(code)] = _Text(code, tuple(code.co_positions()), lines)
+        found = _texts[id(code)] = _CodeText(code, tuple(code.co_positions()), lines)
     return found
 
 

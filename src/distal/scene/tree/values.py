@@ -20,7 +20,7 @@ from distal.scene.tree.node import Node, Rule
 
 
 @dataclass(slots=True)
-class FunctionBody:
+class StatementList:
     """The statements of a function in the making."""
 
     statements: list[Stmt] = field(default_factory=list)

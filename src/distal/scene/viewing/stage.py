@@ -13,7 +13,7 @@ from typing import Any, Final
 from distal import Camera, DistantLight, GradientBackground, HemisphereLight, Plane
 from distal.lang.chosen_values import checked_values
 from distal.loading import hand_on
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.scene import Scene
 
@@ -27,7 +27,7 @@ _MARGIN: Final = 1.06
 _PLATE: Final = 0.08
 
 
-def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Scene:
+def stage(shape: BaseShape, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Scene:
     """The scene of a shape.
 
     Args:
@@ -69,7 +69,7 @@ def stage(shape: Field, params: Mapping[str, Any] | None = None, time: float = 0
 
 
 def _finite(
-    shape: Field, params: Mapping[str, Any] | None, time: float
+    shape: BaseShape, params: Mapping[str, Any] | None, time: float
 ) -> tuple[list[float], list[float]]:
     """The shape's box, cut where it has no end."""
     low, high = shape.bounds(params=params, time=time)

@@ -24,7 +24,7 @@ from distal.render.views import VIEWS
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
 from distal.scene.lowering.local_views import view_of_image
 from distal.scene.lowering.picture import Picturing
-from distal.scene.objects.field import Field
+from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.steering import STILL, Steering
 from distal.scene.viewing.stage import stage
@@ -171,18 +171,18 @@ def viewable(obj: Any, params: Mapping[str, Any] | None = None, time: float = 0.
     if isinstance(obj, Viewable):
         return obj
     picture = checked_picture(obj)
-    if isinstance(picture, Field):
+    if isinstance(picture, BaseShape):
         return Viewable(picture.name, stage(picture, params, time))
     return Viewable(picture.name, picture)
 
 
-def checked_picture(obj: object) -> Image | Scene | Field:
+def checked_picture(obj: object) -> Image | Scene | BaseShape:
     """What a picture can be made of.
 
     Raises:
         LoadError: It is something else.
     """
-    if isinstance(obj, Image | Scene | Field):
+    if isinstance(obj, Image | Scene | BaseShape):
         return obj
     name = getattr(obj, "name", repr(obj)[:60])
     what = "a @func" if isinstance(obj, Func) else f"of type {type(obj).__name__}"
