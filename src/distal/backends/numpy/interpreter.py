@@ -227,7 +227,7 @@ def evaluate(
     precision: int = 32,
     poll: Callable[[], None] | None = None,
 ) -> Value:
-    """The entry function's value, in the layouts of ``numpy_operations``."""
+    """The entry function's value, in the layouts of ``operations``."""
     interpreter = Interpreter(module, uniforms, resources, precision, poll)
     return interpreter.run(module.entry, args)
 

@@ -1,6 +1,6 @@
 """The per-frame part while it is gathered: its values, and which of them the target can carry.
 
-Input: forms (see ``per_frame_forms``) that the pixel code wants computed once a frame. Output: the
+Input: forms (see ``forms``) that the pixel code wants computed once a frame. Output: the
 ordered list of the module's per-frame values, each written over earlier ones.
 """
 

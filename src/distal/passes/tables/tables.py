@@ -1,7 +1,7 @@
 """Large tables of literals as buffers, for targets whose drivers take long over arrays.
 
 Input: functions that index arrays of literals by computed numbers. Output: the same reads out of at
-most three buffers (``table_places``), which are in ``Module.resources`` with their values. A table
+most three buffers (``tables.layout``), which are in ``Module.resources`` with their values. A table
 that a function is given, or a part of one, is bound to a clone of the function. Where a table is
 read as a whole its literals stay. Decision 19 has the figures.
 """
