@@ -56,7 +56,7 @@ def loaded_from(obj: object) -> LoadedFrom | None:
     return _loaded.get(obj)
 
 
-def hand_on(origin: object, made: object) -> None:
+def copy_loaded_from(origin: object, made: object) -> None:
     """Record that an object shows what another does, so that it comes from the same file."""
     known = loaded_from(origin)
     if known is not None:

@@ -26,10 +26,10 @@ ALL = [LLVMPIPE, SOFT_GL, ARC, RTX_GL, RTX]
 
 
 @pytest.fixture
-def asked_anew() -> Iterator[None]:
-    adapters.asked_apart.cache_clear()
+def listed_again() -> Iterator[None]:
+    adapters.listed_in_subprocess.cache_clear()
     yield
-    adapters.asked_apart.cache_clear()
+    adapters.listed_in_subprocess.cache_clear()
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_without_an_adapter_the_mend_is_said(monkeypatch: pytest.MonkeyPatch) ->
 def test_auto_is_hardware_or_the_cpu_with_a_reason(
     monkeypatch: pytest.MonkeyPatch, found: list[Adapter], complaint: str, device: str, reason: str
 ) -> None:
-    monkeypatch.setattr(adapters, "asked_apart", lambda: (found, complaint))
+    monkeypatch.setattr(adapters, "listed_in_subprocess", lambda: (found, complaint))
     resolved = resolve("auto")
     assert (resolved.device, resolved.reason) == (device, reason)
     assert resolved.adapter == ("NVIDIA RTX 4000" if device == "gpu" else None)
@@ -99,7 +99,7 @@ def test_auto_is_hardware_or_the_cpu_with_a_reason(
 
 
 def test_a_named_device_asks_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(adapters, "asked_apart", lambda: pytest.fail("asked"))
+    monkeypatch.setattr(adapters, "listed_in_subprocess", lambda: pytest.fail("asked"))
     assert resolve("gpu-fragment:arc") == adapters.Resolved("gpu-fragment", "arc", "as requested")
     assert resolve("reference").device == "reference"
 
@@ -132,7 +132,7 @@ def test_a_missing_package_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_a_driver_that_fails_apart_leaves_the_cpu(
     monkeypatch: pytest.MonkeyPatch,
-    asked_anew: None,
+    listed_again: None,
     answer: subprocess.CompletedProcess[str],
     reason: str,
 ) -> None:
@@ -142,9 +142,9 @@ def test_a_driver_that_fails_apart_leaves_the_cpu(
     assert reason in resolved.reason
 
 
-def test_the_answer_apart_is_the_answer_here(asked_anew: None) -> None:
+def test_the_answer_apart_is_the_answer_here(listed_again: None) -> None:
     pytest.importorskip("wgpu")
-    assert adapters.asked_apart()[0] == adapters.adapters()
+    assert adapters.listed_in_subprocess()[0] == adapters.adapters()
 
 
 def test_nobody_sees_the_drivers_chatter_and_the_environment_stays() -> None:

@@ -14,7 +14,7 @@ from distal.ir.types import VEC3
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
-from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.picture import SceneLowering
 
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -28,7 +28,7 @@ class ColorAt(Composed):
         self.scene = scene
 
     def compose(self, assembly: Any) -> str:
-        surface = Picturing(assembly, self.scene).surface()
+        surface = SceneLowering(assembly, self.scene).surface()
         found = Call(surface.name, (Read("p", VEC3),), surface.type.result)
         body = (Return(field(found, "color")),)
         return assembly.define("color_at", (Param("p", VEC3),), VEC3, body)

@@ -27,7 +27,7 @@ from distal.cli.base import (
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
-    from distal.scene.checks.validation import CheckFinding, Checkup, ShapeRow
+    from distal.scene.checks.validation import CheckFinding, ShapeReport, ValidationReport
 
 # A tree is shown so deep; what is below a shared shape only once.
 DEEPEST = 12
@@ -67,7 +67,7 @@ def check(
         raise typer.Exit(1)
 
 
-def report_lines(checkup: Checkup) -> Iterator[str]:
+def report_lines(checkup: ValidationReport) -> Iterator[str]:
     """The report as text."""
     yield from _tree(checkup)
     yield ""
@@ -82,7 +82,7 @@ def report_lines(checkup: Checkup) -> Iterator[str]:
             yield f"   = and {more} more like it from this line"
 
 
-def _tree(checkup: Checkup) -> Iterator[str]:
+def _tree(checkup: ValidationReport) -> Iterator[str]:
     rows = list(_rows(checkup))
     shown = rows[:MOST_ROWS]
     widths = [max(len(row[column]) for row in shown) for column in range(3)]
@@ -93,7 +93,7 @@ def _tree(checkup: Checkup) -> Iterator[str]:
         yield f"… and {len(rows) - MOST_ROWS} more; --json lists all"
 
 
-def _rows(checkup: Checkup) -> Iterator[tuple[str, str, str, str]]:
+def _rows(checkup: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
     """A row for each shape: name, slope, claims, box and line."""
     seen: set[int] = set()
     stack = [(0, 0)]
@@ -112,16 +112,16 @@ def _rows(checkup: Checkup) -> Iterator[tuple[str, str, str, str]]:
         )
 
 
-def _claims(row: ShapeRow) -> str:
-    from distal.scene.checks.validation import claims_told
+def _claims(row: ShapeReport) -> str:
+    from distal.scene.checks.validation import guarantee_names
 
-    claims = claims_told(row.node)
+    claims = guarantee_names(row.node)
     if len(claims) == 3:
         return "exact"
     return ", ".join(claims) or "-"
 
 
-def _box(row: ShapeRow) -> str:
+def _box(row: ShapeReport) -> str:
     n = 2 if row.node.flat else 3
     low, high = row.promised.low[:n], row.promised.high[:n]
     if not any(map(math.isfinite, (*low, *high))):
@@ -133,12 +133,12 @@ def _corner(corner: Sequence[float]) -> str:
     return f"({', '.join(f'{c:.3g}' for c in corner)})"
 
 
-def _line(row: ShapeRow) -> str:
+def _line(row: ShapeReport) -> str:
     place = row.node.place
     return "" if place is None else f"{place.file}:{place.line}"
 
 
-def _slope(checkup: Checkup) -> Iterator[str]:
+def _slope(checkup: ValidationReport) -> Iterator[str]:
     """Where the slope of the whole comes from: which shape raised it, by how much, and where."""
     from distal.scene.checks.validation import described
 
@@ -156,7 +156,7 @@ def _slope(checkup: Checkup) -> Iterator[str]:
             yield f"  {described(row.node)} has the slope {row.promised.slope:.3g}{where}"
 
 
-def _measurements(checkup: Checkup) -> Iterator[str]:
+def _measurements(checkup: ValidationReport) -> Iterator[str]:
     measured = [row for row in checkup.shapes if row.measured is not None]
     count, all_of_them = len(measured), len(checkup.shapes)
     whole = checkup.shapes[0].measured
@@ -170,7 +170,7 @@ def _measurements(checkup: Checkup) -> Iterator[str]:
         yield f"{count} of {all_of_them} shapes were measured"
 
 
-def _is_in(finding: CheckFinding, checkup: Checkup) -> bool:
+def _is_in(finding: CheckFinding, checkup: ValidationReport) -> bool:
     return finding.shape in checkup.slope_from
 
 

@@ -220,7 +220,7 @@ def _gpu() -> Iterator[MachineFact]:
         return
     from distal.devices import adapters
 
-    found, complaint = adapters.asked_apart()
+    found, complaint = adapters.listed_in_subprocess()
     best = adapters.hardware()
     for row in found:
         facts = (row.kind, row.backend, row.driver, "taken by auto" if row == best else "")

@@ -88,10 +88,10 @@ def report_lines(found: Probed, seconds: float) -> Iterator[str]:
 
 
 def _shape(found: Probed) -> Iterator[str]:
-    from distal.scene.checks.validation import claims_told, described
+    from distal.scene.checks.validation import described, guarantee_names
 
     leaf = found.path[-1]
-    claims = ", ".join(claims_told(leaf)) or "no claims beside its slope"
+    claims = ", ".join(guarantee_names(leaf)) or "no claims beside its slope"
     yield f"shape     {described(leaf)}: {claims}"
     if len(found.path) > 1:
         yield f"part of   {' > '.join(node.name for node in found.path[:-1])}"

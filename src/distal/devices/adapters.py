@@ -118,7 +118,7 @@ def resolve(device: str) -> Resolved:
         return Resolved(name, adapter or None, "as requested")
     if importlib.util.find_spec("wgpu") is None:
         return Resolved("cpu", None, "wgpu is not installed")
-    found, complaint = asked_apart()
+    found, complaint = listed_in_subprocess()
     best = _best_hardware(found)
     if best is not None:
         return Resolved("gpu", best.name, f"{best.name} ({best.backend})")
@@ -134,7 +134,7 @@ def hardware() -> Adapter | None:
     """The best hardware adapter, or None; lists the adapters as ``resolve("auto")`` does."""
     if importlib.util.find_spec("wgpu") is None:
         return None
-    return _best_hardware(asked_apart()[0])
+    return _best_hardware(listed_in_subprocess()[0])
 
 
 def _best_hardware(found: Sequence[Adapter]) -> Adapter | None:
@@ -142,7 +142,7 @@ def _best_hardware(found: Sequence[Adapter]) -> Adapter | None:
 
 
 @functools.cache
-def asked_apart() -> tuple[list[Adapter], str]:
+def listed_in_subprocess() -> tuple[list[Adapter], str]:
     """The adapters, listed once, in a process of its own; and what failed, or "".
 
     With "auto" the user did not request a GPU, so a driver that hangs or crashes must not stop the

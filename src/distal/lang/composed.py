@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from distal.ir.nodes import EntryKind
 from distal.ir.types import Type
 from distal.lang.functions import Func
+from distal.lang.immutable import Immutable
 from distal.lang.runtime_access import executor
-from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:
     from distal.lang.parameters import Parameter
 
 
-class Composed(Unchanging, ABC):
+class Composed(Immutable, ABC):
     """A function of the IR that an object builds itself. It never changes once it is made.
 
     Attributes:

@@ -17,8 +17,8 @@ from distal.ir.intrinsics import python_functions
 from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
+from distal.lang.immutable import Immutable
 from distal.lang.runtime_access import executor, python_expressions
-from distal.lang.unchanging import Unchanging
 
 if TYPE_CHECKING:
     from distal.lang.parameters import Parameter
@@ -37,7 +37,7 @@ _COMPARING: Final = frozenset(
 )
 
 
-class Symbolic(Unchanging):
+class Symbolic(Immutable):
     """What expressions and parameters share: the operators of scene code."""
 
     __slots__ = ()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from distal.lang.render_options import Progress, RenderOptions
 from distal.lang.runtime_access import executor
-from distal.scene.checks.warnings import check_slopes, doubt_black, doubt_functions, shows
+from distal.scene.checks.warnings import check_slopes, shows, warn_of_black, warn_of_functions
 from distal.scene.lowering.layers import values
 from distal.scene.tree.errors import refuse
 from distal.scene.view_options import ViewOptions
@@ -35,7 +35,7 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     """
     sliced, moved = view.slice_settings, view.steering_settings
     check_slopes(scene.shape, options.params, options.time)
-    doubt_functions(scene.shape, options.params, options.time)
+    warn_of_functions(scene.shape, options.params, options.time)
     shares = _shares(options.progress, 1 + len(view.layers))
     image = scene.view(
         view.view,
@@ -70,7 +70,7 @@ def _check_visible(
     if not view.transparent and not shows(picture.array[..., 3]):
         message = f"the camera is inside '{scene.shape.name}', and no ray finds a way out"
         refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
-    doubt_black(scene, picture, options.params, options.time)
+    warn_of_black(scene, picture, options.params, options.time)
 
 
 def _layer(scene: Scene, name: str, view: ViewOptions, options: RenderOptions) -> Any:

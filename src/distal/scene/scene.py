@@ -19,11 +19,11 @@ from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
-from distal.loading import hand_on
+from distal.loading import copy_loaded_from
 from distal.render import tonemap, views
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer
-from distal.scene.lowering.picture import NORMALS, Picturing
+from distal.scene.lowering.picture import NORMALS, SceneLowering
 from distal.scene.objects.backgrounds import as_background
 from distal.scene.objects.materials import as_material
 from distal.scene.scene_arguments import (
@@ -295,7 +295,7 @@ class Scene(Composed, Presentable):
         made.asked_display = {**self.asked_display, **said}
         made._pictures = {}
         made._whole = True
-        hand_on(self, made)
+        copy_loaded_from(self, made)
         return made
 
     def text(self) -> Composed:
@@ -304,7 +304,7 @@ class Scene(Composed, Presentable):
 
     def compose(self, assembly: Assembly) -> str:
         """Its picture in linear light, as a function of the frame."""
-        made = Picturing(assembly, self)
+        made = SceneLowering(assembly, self)
         return made.main("color", transparent=False, sampled=False, encoded=False)
 
     def functions(self) -> Iterable[Func]:
@@ -331,7 +331,7 @@ class View(Composed):
         encoded: bool,
         steered: bool,
     ) -> None:
-        hand_on(scene, self)
+        copy_loaded_from(scene, self)
         self.name = scene.name if view == "color" else f"{scene.name} ({view})"
         self._scene = scene
         self._view = view
@@ -341,7 +341,7 @@ class View(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The picture, as a function of the frame."""
-        return Picturing(assembly, self._scene).main(
+        return SceneLowering(assembly, self._scene).main(
             self._view,
             transparent=self._transparent,
             sampled=self._sampled,
@@ -366,6 +366,6 @@ class DisplayEncoding(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function of a linear color."""
-        made = Picturing(assembly, self._scene)
+        made = SceneLowering(assembly, self._scene)
         value = made.displayed(Read("color", VEC4))
         return assembly.define("display_color", (Param("color", VEC4),), VEC4, (Return(value),))

@@ -22,7 +22,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.runtime.lowered import Lowered
-from distal.scene.checks.warnings import check_slopes, doubt_black, doubt_functions
+from distal.scene.checks.warnings import check_slopes, warn_of_black, warn_of_functions
 from distal.scene.view_options import checked_samples
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
 from distal.version import __version__
@@ -85,7 +85,7 @@ class MovingPicture:
     def warn_if_black(self, picture: Picture, time: float) -> None:
         """Warn of a first picture that shows nothing, as a still would."""
         if self._scene is not None and self._view == COLOR:
-            doubt_black(self._scene, picture, self.parameters, time)
+            warn_of_black(self._scene, picture, self.parameters, time)
 
 
 def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) -> MovingPicture:
@@ -108,7 +108,7 @@ def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) ->
     values = _values(shown, lowered, options.params)
     if shown.scene is not None:
         check_slopes(shown.scene.shape, values, options.time)
-        doubt_functions(shown.scene.shape, values, options.time)
+        warn_of_functions(shown.scene.shape, values, options.time)
     return MovingPicture(
         name=shown.name,
         options=replace(options, params=values, settings=settings),

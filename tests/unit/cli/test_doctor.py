@@ -42,13 +42,13 @@ def test_missing_packages_come_with_the_command_that_mends(monkeypatch):
 
 
 @pytest.fixture
-def asked_anew():
-    adapters.asked_apart.cache_clear()
+def listed_again():
+    adapters.listed_in_subprocess.cache_clear()
     yield
-    adapters.asked_apart.cache_clear()
+    adapters.listed_in_subprocess.cache_clear()
 
 
-def test_a_hanging_or_dying_driver_is_a_finding(monkeypatch, asked_anew):
+def test_a_hanging_or_dying_driver_is_a_finding(monkeypatch, listed_again):
     def hang(*_, timeout, **__):
         raise subprocess.TimeoutExpired("python", timeout)
 
@@ -58,7 +58,7 @@ def test_a_hanging_or_dying_driver_is_a_finding(monkeypatch, asked_anew):
         State.OPTIONAL,
         "the driver did not answer within 30 s",
     )
-    adapters.asked_apart.cache_clear()
+    adapters.listed_in_subprocess.cache_clear()
     died = subprocess.CompletedProcess([], -11, "", "")
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: died)
     found = find(doctor._gpu(), "adapters")
@@ -73,7 +73,7 @@ def test_adapters_have_numbers_and_the_one_that_auto_takes_is_marked(monkeypatch
         Adapter(2, "RTX", "DiscreteGPU", "OpenGL"),
         Adapter(3, "RTX", "DiscreteGPU", "Vulkan", "555.1"),
     ]
-    monkeypatch.setattr(adapters, "asked_apart", lambda: (rows, ""))
+    monkeypatch.setattr(adapters, "listed_in_subprocess", lambda: (rows, ""))
     told = [(f.subject, f.detail) for f in doctor._gpu()]
     assert told == [
         ("0: llvmpipe (LLVM 15)", "CPU, Vulkan, Mesa"),
@@ -81,7 +81,7 @@ def test_adapters_have_numbers_and_the_one_that_auto_takes_is_marked(monkeypatch
         ("2: RTX", "DiscreteGPU, OpenGL"),
         ("3: RTX", "DiscreteGPU, Vulkan, 555.1, taken by auto"),
     ]
-    monkeypatch.setattr(adapters, "asked_apart", lambda: (rows[:1], ""))
+    monkeypatch.setattr(adapters, "listed_in_subprocess", lambda: (rows[:1], ""))
     auto = find(doctor._gpu(), "auto")
     assert auto.detail == "takes the CPU; no GPU: only llvmpipe, in software"
 
@@ -91,7 +91,7 @@ def test_a_failing_look_is_a_finding_and_the_rest_goes_on(monkeypatch):
         raise RuntimeError("no clock")
 
     monkeypatch.setattr(doctor, "_cpu_model", broken)
-    monkeypatch.setattr(adapters, "asked_apart", lambda: ([], ""))
+    monkeypatch.setattr(adapters, "listed_in_subprocess", lambda: ([], ""))
     findings = examine()
     assert find(findings, "examination").detail == "RuntimeError: no clock"
     assert find(findings, "numpy").state is State.READY

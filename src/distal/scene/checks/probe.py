@@ -18,9 +18,9 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
-from distal.scene.checks.validation import claims_told, place_json
+from distal.scene.checks.validation import guarantee_names, place_json
 from distal.scene.lowering.attributes import AttributePoint, Part, SurfaceAttribute
-from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.picture import SceneLowering
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.scene import Scene
 from distal.scene.tree.node import Node
@@ -161,7 +161,7 @@ class _Program(Composed):
     def compose(self, assembly: Assembly) -> str:
         """The function that gives a ``Seen``."""
         body = StatementList(taken={"coord", "resolution"})
-        made = Picturing(assembly, self._scene)
+        made = SceneLowering(assembly, self._scene)
         resolution = Read("resolution", VEC2)
         given = made.given(body, resolution)
         given |= {"coord": Read("coord", VEC2), "resolution": resolution}
@@ -207,7 +207,7 @@ def _shape_json(path: Sequence[Node]) -> dict[str, Any]:
     return {
         "name": leaf.name,
         "kind": leaf.rule.name,
-        "claims": claims_told(leaf),
+        "claims": guarantee_names(leaf),
         "path": [node.name for node in path],
         "place": place_json(leaf.place),
     }

@@ -1,7 +1,7 @@
 """Validation of a tree of shapes: its guarantees, its bounds, and measurements of both.
 
-Input: a shape. Output: a ``Checkup``: figures for each shape, findings, each with its place in the
-author's file, and the same as plain values for editors (``Checkup.as_json``).
+Input: a shape. Output: a ``ValidationReport``: figures for each shape, findings, each with its place in the
+author's file, and the same as plain values for editors (``ValidationReport.as_json``).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class CheckFinding:
 
     Attributes:
         code: What kind of finding, for editors: "slope-exceeded", "outside-box" …
-        shape: The number of the shape in ``Checkup.shapes``.
+        shape: The number of the shape in ``ValidationReport.shapes``.
     """
 
     severity: Severity
@@ -55,7 +55,7 @@ class CheckFinding:
 
 
 @dataclass(frozen=True, slots=True)
-class ShapeRow:
+class ShapeReport:
     """One shape of a tree; a shape used in several places is listed once.
 
     Attributes:
@@ -72,14 +72,14 @@ class ShapeRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Checkup:
+class ValidationReport:
     """What is known of a tree; the first shape is the whole.
 
     Attributes:
         slope_from: Numbers of the shapes that raise the slope of the whole, the first one last.
     """
 
-    shapes: tuple[ShapeRow, ...]
+    shapes: tuple[ShapeReport, ...]
     slope_from: tuple[int, ...]
     findings: tuple[CheckFinding, ...]
 
@@ -111,7 +111,7 @@ class Checkup:
 
 def check(
     shape: BaseShape, params: Mapping[str, Any] | None = None, time: float = 0.0, seed: int = 0
-) -> Checkup:
+) -> ValidationReport:
     """Validate a shape and all its parts.
 
     Args:
@@ -132,14 +132,16 @@ def check(
         if id(node) in chosen:
             measured = measure(BaseShape._of(node), own, given, time, seed)
         children = tuple(numbers[id(c)] for c in node.children)
-        rows.append(ShapeRow(node, children, own, _raised(node, promised), measured))
+        rows.append(ShapeReport(node, children, own, _raised(node, promised), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
-    return Checkup(tuple(rows), _slope_from(rows), tuple(found))
+    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found))
 
 
-def _at_their_roots(found: Sequence[CheckFinding], rows: Sequence[ShapeRow]) -> list[CheckFinding]:
+def _at_their_roots(
+    found: Sequence[CheckFinding], rows: Sequence[ShapeReport]
+) -> list[CheckFinding]:
     """Without the errors of shapes that only pass on what is wrong with a part of theirs."""
     wrong = {(f.code, id(rows[f.shape].node)) for f in found if f.severity is Severity.ERROR}
 
@@ -177,7 +179,7 @@ def _raised(node: Node, promised: Mapping[int, NodeBounds]) -> float | None:
     return before if promised[id(node)].slope > before * (1.0 + ROUNDING) else None
 
 
-def _slope_from(rows: Sequence[ShapeRow]) -> tuple[int, ...]:
+def _slope_from(rows: Sequence[ShapeReport]) -> tuple[int, ...]:
     """From the whole down along the steepest child: the shapes that make it steeper."""
     at, found = 0, []
     while True:
@@ -192,7 +194,7 @@ def _slope_from(rows: Sequence[ShapeRow]) -> tuple[int, ...]:
 # Findings
 
 
-def _findings(i: int, row: ShapeRow, rows: Sequence[ShapeRow]) -> Iterator[CheckFinding]:
+def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator[CheckFinding]:
     def finding(
         severity: Severity, code: str, message: str, hint: str | None = None
     ) -> CheckFinding:
@@ -215,7 +217,7 @@ def _findings(i: int, row: ShapeRow, rows: Sequence[ShapeRow]) -> Iterator[Check
         yield from _of_operator(row, [r.node for r in inner], finding)
 
 
-def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[CheckFinding]:
+def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[CheckFinding]:
     name, own = row.node.name, is_own(row.node)
     severity = Severity.WARNING if row.node.estimate else Severity.ERROR
     if measured.undefined_at is not None:
@@ -242,7 +244,7 @@ def _violations(row: ShapeRow, measured: Measured, finding: Any) -> Iterator[Che
         yield finding(Severity.ERROR, "not-exact", message, "exact=False" if own else None)
 
 
-def _endless(row: ShapeRow, finding: Any) -> CheckFinding:
+def _endless(row: ShapeReport, finding: Any) -> CheckFinding:
     unknown = _without_growth(row.node)
     if unknown is not None:
         message = (
@@ -276,7 +278,7 @@ def _without_growth(node: Node) -> Node | None:
     return None
 
 
-def _of_operator(row: ShapeRow, inner: Sequence[Node], finding: Any) -> Iterator[CheckFinding]:
+def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Iterator[CheckFinding]:
     rule = row.node.rule
     if isinstance(rule, Operator) and not rule.local and len(inner) > 1:
         message = f"{rule.name} changes shapes everywhere, not only where they meet"
@@ -342,7 +344,7 @@ def place_json(span: Span | None) -> dict[str, Any] | None:
     }
 
 
-def _shape_json(i: int, row: ShapeRow) -> dict[str, Any]:
+def _shape_json(i: int, row: ShapeReport) -> dict[str, Any]:
     node, promised = row.node, row.promised
     n = 2 if node.flat else 3
     return {
@@ -353,7 +355,7 @@ def _shape_json(i: int, row: ShapeRow) -> dict[str, Any]:
         "flat": node.flat,
         "children": list(row.children),
         "place": place_json(node.place),
-        "claims": claims_told(node),
+        "claims": guarantee_names(node),
         "slope": _plain(promised.slope),
         "slope_before": None if row.raised is None else _plain(row.raised),
         "estimate": node.estimate,
@@ -365,7 +367,7 @@ def _shape_json(i: int, row: ShapeRow) -> dict[str, Any]:
     }
 
 
-def claims_told(node: Node) -> list[str]:
+def guarantee_names(node: Node) -> list[str]:
     """A shape's guarantees in words, in a fixed order."""
     return [c.value for c in Guarantee if c in node.claims]
 

@@ -26,7 +26,7 @@ from distal.ir.types import FLOAT, VEC2
 from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import bounds_of_nodes
-from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.picture import SceneLowering
 from distal.scene.lowering.shapes import ZERO_CELL
 from distal.scene.lowering.slope_limit import may_be_endless, refuse_steepness
 from distal.scene.objects.field import BaseShape
@@ -46,7 +46,7 @@ SLACK: Final = 1.05
 _looked_at: WeakSet[Node] = WeakSet()
 
 
-def doubt_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
+def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
     """Check once every function of the author's in a shape.
 
     Raises:
@@ -134,7 +134,7 @@ def _box(node: Node) -> tuple[Points, Points]:
     return np.array(corners[0], np.float64), np.array(corners[1], np.float64)
 
 
-def doubt_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
+def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
     """Warn of a picture without any light, and say what may cause it.
 
     Raises:
@@ -168,7 +168,7 @@ class _Eye(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The distance where the ray in the middle of the picture begins."""
-        made = Picturing(assembly, self._scene)
+        made = SceneLowering(assembly, self._scene)
         node = self._scene.shape.node
         field = made.composer.field(node, made.composer.values.all(node), ZERO_CELL)
         site = {"uv": number(0.0, VEC2), "resolution": number(1.0, VEC2)}

@@ -14,9 +14,9 @@ from distal.ir.nodes import EntryKind
 from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
-from distal.loading import hand_on
+from distal.loading import copy_loaded_from
 from distal.render.layers import LAYERS
-from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.picture import SceneLowering
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
@@ -32,13 +32,13 @@ class Layer(Composed):
     result = VEC4
 
     def __init__(self, scene: Scene, layer: str, *, steered: bool) -> None:
-        hand_on(scene, self)
+        copy_loaded_from(scene, self)
         self.name = f"{scene.name} (layer {layer})"
         self._scene, self._layer, self._steered = scene, layer, steered
 
     def compose(self, assembly: Assembly) -> str:
         """The layer, as a function of the frame."""
-        return Picturing(assembly, self._scene).layer(self._layer, steered=self._steered)
+        return SceneLowering(assembly, self._scene).layer(self._layer, steered=self._steered)
 
     def functions(self) -> Iterable[Func]:
         """The functions that it is made of."""

@@ -32,7 +32,7 @@ from distal.ir.types import BOOL, FLOAT, FRAME, INT, UINT, VEC2, VEC3, VEC4, Kin
 from distal.ir.walk import expressions, map_statement, nodes_in, root_of, statements_in
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
-from distal.loading import hand_on
+from distal.loading import copy_loaded_from
 from distal.render import local_views as library
 
 PREFIX: Final = "local:"
@@ -149,7 +149,7 @@ class _ImageView(Composed):
     result = VEC4
 
     def __init__(self, image: Image, what: str) -> None:
-        hand_on(image, self)
+        copy_loaded_from(image, self)
         self.name = f"{image.name} ({what})"
         self._image = image
 

@@ -46,7 +46,7 @@ LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
 VIEWS: Final = cast(Mapping[str, Func], views.VIEWS)
 
 
-class Picturing:
+class SceneLowering:
     """Puts one scene's functions into one program."""
 
     def __init__(self, assembly: Assembly, scene: Scene) -> None:

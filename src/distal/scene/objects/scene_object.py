@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 
 from distal.ir.nodes import Expr
 from distal.lang.functions import Func
-from distal.lang.unchanging import Unchanging
+from distal.lang.immutable import Immutable
 from distal.render.declarations import Declaration
 from distal.scene.tree.calls import Composer, FunctionCall
 
 
-class SceneObject(Unchanging):
+class SceneObject(Immutable):
     """An object that never changes once it is made.
 
     Attributes:

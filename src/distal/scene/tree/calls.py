@@ -19,8 +19,8 @@ from distal.ir.nodes import Expr
 from distal.ir.types import BOOL, INT, Type
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
+from distal.lang.immutable import Immutable
 from distal.lang.resources import Buffer, TextureValue
-from distal.lang.unchanging import Unchanging
 from distal.render.declarations import PLACE_NAMES
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import Number
@@ -36,7 +36,7 @@ class Composer(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class FunctionCall(Unchanging):
+class FunctionCall(Immutable):
     """A scene function and its values.
 
     Attributes:

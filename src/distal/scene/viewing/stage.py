@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from distal import Camera, DistantLight, GradientBackground, HemisphereLight, Plane
 from distal.lang.chosen_values import checked_values
-from distal.loading import hand_on
+from distal.loading import copy_loaded_from
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.scene import Scene
@@ -62,7 +62,7 @@ def stage(shape: BaseShape, params: Mapping[str, Any] | None = None, time: float
         far=50.0 * radius,
         name=shape.name,
     )
-    hand_on(given, scene)
+    copy_loaded_from(given, scene)
     said = checked_values(given.parameters(), params)
     object.__setattr__(scene, "staged", (said, float(time)))  # recorded in its pictures
     return scene

@@ -23,7 +23,7 @@ from distal.lang.runtime_access import executor
 from distal.render.views import VIEWS
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
 from distal.scene.lowering.local_views import view_of_image
-from distal.scene.lowering.picture import Picturing
+from distal.scene.lowering.picture import SceneLowering
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.steering import STILL, Steering
@@ -148,7 +148,7 @@ class _Elevation(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """The function of nothing."""
-        return Picturing(assembly, self._scene).elevation()
+        return SceneLowering(assembly, self._scene).elevation()
 
 
 def view_label(view: str) -> str:

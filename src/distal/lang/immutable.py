@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, NoReturn, Self
 
 
-class Unchanging:
+class Immutable:
     """What does not change, and so need not be copied."""
 
     __slots__ = ()
