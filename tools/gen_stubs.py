@@ -107,7 +107,7 @@ def _entry(made: Any) -> str:
     base = base if base in PUBLIC else f"_{base}"
     doc = _doc(made) if hasattr(made, "declaration") else _first_sentence(made)
     signatures = [["self", *_parameters(inspect.signature(made))]]
-    if issubclass(made, shapes.Field):
+    if issubclass(made, shapes.BaseShape):
         signatures = [["self", *found] for found in _shape_signatures(made.row.distance)]
     body = "".join(
         textwrap.indent(_def("__init__", s, "None", overloaded=len(signatures) > 1), "    ")

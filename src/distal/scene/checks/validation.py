@@ -1,7 +1,7 @@
 """Validation of a tree of shapes: its guarantees, its bounds, and measurements of both.
 
-Input: a shape. Output: a ``ValidationReport``: figures for each shape, findings, each with its place in the
-author's file, and the same as plain values for editors (``ValidationReport.as_json``).
+Input: a shape. Output: a ``ValidationReport``: figures for each shape, and findings, each with its
+place in the author's file; also as plain values for editors (``ValidationReport.as_json``).
 """
 
 from __future__ import annotations
