@@ -1,9 +1,9 @@
 """Source spans, and the errors a scene author sees.
 
-Input: a message, a place in the author's source and, when known, a hint. What flows
-out: an exception whose text shows the author's line with a caret. This is the only module that
-draws a caret; everything above reports by making a ``Diagnostic`` and raising ``CompileError``.
-Here too is how texts that others wrote (of a file, a driver, a package) become safe to show.
+Input: a message, a place in the author's source and, when known, a hint. Output: an exception whose
+text shows the author's line with a caret. This is the only module that draws a caret; everything
+above reports by making a ``Diagnostic`` and raising ``CompileError``. Here too is how texts that
+others wrote (of a file, a driver, a package) become safe to show.
 """
 
 from __future__ import annotations
@@ -88,9 +88,9 @@ class Diagnostic:
     hint: str | None = None
 
     def __str__(self) -> str:
-        return self.told("error")
+        return self.text("error")
 
-    def told(self, kind: str) -> str:
+    def text(self, kind: str) -> str:
         """The text, with its severity in front: "error", "warning", "note"."""
         lines = [f"{kind}: {self.message}"]
         if self.span is not None:
@@ -134,7 +134,13 @@ class CompileError(Exception):
 
     @classmethod
     def at(cls, message: str, span: Span | None, hint: str | None = None) -> CompileError:
-        """Make an error of a single mistake."""
+        """Make an error of a single mistake.
+
+        Args:
+            message: What is wrong.
+            span: Where; None where no place is known.
+            hint: What to write instead.
+        """
         return cls([Diagnostic(message, span, hint)])
 
 

@@ -72,8 +72,8 @@ def test_a_slope_that_is_too_small_is_an_error_at_the_shape_that_gives_it():
     (error,) = [f for f in found.findings if f.severity is Severity.ERROR]
     # The steepest is 1 + 0.05 * 9 * sqrt(1): where sin is 0 for one factor and 1 for the other.
     assert found.shapes[error.shape].measured.slope == pytest.approx(1.45, abs=0.02)
-    assert error.told.hint == "slope=1.5"
-    assert error.told.span.text.strip().startswith("own = Shape.from_function(")
+    assert error.diagnostic.hint == "slope=1.5"
+    assert error.diagnostic.span.text.strip().startswith("own = Shape.from_function(")
 
 
 def test_a_slope_that_is_large_enough_holds():
@@ -111,7 +111,7 @@ def test_what_is_not_a_number_is_an_error():
     found = check(Shape.from_function(rooted, slope=9.0, bounds=BOX))
     assert ("undefined", "rooted") in codes(found)
     (error,) = [f for f in found.findings if f.code == "undefined"]
-    assert error.told.message.startswith("'rooted' is not a number at (-")
+    assert error.diagnostic.message.startswith("'rooted' is not a number at (-")
 
 
 def test_a_twist_tells_how_much_it_raises_the_slope_and_what_it_loses():
@@ -122,12 +122,12 @@ def test_a_twist_tells_how_much_it_raises_the_slope_and_what_it_loses():
     assert row.node.rule.name == "twist"
     assert row.raised == 1.0
     assert row.promised.slope == pytest.approx(shape.slope)
-    notes = [f.told.message for f in found.findings if f.shape == twist]
+    notes = [f.diagnostic.message for f in found.findings if f.shape == twist]
     assert notes == [
         f"twist(rate=3) raises the slope from 1 to {shape.slope:.3g}",
         "twist(rate=3) is no longer exact outside, exact inside, a lower bound",
     ]
-    assert all("Box(1.0, 2.0, 1.0).twist(3.0)" in f.told.span.text for f in found.findings)
+    assert all("Box(1.0, 2.0, 1.0).twist(3.0)" in f.diagnostic.span.text for f in found.findings)
 
 
 def test_shapes_are_called_what_their_author_calls_them():

@@ -178,5 +178,6 @@ def _gathered(findings: Sequence[CheckFinding]) -> list[tuple[CheckFinding, int]
     """Findings, each with how many more of its kind come from the same line."""
     groups: dict[Any, list[CheckFinding]] = {}
     for finding in findings:
-        groups.setdefault((finding.severity, finding.code, finding.told.span), []).append(finding)
+        key = (finding.severity, finding.code, finding.diagnostic.span)
+        groups.setdefault(key, []).append(finding)
     return [(group[0], len(group) - 1) for group in groups.values()]

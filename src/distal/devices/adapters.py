@@ -288,7 +288,7 @@ class Gpu:
         """The device, alone; its errors become a ``DeviceError``.
 
         Raises:
-            DeviceError: The GPU was lost, has not the memory, or refuses what it was told.
+            DeviceError: The GPU was lost, has not the memory, or rejects a command.
         """
         wgpu = wgpu_module()
         with self.lock:

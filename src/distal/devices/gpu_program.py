@@ -73,10 +73,10 @@ class GpuProgram:
 
     def _refused(self, error: BaseException) -> str:
         """What is said of our text, on one line, with the author's place where it is known."""
-        told = map_message(self._artifact, str(error))
-        place, said = _PLACE.search(told), _SAID.search(told)
+        message = map_message(self._artifact, str(error))
+        place, said = _PLACE.search(message), _SAID.search(message)
         where = f" at {place[1]}" if place else ""
-        what = said[1] if said else " ".join(told.split())
+        what = said[1] if said else " ".join(message.split())
         return f"{self.gpu.adapter.name} refuses the program{where}: {what}; or --device cpu"
 
     # Pipelines
@@ -188,10 +188,10 @@ class GpuProgram:
 
     def set_uniforms(self, values: Mapping[str, Any], tile: Sequence[int] = (0, 0, 0, 0)) -> None:
         """Write the uniforms; what is submitted from now on reads them."""
-        told = self._uniform_bytes.packed(values, tile).tobytes()
-        if told != self._written:
-            self._device.queue.write_buffer(self._uniforms, 0, told)
-            self._written = told
+        message = self._uniform_bytes.packed(values, tile).tobytes()
+        if message != self._written:
+            self._device.queue.write_buffer(self._uniforms, 0, message)
+            self._written = message
 
     def encode_frame(self, encoder: Any) -> None:
         """The values that are the same in all pixels."""

@@ -1,9 +1,9 @@
 """The data of textures and buffers, from what the author declared to arrays for a device.
 
-Input: a declared resource and its type: a file's path, an array, nested lists. What flows
-out: texels as float32 (height, width, 4), depth or face first for volumes and cubes, in the order
-of their indices; buffers as (n,) or (n, size). Values of pictures are taken as they stand in the
-file, 0 to 1. It knows no device.
+Input: a declared resource and its type: a file's path, an array, nested lists. Output: texels as
+float32 (height, width, 4), depth or face first for volumes and cubes, in the order of their
+indices; buffers as (n,) or (n, size). Values of pictures are taken as they stand in the file, 0 to
+1. It knows no device.
 """
 
 from __future__ import annotations

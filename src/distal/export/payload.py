@@ -274,7 +274,7 @@ class PagePrograms:
 
 
 def _is_library(file: str) -> bool:
-    """Whether a line is ours: nobody mends it there, and such lines are half of a payload."""
+    """Whether a line is ours: no author edits it there, and such lines are half of a payload."""
     path = PurePath(file)
     return path.is_relative_to(PACKAGE) and not path.is_relative_to(PACKAGE / "gallery")
 

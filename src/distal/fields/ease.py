@@ -1,8 +1,8 @@
 """Ways from 0 to 1: how a transition starts and ends.
 
-Input: how far along, from 0 to 1, and which way (a choice fixed when it is compiled). What
-flows out: how much of the change is done, from 0 to 1, and the steepest rise, which the slopes of
-operators rest on. All rise everywhere.
+Input: how far along, from 0 to 1, and which way (a choice fixed when it is compiled). Output: how
+much of the change is done, from 0 to 1, and the steepest rise, which the slopes of operators rest
+on. All rise everywhere.
 """
 
 from __future__ import annotations

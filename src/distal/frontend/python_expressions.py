@@ -1,6 +1,6 @@
 """Operators and built-ins between values that Python code holds: ``slider("Size", 1) * 2``.
 
-Input: the name of an operation and its operands, expressions among them. What flows out:
+Input: the name of an operation and its operands, expressions among them. Output:
 the expression, by the rules that scene code has; a mistake is a ``TypeError`` in the same words.
 There is no function around it: no statement, no local, no place in a source.
 """

@@ -1,7 +1,7 @@
 """Pixels to PNG bytes, and back.
 
-Input: display-encoded float pixels, top row first, and texts to keep beside them. What
-flows out: a PNG of 8 or 16 bits that says it is sRGB. Knows nothing of scenes.
+Input: display-encoded float pixels, top row first, and texts to keep beside them. Output: a PNG of
+8 or 16 bits that says it is sRGB. Knows nothing of scenes.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The IR as text: readable, deterministic and complete.
 
-A module flows in, text flows out: what ``--target ir`` shows, what golden tests compare, and (all
+Input: a module. Output: text: what ``--target ir`` shows, what golden tests compare, and (all
 but the values of a scene's numbers) what the object cache hashes, so everything that changes the
 meaning is in it. Spans and the data of resources are not. ``@name`` is a uniform, ``$name`` a value
 of the per-frame part, ``&name`` a texture or buffer; ``name(...)`` calls a function of the module

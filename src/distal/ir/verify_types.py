@@ -1,7 +1,7 @@
 """What each node demands of the types of its operands: the docstrings of ``nodes`` as assertions.
 
-One expression node flows in, its operands already checked; an AssertionError flows out. Names and
-scopes are not known here.
+Input: one expression node, its operands already checked. Raises an AssertionError. Does not depend
+on names and scopes.
 """
 
 from __future__ import annotations

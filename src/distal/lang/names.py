@@ -64,7 +64,13 @@ def _is_constant(value: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class LangForm:
-    """A call with rules of its own, such as ``select`` or ``gradient``; scene code only."""
+    """A call with rules of its own, such as ``select`` or ``gradient``; scene code only.
+
+    Attributes:
+        name: How an author writes it.
+        signature: Its arguments, as text.
+        doc: What it does, in a sentence.
+    """
 
     name: str
     signature: str

@@ -217,7 +217,7 @@ def slider(
 
     Args:
         label: What a person reads; its letters and digits make the name.
-        default: Value until somebody moves it.
+        default: The first value.
         low: Smallest value.
         high: Largest value.
         step: Distance between positions; None for a continuous slider.
@@ -254,6 +254,15 @@ def integer(
 ) -> Parameter:
     """A whole number between ``low`` and ``high``; scene code sees an int.
 
+    Args:
+        label: What a person reads; its letters and digits make the name.
+        default: The first value.
+        low: Smallest value.
+        high: Largest value.
+        step: Distance between positions.
+        group: The heading that it is listed under.
+        help: One sentence about its effect.
+
     Raises:
         TypeError: Something is not a whole number.
         ValueError: The range is empty, the default lies outside, or 32 bits do not hold it.
@@ -270,6 +279,12 @@ def integer(
 
 def toggle(label: str, default: bool = False, *, group: str = "", help: str = "") -> Parameter:
     """A switch; scene code sees a bool.
+
+    Args:
+        label: What a person reads; its letters and digits make the name.
+        default: The first value.
+        group: The heading that it is listed under.
+        help: One sentence about its effect.
 
     Raises:
         TypeError: The default is not a bool.
@@ -288,6 +303,13 @@ def choice(
     help: str = "",
 ) -> Parameter:
     """One of several named options; scene code sees its number, counted from 0, as an int.
+
+    Args:
+        label: What a person reads; its letters and digits make the name.
+        options: The names of the options.
+        default: The first option, by name or by index from 0.
+        group: The heading that it is listed under.
+        help: One sentence about its effect.
 
     Raises:
         TypeError: An option is not a text.
@@ -351,6 +373,12 @@ def point(
     help: str = "",
 ) -> Parameter:
     """A place; scene code sees a vec2 or a vec3, as the default has 2 or 3 coordinates.
+
+    Args:
+        label: What a person reads; its letters and digits make the name.
+        default: The first place, 2 or 3 coordinates in scene units.
+        group: The heading that it is listed under.
+        help: One sentence about its effect.
 
     Raises:
         TypeError: The default is not made of numbers.

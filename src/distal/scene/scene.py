@@ -78,6 +78,7 @@ class Scene(Composed, Presentable):
         steps: The most steps of a ray.
         near: Where rays begin.
         far: Where rays end.
+        name: What messages and emitted texts call it.
 
     Raises:
         CompileError: At the author's line, when something does not go together.

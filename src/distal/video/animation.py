@@ -65,7 +65,7 @@ def animate(made: Animation, path: Path, format: VideoFormat, progress: Progress
         made: The frames, and how they are shown.
         path: Where to write; not yet the place where others look.
         format: gif, apng or webp.
-        progress: Told how many frames are done.
+        progress: Called with the number of finished frames.
 
     Raises:
         SaveError: A frame cannot be read, or the file not be written.

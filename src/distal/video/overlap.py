@@ -36,7 +36,7 @@ class Taker(Generic[Item]):
             thread.start()
 
     def put(self, item: Item | None) -> None:
-        """Hand on an item; waits while too many are underway."""
+        """Pass on an item; waits while too many are underway."""
         while True:
             if self._failure is not None:
                 raise self._failure

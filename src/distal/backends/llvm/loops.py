@@ -226,7 +226,7 @@ class Loops:
         )
 
     def _end(self, loop: _VectorLoop, ahead: dict[str, Leaves | Stored], others: list[Leaf]) -> str:
-        """At a round's end: hand on what goes round. The block it ends in."""
+        """At the end of an iteration: pass on the loop-carried values. The block it ends in."""
         end = self.writer.block
         pairs = list(zip(loop.others, others, strict=True))
         for name, row in loop.variables.items():

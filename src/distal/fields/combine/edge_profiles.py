@@ -1,8 +1,8 @@
 """Shaped edges: material added where two shapes meet, and cut along their seam.
 
-Input: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. What
-flows out: the distance of the union (``edges`` makes the intersections and differences of it),
-or of the one shape that pipes, engraving, grooves and tongues give. Knows no points.
+Input: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. Output: the
+distance of the union (``edges`` makes the intersections and differences of it), or of the one shape
+that pipes, engraving, grooves and tongues give. Knows no points.
 
 The sizes are true where the surfaces meet at a right angle. Worked out in the plane whose axes are
 the two distances: a union's corner is its origin, the outside the quarter where both are positive,

@@ -1,6 +1,6 @@
 """Flat shapes swept along a path: through points, or along a Bézier curve.
 
-Input: the field of a flat shape, its rectangle, and the points of a path. What flows out:
+Input: the field of a flat shape, its rectangle, and the points of a path. Output:
 the distance of the solid, the place in the outline, and the rules of slope and box.
 
 Each straight piece of the path carries the outline; at a joint two pieces meet in the plane that

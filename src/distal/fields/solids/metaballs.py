@@ -1,7 +1,7 @@
 """Metaballs: balls that melt into each other where they are close.
 
-Input: a point, the balls (centre and radius) as data, and how softly they blend. What flows
-out: a lower bound of the distance that never rises faster than the way.
+Input: a point, the balls (centre and radius) as data, and how softly they blend. Output: a lower
+bound of the distance that never rises faster than the way.
 """
 
 from __future__ import annotations

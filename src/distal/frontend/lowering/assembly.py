@@ -1,7 +1,7 @@
 """Functions of the IR made by objects instead of by a ``def``: shapes and scenes.
 
-Input: library functions as they were recorded, arguments as expressions, by name. What
-flows out: calls, and functions added to the program. Knows nothing of what the objects are.
+Input: library functions as they were recorded, arguments as expressions, by name. Output: calls,
+and functions added to the program. Knows nothing of what the objects are.
 """
 
 from __future__ import annotations

@@ -34,5 +34,5 @@ def refracted(incident: Vectors, normal: Vectors, eta: float) -> Vectors:
 
 @func
 def facing_forward(n: Vectors, incident: Vectors, reference: Vectors) -> Vectors:
-    """``n``, turned against ``incident`` as told by ``reference``."""
+    """``n``, turned to point against ``incident``, by the sign of dot(reference, incident)."""
     return select(dot(incident, reference) < 0.0, n, -n)

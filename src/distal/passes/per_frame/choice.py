@@ -1,7 +1,7 @@
 """Which expressions of a function should be computed once a frame.
 
 Input: a function, costs, and the forms of expressions where they stand. Output: yes or no for each,
-and the calls that are left to pixels. Asked twice, once to learn what calls hand on and once to
+and the calls that are left to pixels. Asked twice, once to learn what calls pass on and once to
 rewrite, it answers the same.
 """
 

@@ -59,7 +59,7 @@ def run(module: Module, context: Context) -> Module:
 
 @dataclass(slots=True)
 class _Calls:
-    """What the calls of a function in pixel code hand on."""
+    """What the calls of a function in pixel code pass on."""
 
     # For each parameter its forms in the callers; None once a caller has none.
     args: list[list[Expr] | None]
@@ -109,7 +109,7 @@ class _Hoisting:
         )
 
     def _learn(self, function: Function) -> None:
-        """See what the calls that stay in a function's pixel code hand on."""
+        """See what the calls that stay in a function's pixel code pass on."""
         picking = Picking(function, self.costs)
         heat = self.calls[function.name].rate
 

@@ -48,10 +48,10 @@ class CheckFinding:
     severity: Severity
     code: str
     shape: int
-    told: Diagnostic
+    diagnostic: Diagnostic
 
     def __str__(self) -> str:
-        return self.told.told(self.severity.value)
+        return self.diagnostic.text(self.severity.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +100,9 @@ class ValidationReport:
                     "severity": f.severity.value,
                     "code": f.code,
                     "shape": f.shape,
-                    "message": f.told.message,
-                    "hint": f.told.hint,
-                    "place": place_json(f.told.span),
+                    "message": f.diagnostic.message,
+                    "hint": f.diagnostic.hint,
+                    "place": place_json(f.diagnostic.span),
                 }
                 for f in self.findings
             ],
@@ -292,8 +292,8 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
     ]
     if lost:
         words = {Guarantee.LOWER_BOUND: "a lower bound"}
-        told = ", ".join(words.get(c, c.value) for c in lost)
-        message = f"{described(row.node)} is no longer {told}"
+        lost_names = ", ".join(words.get(c, c.value) for c in lost)
+        message = f"{described(row.node)} is no longer {lost_names}"
         yield finding(Severity.NOTE, "claim-lost", message)
 
 
@@ -302,14 +302,14 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
 
 def described(node: Node) -> str:
     """A shape as its author made it: "twist(rate=3)"."""
-    told = []
+    arguments = []
     promises = ("slope", "low", "high") if is_own(node) else ()
     for name, value in node.numbers.items():
         plain = value.plain
         if name not in promises and plain is not None:
-            told.append(f"{name}={_shown(plain)}")
-    told += [f"{n}={v}" for n, v in node.constants.items() if isinstance(v, bool | int)]
-    own = f"{node.rule.name}({', '.join(told)})" if told else node.rule.name
+            arguments.append(f"{name}={_shown(plain)}")
+    arguments += [f"{n}={v}" for n, v in node.constants.items() if isinstance(v, bool | int)]
+    own = f"{node.rule.name}({', '.join(arguments)})" if arguments else node.rule.name
     return f"'{node.label}' ({own})" if node.label else own
 
 

@@ -201,13 +201,13 @@ class LocalView(_ImageView):
         return assembly.define(name, function.params, VEC4, (*declared, *body), function.span)
 
 
-def _free(wish: str, function: Function) -> str:
+def _free(stem: str, function: Function) -> str:
     """A name that no local of a function has."""
     taken = {p.name for p in function.params}
     taken |= {s.name for s in statements_in(function.body) if hasattr(s, "name")}
-    name, n = wish, 2
+    name, n = stem, 2
     while name in taken:
-        name, n = f"{wish}_{n}", n + 1
+        name, n = f"{stem}_{n}", n + 1
     return name
 
 

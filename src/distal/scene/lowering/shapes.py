@@ -110,8 +110,8 @@ class ShapeComposer:
         result = self._emit(body, node, Read("p", point), cell, values)
         body.statements.append(Return(result))
         params = [Param("p", point), *params, *([Param("cell", VEC3)] if uses_cell else [])]
-        wish = f"{plain_name(node.name)}_distance"
-        return self.assembly.define(wish, params, FLOAT, body.statements, node.place)
+        stem = f"{plain_name(node.name)}_distance"
+        return self.assembly.define(stem, params, FLOAT, body.statements, node.place)
 
     def distance(
         self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
@@ -195,15 +195,15 @@ def _identity(value: Any) -> Any:
 
 
 def fresh_names(node: Node) -> list[str]:
-    """Parameter names for all numbers of a subtree, told apart by a number."""
+    """Parameter names for all numbers of a subtree, distinguished by a number."""
     names: list[str] = []
     taken = {"p", "cell"}
 
     def visit(inner: Node) -> None:
-        for wish in inner.numbers:
-            name, n = wish, 2
+        for stem in inner.numbers:
+            name, n = stem, 2
             while name in taken:
-                name, n = f"{wish}_{n}", n + 1
+                name, n = f"{stem}_{n}", n + 1
             taken.add(name)
             names.append(name)
         for child in inner.children:

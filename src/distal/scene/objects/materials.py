@@ -109,7 +109,13 @@ class Material(CalledObject):
 
     @classmethod
     def of(cls, call: FunctionCall, *, reflects: bool, refracts: bool) -> Material:
-        """A material of a scene function that gives a ``Surface``."""
+        """A material of a scene function.
+
+        Args:
+            call: The function, which returns a ``Surface``, and its values.
+            reflects: Whether it reflects mirror images.
+            refracts: Whether light passes through it.
+        """
         made = cls.__new__(cls)
         made._keep(call=call, reflects=reflects, refracts=refracts)
         return made

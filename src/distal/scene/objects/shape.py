@@ -277,11 +277,23 @@ class Shape(Placed):
         return self._joined(blends.PIPE, other, k=radius)
 
     def groove(self, other: BaseShape, depth: Any, width: Any) -> Self:
-        """Cut a groove of rectangular profile where the surfaces cross."""
+        """Cut a groove of rectangular profile where the surfaces cross.
+
+        Args:
+            other: The shape whose surface the groove follows.
+            depth: Depth of the groove, in scene units.
+            width: Half of its width, in scene units.
+        """
         return self._joined(blends.GROOVE, other, depth=depth, width=width)
 
     def tongue(self, other: BaseShape, depth: Any, width: Any) -> Self:
-        """Add a ridge of rectangular profile where the surfaces cross."""
+        """Add a ridge of rectangular profile where the surfaces cross.
+
+        Args:
+            other: The shape whose surface the ridge follows.
+            depth: Height of the ridge, in scene units.
+            width: Half of its width, in scene units.
+        """
         return self._joined(blends.TONGUE, other, depth=depth, width=width)
 
     def _flat(self, operator: Operator, *args: Any, **kwargs: Any) -> Shape2D:
