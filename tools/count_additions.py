@@ -53,7 +53,12 @@ ADDITIONS: Final = (
     Addition("a light", "SpotLight", ("SpotLight", "spot_light")),
     Addition("a camera", "FisheyeCamera", ("FisheyeCamera", "fisheye")),
     Addition("a pattern", "stripes", ("stripes",)),
-    Addition("a background", "Sky", ("Sky",), users=("scene/objects/backgrounds.py",)),
+    Addition(
+        "a background",
+        "GradientBackground",
+        ("GradientBackground", "gradient_background"),
+        users=("stage.py", "scene/objects/backgrounds.py"),
+    ),
     Addition("a view", "slope", ("view_slope",)),
     Addition("a pass", "specialise", ("specialise",)),
     Addition("a text target", "glsl-330", ("glsl-330",)),
