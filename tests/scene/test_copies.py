@@ -31,5 +31,5 @@ def test_copies_are_the_same_object(made):
 
 @pytest.mark.parametrize("made", OBJECTS, ids=lambda made: type(made).__name__)
 def test_pickling_is_refused_with_what_to_do_instead(made):
-    with pytest.raises(TypeError, match="make it anew in the other process"):
+    with pytest.raises(TypeError, match="make it again in the other process"):
         pickle.dumps(made)
