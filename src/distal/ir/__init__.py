@@ -1,1 +1,1 @@
-"""The typed intermediate representation: types, nodes, the table of built-ins, the rules."""
+"""The typed intermediate representation (IR): types, nodes, intrinsics and the verifier."""

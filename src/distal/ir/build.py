@@ -1,4 +1,4 @@
-"""Making expressions whose type follows from their operands. Scalars are splatted as needed."""
+"""Build expressions whose type follows from their operands. Scalars are splatted as needed."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from distal.ir.types import (
 
 
 def number(value: float, type: Type = FLOAT) -> Expr:
-    """A constant of a scalar type, or of a vector or matrix type with equal components."""
+    """Return a constant of a scalar type, or of a vector or matrix type with equal components."""
     kind = kind_of(type)
     assert kind is not None
     converted = {Kind.FLOAT: float, Kind.INT: int, Kind.UINT: int, Kind.BOOL: bool}[kind](value)
@@ -54,112 +54,130 @@ def number(value: float, type: Type = FLOAT) -> Expr:
 
 
 def integer(value: int) -> Expr:
-    """An int constant."""
+    """Return an int constant."""
     return Const(value, INT)
 
 
 def unsigned(value: int) -> Expr:
-    """A uint constant."""
+    """Return a uint constant."""
     return Const(value, UINT)
 
 
 def boolean(value: bool) -> Expr:
-    """A bool constant."""
+    """Return a bool constant."""
     return Const(value, BOOL)
 
 
 def read(name: str, type: Type) -> Expr:
-    """A read of a local."""
+    """Return a read of a local or parameter."""
     return Read(name, type)
 
 
 def splat(value: Expr, type: Type) -> Expr:
-    """``value`` widened to ``type``; itself when it already has it."""
+    """Return ``value`` splatted to ``type``, or ``value`` itself when it already has that type."""
     return value if value.type is type else Splat(value, type)
 
 
 def widen(lhs: Expr, rhs: Expr) -> tuple[Expr, Expr]:
-    """Splat a scalar beside a vector or matrix."""
+    """Return both operands with one type: a scalar is splatted to the other operand's type."""
     if isinstance(lhs.type, Scalar):
         return splat(lhs, rhs.type), rhs
     return lhs, splat(rhs, lhs.type)
 
 
 def binary(op: BinaryOp, lhs: Expr, rhs: Expr) -> Expr:
-    """``lhs op rhs``, a scalar side splatted."""
+    """Return ``lhs op rhs``; if one side is a scalar, it is splatted to the other side's type.
+
+    Args:
+        op: The operator.
+        lhs: The left operand.
+        rhs: The right operand.
+    """
     lhs, rhs = widen(lhs, rhs)
     return Binary(op, lhs, rhs, lhs.type)
 
 
 def add(lhs: Expr, rhs: Expr) -> Expr:
-    """Sum."""
+    """Return ``lhs + rhs``."""
     return binary(BinaryOp.ADD, lhs, rhs)
 
 
 def subtract(lhs: Expr, rhs: Expr) -> Expr:
-    """Difference."""
+    """Return ``lhs - rhs``."""
     return binary(BinaryOp.SUB, lhs, rhs)
 
 
 def multiply(lhs: Expr, rhs: Expr) -> Expr:
-    """Product, component by component."""
+    """Return ``lhs * rhs``, component by component."""
     return binary(BinaryOp.MUL, lhs, rhs)
 
 
 def divide(lhs: Expr, rhs: Expr) -> Expr:
-    """Quotient of floats."""
+    """Return ``lhs / rhs`` of floats."""
     return binary(BinaryOp.DIV, lhs, rhs)
 
 
 def negate(operand: Expr) -> Expr:
-    """``-operand``."""
+    """Return ``-operand``."""
     return Unary(UnaryOp.NEGATE, operand, operand.type)
 
 
 def negation(operand: Expr) -> Expr:
-    """``not operand``."""
+    """Return ``not operand``."""
     return Unary(UnaryOp.NOT, operand, operand.type)
 
 
 def matmul(lhs: Expr, rhs: Expr) -> Expr:
-    """Matrix product."""
+    """Return the matrix product ``lhs @ rhs``."""
     return MatMul(lhs, rhs, rhs.type if isinstance(lhs.type, Matrix) else lhs.type)
 
 
 def compare(op: CompareOp, lhs: Expr, rhs: Expr) -> Expr:
-    """``lhs op rhs``: bool, or a bvec."""
+    """Return ``lhs op rhs``: a bool, or a bvec with one bool for each component.
+
+    Args:
+        op: The comparison.
+        lhs: The left operand.
+        rhs: The right operand.
+    """
     lhs, rhs = widen(lhs, rhs)
     return Compare(op, lhs, rhs, with_kind(lhs.type, Kind.BOOL))
 
 
 def both(lhs: Expr, rhs: Expr) -> Expr:
-    """``lhs and rhs`` of bools."""
+    """Return ``lhs and rhs`` of bools."""
     return Logical(LogicalOp.AND, lhs, rhs, BOOL)
 
 
 def either(lhs: Expr, rhs: Expr) -> Expr:
-    """``lhs or rhs`` of bools."""
+    """Return ``lhs or rhs`` of bools."""
     return Logical(LogicalOp.OR, lhs, rhs, BOOL)
 
 
 def select(condition: Expr, yes: Expr, no: Expr) -> Expr:
-    """``yes if condition else no``."""
+    """Return ``yes if condition else no``.
+
+    Args:
+        condition: A bool, or a bvec that selects component by component.
+        yes: The value where the condition is true.
+        no: The value where it is false, of the same type.
+    """
     return Select(condition, yes, no, yes.type)
 
 
 def compose(type: Type, *parts: Expr) -> Expr:
-    """A vector from components, a matrix from columns."""
+    """Return a vector built from its components, or a matrix built from its columns."""
     return Compose(parts, type)
 
 
 def swizzle(base: Expr, lanes: str) -> Expr:
-    """``base.xy``."""
+    """Return the given components of a vector, such as ``base.xy``."""
     assert isinstance(base.type, Vector)
     return Swizzle(base, lanes, vector_of(base.type.kind, len(lanes)))
 
 
 def components(value: Expr) -> tuple[Expr, ...]:
-    """The scalars of a scalar or vector."""
+    """Return the scalar components of a scalar or vector."""
     if isinstance(value.type, Scalar):
         return (value,)
     assert isinstance(value.type, Vector)
@@ -167,7 +185,7 @@ def components(value: Expr) -> tuple[Expr, ...]:
 
 
 def literal_components(e: Expr) -> tuple[bool | int | float, ...] | None:
-    """The numbers of a literal scalar, vector or matrix; None for what is no literal."""
+    """Return the numbers of a literal scalar, vector or matrix; None if ``e`` is not a literal."""
     match e:
         case Const(value):
             return (value,)
@@ -184,7 +202,11 @@ def literal_components(e: Expr) -> tuple[bool | int | float, ...] | None:
 
 
 def element_type(type: Type) -> Type:
-    """The type that an index into ``type`` gives."""
+    """Return the type of ``base[index]`` for a base of type ``type``.
+
+    Raises:
+        AssertionError: The type cannot be indexed.
+    """
     match type:
         case Array(element) | Buffer(element):
             return element
@@ -197,12 +219,12 @@ def element_type(type: Type) -> Type:
 
 
 def index(base: Expr, position: Expr) -> Expr:
-    """``base[position]``."""
+    """Return ``base[position]``."""
     return Index(base, position, element_type(base.type))
 
 
 def field(base: Expr, name: str) -> Expr:
-    """``base.name``."""
+    """Return ``base.name``."""
     assert isinstance(base.type, Struct)
     found = base.type.field(name)
     assert found is not None, f"{base.type} has no {name}"
@@ -210,13 +232,17 @@ def field(base: Expr, name: str) -> Expr:
 
 
 def cast(value: Expr, kind: Kind) -> Expr:
-    """The value with components of another kind; itself when it has them."""
+    """Convert the components to ``kind``; return ``value`` itself when they already are."""
     type = with_kind(value.type, kind)
     return value if value.type is type else Cast(value, type)
 
 
 def builtin(name: str, *args: Expr) -> Expr:
-    """A call of an intrinsic; the arguments have exactly the types of one signature."""
+    """Return a call of an intrinsic whose argument types match one of its signatures exactly.
+
+    Raises:
+        AssertionError: No signature has these argument types.
+    """
     types = [a.type for a in args]
     for signature in INTRINSICS[name].signatures:
         result = signature.match(types)

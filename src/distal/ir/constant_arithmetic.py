@@ -1,12 +1,12 @@
-"""Arithmetic on constants exactly as the targets do it.
+"""Arithmetic on constants with exactly the results that the targets compute.
 
-Input: Python numbers, the components of constants. Output: the result in the module's precision, or
-``NotFoldableError`` where it would be a NaN, an infinity or a denormal (GPUs flush those): such an
-operation is left to the target.
+Input: Python numbers, the components of constants. Output: the result in the module's precision.
+An operation whose result would be a NaN, an infinity or a denormal (GPUs flush denormals to 0)
+raises ``NotFoldableError`` and is left to the target.
 
 The sum, difference, product, quotient and square root of two 32-bit floats, computed in 64 bits and
-rounded to 32, are correctly rounded (a 53-bit significand is more than twice 24 bits and two more),
-so nothing here needs an array library.
+rounded to 32, are correctly rounded (a 53-bit significand has at least 2 * 24 + 2 bits), so this
+module does not need an array library.
 """
 
 from __future__ import annotations
@@ -29,24 +29,31 @@ _SMALLEST_NORMAL: Final = {32: 2.0**-126, 64: 2.0**-1022}
 
 
 class NotFoldableError(ArithmeticError):
-    """The result is not a number that a constant may hold."""
+    """The result of an operation cannot be stored in a constant (NaN, infinity or denormal)."""
 
 
 def wrap(value: int, kind: Kind) -> int:
-    """An integer taken modulo 2 ** 32 into the range of its kind."""
+    """Reduce an integer modulo 2 ** 32 into the range of its kind."""
     value &= 0xFFFFFFFF
     return value - (1 << 32) if kind is Kind.INT and value & 0x80000000 else value
 
 
 class ConstantArithmetic:
-    """Operations on components in 32 or 64 bit floats and in 32-bit integers."""
+    """Operations on components: floats of 32 or 64 bits and 32-bit integers.
+
+    Every method whose result would be a NaN, an infinity or a denormal raises ``NotFoldableError``.
+    """
 
     def __init__(self, precision: int) -> None:
         self.precision = precision
         self._smallest = _SMALLEST_NORMAL[precision]
 
     def round(self, value: float) -> float:
-        """A float of the module's precision."""
+        """Round a float to the module's precision.
+
+        Raises:
+            NotFoldableError: The result is a NaN, an infinity or a denormal.
+        """
         if not math.isfinite(value):
             raise NotFoldableError
         if self.precision == 32:
@@ -59,7 +66,13 @@ class ConstantArithmetic:
         return value
 
     def unary(self, op: UnaryOp, a: Number, kind: Kind) -> Number:
-        """One component of a Unary."""
+        """Compute one component of a Unary.
+
+        Args:
+            op: The operator.
+            a: The operand's component.
+            kind: The kind of the operand and the result.
+        """
         match op:
             case UnaryOp.NOT:
                 return not a
@@ -69,7 +82,14 @@ class ConstantArithmetic:
                 return wrap(~int(a), kind)
 
     def binary(self, op: BinaryOp, a: Number, b: Number, kind: Kind) -> Number:
-        """One component of a Binary."""
+        """Compute one component of a Binary.
+
+        Args:
+            op: The operator.
+            a: The left operand's component.
+            b: The right operand's component.
+            kind: The kind of both operands and the result.
+        """
         if kind is Kind.FLOAT:
             return self.float_binary(op, float(a), float(b))
         if kind is Kind.BOOL:
@@ -77,7 +97,16 @@ class ConstantArithmetic:
         return wrap(_integer_binary(op, int(a), int(b)), kind)
 
     def float_binary(self, op: BinaryOp, a: float, b: float) -> float:
-        """One component of a Binary of floats."""
+        """Compute one component of a Binary of floats.
+
+        Args:
+            op: The operator.
+            a: The left operand's component.
+            b: The right operand's component.
+
+        Raises:
+            NotFoldableError: The divisor is 0, or the result is no normal number.
+        """
         if op in _RING:
             return self.round(_RING[op](a, b))
         if b == 0.0:
@@ -93,23 +122,29 @@ class ConstantArithmetic:
                 return self.round(a - self.round(b * float(math.floor(quotient))))
 
     def add(self, a: float, b: float) -> float:
-        """A + b."""
+        """Return ``a + b``, rounded."""
         return self.round(a + b)
 
     def sub(self, a: float, b: float) -> float:
-        """A - b."""
+        """Return ``a - b``, rounded."""
         return self.round(a - b)
 
     def mul(self, a: float, b: float) -> float:
-        """A * b."""
+        """Return ``a * b``, rounded."""
         return self.round(a * b)
 
     def div(self, a: float, b: float) -> float:
-        """A / b."""
+        """Return ``a / b``, rounded."""
         return self.float_binary(BinaryOp.DIV, a, b)
 
     def cast(self, a: Number, source: Kind, target: Kind) -> Number:
-        """One component of a Cast."""
+        """Compute one component of a Cast.
+
+        Args:
+            a: The component before the conversion.
+            source: Its kind.
+            target: The kind to convert to.
+        """
         match target:
             case Kind.BOOL:
                 return a != 0
@@ -124,7 +159,16 @@ class ConstantArithmetic:
                 return min(max(int(a), low), high)
 
     def bits(self, a: Number, source: Kind, target: Kind) -> Number:
-        """The 32 bits of a component read as another kind."""
+        """Read the 32 bits of a component as another kind.
+
+        Args:
+            a: The component.
+            source: Its kind.
+            target: The kind of the result.
+
+        Raises:
+            NotFoldableError: The module's floats have 64 bits, or the result is no normal number.
+        """
         if self.precision != 32:
             raise NotFoldableError
         packing = {Kind.FLOAT: _FLOAT32, Kind.INT: _INT32, Kind.UINT: _UINT32}
@@ -146,7 +190,7 @@ _BITWISE: Final[dict[BinaryOp, Callable[[int, int], int]]] = {
 
 
 def _integer_binary(op: BinaryOp, a: int, b: int) -> int:
-    """The value before it wraps; x // 0 is x and x % 0 is 0."""
+    """Compute the value before it wraps; x // 0 is x and x % 0 is 0."""
     match op:
         case BinaryOp.ADD:
             return a + b

@@ -1,6 +1,7 @@
-"""How control leaves statements and blocks.
+"""Analysis of how control leaves statements and blocks.
 
-Input: statements. Output: whether they return, break, or let control run on to what follows.
+Input: statements. Output: whether they return, break or continue, or whether control reaches the
+statement after them.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from distal.ir.walk import blocks, statements_in
 
 
 def never_goes_on(stmt: Stmt) -> bool:
-    """True when the statement after this one is never reached."""
+    """Return whether the statement after this one is never reached."""
     match stmt:
         case Return() | Break() | Continue():
             return True
@@ -25,12 +26,12 @@ def never_goes_on(stmt: Stmt) -> bool:
 
 
 def never_ends(body: Collection[Stmt]) -> bool:
-    """True when no path reaches the end of the block."""
+    """Return whether no path reaches the end of the block."""
     return any(map(never_goes_on, body))
 
 
 def _breaks(body: Collection[Stmt]) -> bool:
-    """True when a Break in this block leaves the loop whose body it is."""
+    """Return whether a Break in this block leaves the loop whose body this block is."""
     return any(
         isinstance(stmt, Break)
         or (isinstance(stmt, If) and (_breaks(stmt.then) or _breaks(stmt.otherwise)))
@@ -39,16 +40,16 @@ def _breaks(body: Collection[Stmt]) -> bool:
 
 
 def returns(body: tuple[Stmt, ...]) -> bool:
-    """True when there is a Return in the block or in blocks inside it."""
+    """Return whether the block, or a block inside it, contains a Return."""
     return any(isinstance(stmt, Return) for stmt in statements_in(body))
 
 
 def may_exit(stmt: Stmt) -> bool:
-    """True when control may leave past the end of the statement."""
+    """Return whether control may leave the statement other than through its end."""
     match stmt:
         case Return() | Break() | Continue():
             return True
         case For() | While():
-            return returns(stmt.body)  # its own breaks stay inside
+            return returns(stmt.body)  # breaks and continues of the loop itself stay inside it
         case _:
             return any(may_exit(inner) for block in blocks(stmt) for inner in block)

@@ -1,4 +1,4 @@
-"""How a pass asks for a function of the prelude without knowing the front end."""
+"""The interface through which passes get prelude functions without depending on the front end."""
 
 from __future__ import annotations
 
@@ -9,15 +9,26 @@ from distal.ir.types import Type
 
 
 class Library(Protocol):
-    """Lowered prelude functions, by name and argument types."""
+    """Lowered prelude functions, looked up by name and argument types."""
 
     def find(self, name: str, args: tuple[Type, ...]) -> Function | None:
-        """The overload of ``elementary.sine`` and the like for exactly these types, or None."""
+        """Return the overload of a function such as ``elementary.sine`` for exactly these types.
+
+        None if there is no such overload.
+        """
         ...
 
     def link(self, module: Module, name: str, args: tuple[Type, ...]) -> tuple[Module, str]:
-        """The module with that overload and what it calls added first, and its name there.
+        """Add an overload and its callees at the front of the module.
 
-        Linking the same overload twice adds nothing; names never clash with the author's.
+        Linking the same overload twice adds nothing. Names never clash with the author's.
+
+        Args:
+            module: The module to add to.
+            name: The prelude function's name, such as ``elementary.sine``.
+            args: The argument types of the overload.
+
+        Returns:
+            The new module, and the function's name in it.
         """
         ...

@@ -1,9 +1,9 @@
-"""The numbers between which built-ins stay, and where their arguments are held for it.
+"""The limits within which built-ins stay finite, and the ranges their arguments are clamped to.
 
 A built-in of ordinary numbers gives a finite number, on every target (decision 17). Where a
-mathematical function has no value, or none that a float holds, its argument is held at the last
-place where it has one: the logarithm of 0 is the logarithm of the smallest normal number. The
-limits differ between floats of 32 and of 64 bits, so that each keeps its own range.
+mathematical function is undefined, or its value is too large for a float, its argument is clamped
+to the nearest argument with a finite value: the logarithm of 0 is the logarithm of the smallest
+normal number. Floats of 32 and of 64 bits have different limits, so that each uses its own range.
 """
 
 from __future__ import annotations
@@ -12,35 +12,35 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-ORDINARY: Final = 2.0**60  # what arguments may be: a sum of squares is finite, four are
-SMALLEST: Final = 2.0**-126  # the smallest normal float of 32 bits; GPUs take what is below for 0
-LARGEST_POWER: Final = 2.0**126  # what exponentials and powers are held at
+ORDINARY: Final = 2.0**60  # largest ordinary argument: a sum of four such squares is finite
+SMALLEST: Final = 2.0**-126  # smallest normal 32-bit float; GPUs flush smaller numbers to 0
+LARGEST_POWER: Final = 2.0**126  # upper limit of exponentials and powers
 SMALLEST_64: Final = 2.0**-1022
 LARGEST_POWER_64: Final = 2.0**1022
-# Beyond it neighbouring floats are more than half a radian apart, and no angle is meant.
+# Above this, neighbouring floats are more than half a radian apart, so angles have no meaning.
 LARGEST_ANGLE: Final = 2.0**22
 LARGEST_ANGLE_64: Final = 2.0**51
-# Seconds from 0, twelve days: there floats of 32 bits are an eighth of a second apart.
+# Seconds from 0, about twelve days: there, 32-bit floats are an eighth of a second apart.
 LARGEST_TIME: Final = 2.0**20
-# The tangent at a pole, at most: one over the smallest angle that is distinguished from 0.
+# Limits the tangent at a pole: 1 / (the smallest angle that is distinguished from 0).
 SMALLEST_COSINE: Final = 2.0**-30
-# Below it a divisor of a remainder counts as 0: the quotient of ordinary numbers is then finite.
+# A smaller divisor of a remainder counts as 0, so that a quotient of ordinary numbers is finite.
 SMALLEST_DIVISOR: Final = 2.0**-60
-# Below it a matrix is singular.
+# A matrix with a smaller determinant is singular.
 SMALLEST_DETERMINANT: Final = 2.0**-100
 
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """Between which numbers a built-in's only argument is held before it is applied.
+    """The range to which a built-in's only argument is clamped before the function is applied.
 
     Attributes:
-        low: The lowest, of 32 bits.
-        high: The highest.
-        low_64: The lowest of 64 bits, where that differs.
-        high_64: The highest.
-        by_targets: Whether a target's own function is given a held argument too; else only the
-            functions that distal computes itself (CPU, reference, careful ones) are.
+        low: The lower limit for 32-bit floats.
+        high: The upper limit for 32-bit floats.
+        low_64: The lower limit for 64-bit floats; None: the same as ``low``.
+        high_64: The upper limit for 64-bit floats; None: the same as ``high``.
+        by_targets: Whether the argument is also clamped for a target's own function; if False, only
+            for the functions that distal computes itself (CPU, reference, careful ones).
     """
 
     low: float = -math.inf
@@ -50,7 +50,7 @@ class Held:
     by_targets: bool = True
 
     def limits(self, precision: int) -> tuple[float, float]:
-        """The lowest and the highest for floats of so many bits."""
+        """Return the lower and the upper limit for floats with ``precision`` bits."""
         if precision == 32:
             return self.low, self.high
         low = self.low if self.low_64 is None else self.low_64
@@ -62,7 +62,7 @@ POSITIVE: Final = Held(low=SMALLEST, low_64=SMALLEST_64)
 EXPONENT: Final = Held(high=87.0, high_64=708.0)
 EXPONENT_OF_2: Final = Held(high=126.0, high_64=1022.0)
 HYPERBOLIC: Final = Held(-87.0, 87.0, -708.0, 708.0)
-LEVEL: Final = Held(-20.0, 20.0)  # where the hyperbolic tangent has long been -1 and 1
+LEVEL: Final = Held(-20.0, 20.0)  # beyond, the hyperbolic tangent is -1 or 1 in floats
 UNIT: Final = Held(-1.0, 1.0)
 ANGLE: Final = Held(
     -LARGEST_ANGLE, LARGEST_ANGLE, -LARGEST_ANGLE_64, LARGEST_ANGLE_64, by_targets=False
@@ -70,10 +70,10 @@ ANGLE: Final = Held(
 
 
 def smallest(precision: int) -> float:
-    """The smallest normal float of so many bits."""
+    """Return the smallest normal float with ``precision`` bits."""
     return SMALLEST if precision == 32 else SMALLEST_64
 
 
 def largest_power(precision: int) -> float:
-    """What powers are held at."""
+    """Return the upper limit of powers for floats with ``precision`` bits."""
     return LARGEST_POWER if precision == 32 else LARGEST_POWER_64

@@ -1,16 +1,18 @@
-"""The nodes of the IR.
+"""The nodes of the IR: expressions, statements, functions and the module.
 
-An expression has a type, no effect and no order; it may be computed once, twice or never. A
-statement has an order and no value. Nodes never change: a pass returns new nodes. Expressions are
-interned (``distal.ir.interning``): equal expressions are the same object, and dictionaries keyed by
-them are cheap.
+An expression has a type, no side effects and no evaluation order; it may be computed once, several
+times or never. A statement has an order and no value. Nodes are immutable: a pass returns new
+nodes. Expressions are interned (``distal.ir.interning``): equal expressions are the same object,
+and dictionaries keyed by them are cheap.
 
-Every statement carries the span it came from. An expression's span is the first place an equal
-expression was seen, perhaps elsewhere; use it only to narrow the statement's span (``span_in``).
+Every statement has the span of its source code. An expression's span is the first place where an
+equal expression was seen, possibly elsewhere in the source; use it only to narrow the statement's
+span (``span_in``).
 
 Names of locals are unique within a function: a name is bound once, by a parameter, Let, Var or For.
-A read of a local is in the block of its binding or deeper. Whatever the author's language leaves
-implicit is explicit here (a float added to a vec3 is a Splat): backends never guess.
+A read of a local is in the block of its binding or in a block inside it. Conversions that are
+implicit in the author's language are explicit here (a float added to a vec3 is a Splat), so
+backends never infer them.
 """
 
 from __future__ import annotations
@@ -27,9 +29,12 @@ FRAME_TIME: Final = "frame.time"
 
 
 class UnaryOp(Enum):
-    """NEGATE: float and int, vectors, matrices (uint wraps). NOT: bool, bvec. INVERT: int, uint."""
+    """The unary operators.
 
-    __hash__ = object.__hash__  # Enum's own is a Python call, paid for every node
+    NEGATE: float and int, vectors, matrices (uint wraps). NOT: bool, bvec. INVERT: int, uint.
+    """
+
+    __hash__ = object.__hash__  # Enum.__hash__ is a Python function: too slow for every node
 
     NEGATE = "-"
     NOT = "not"
@@ -37,8 +42,9 @@ class UnaryOp(Enum):
 
 
 class BinaryOp(Enum):
-    """Both operands and the result have one type, component by component. Value: its spelling.
+    """The binary operators; the value of a member is its spelling.
 
+    Both operands and the result have the same type; operators work component by component.
     ADD SUB MUL: numbers (ints wrap at 32 bits); ADD SUB also matrices; MUL and DIV of a matrix
     only by a Splat of the matrix type. DIV: floats only. FLOOR_DIV and MOD: floored, numbers;
     for ints x // 0 = x and x % 0 = 0. AND OR XOR: ints, and bools without short circuit.
@@ -62,7 +68,10 @@ class BinaryOp(Enum):
 
 
 class CompareOp(Enum):
-    """Scalars give bool, vectors give bvec component by component. Bools take EQ and NE only."""
+    """The comparisons: bool for scalars, bvec (component by component) for vectors.
+
+    Bools can be compared with EQ and NE only.
+    """
 
     __hash__ = object.__hash__
 
@@ -75,7 +84,10 @@ class CompareOp(Enum):
 
 
 class LogicalOp(Enum):
-    """Short-circuit, on scalars of bool; since nothing has an effect, only cost differs."""
+    """The short-circuit operators on scalar bools.
+
+    Since expressions have no side effects, short circuit changes the cost only, not the result.
+    """
 
     __hash__ = object.__hash__
 
@@ -96,7 +108,7 @@ class Const(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Read(metaclass=Interned):
-    """The value of a parameter or local."""
+    """The value of a parameter or local variable."""
 
     name: str
     type: Type
@@ -105,9 +117,9 @@ class Read(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Uniform(metaclass=Interned):
-    """The value of a module's uniform: one for the whole picture (``Module.uniforms``).
+    """The value of a uniform of the module (``Module.uniforms``), constant over the whole picture.
 
-    Before the entry pass one called ``FRAME_TIME`` is the frame's time, declared nowhere.
+    Before the entry pass, a Uniform named ``FRAME_TIME`` is the frame's time; it is not declared.
     """
 
     name: str
@@ -117,7 +129,7 @@ class Uniform(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class PerFrame(metaclass=Interned):
-    """A value the per-frame part computed (``Module.frame``); made by the frequency pass."""
+    """A value computed by the per-frame part (``Module.frame``); created by the frequency pass."""
 
     name: str
     type: Type
@@ -126,7 +138,7 @@ class PerFrame(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Resource(metaclass=Interned):
-    """A texture or buffer of ``Module.resources``, by name."""
+    """A texture or buffer of ``Module.resources``, referenced by name."""
 
     name: str
     type: Type
@@ -135,9 +147,9 @@ class Resource(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class FunctionRef(metaclass=Interned):
-    """A module function as a value, its last parameters bound to ``captures``.
+    """A module function as a value, with its last parameters bound to ``captures``.
 
-    ``type`` is the FunctionType of the parameters that remain. Gone after specialise.
+    ``type`` is the FunctionType of the remaining parameters. Removed by the specialise pass.
     """
 
     name: str
@@ -148,7 +160,7 @@ class FunctionRef(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Unary(metaclass=Interned):
-    """``op operand``, of the operand's type."""
+    """``op operand``; the result has the operand's type."""
 
     op: UnaryOp
     operand: Expr
@@ -158,7 +170,7 @@ class Unary(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Binary(metaclass=Interned):
-    """``lhs op rhs``; both sides already have this node's type."""
+    """``lhs op rhs``; both operands have the type of this node."""
 
     op: BinaryOp
     lhs: Expr
@@ -179,7 +191,7 @@ class MatMul(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Compare(metaclass=Interned):
-    """``lhs op rhs``; both sides have one type, the result is bool or a bvec."""
+    """``lhs op rhs``; both operands have the same type; the result is a bool or a bvec."""
 
     op: CompareOp
     lhs: Expr
@@ -190,7 +202,7 @@ class Compare(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Logical(metaclass=Interned):
-    """``lhs and rhs``, ``lhs or rhs``."""
+    """``lhs and rhs`` or ``lhs or rhs`` with short circuit."""
 
     op: LogicalOp
     lhs: Expr
@@ -201,9 +213,10 @@ class Logical(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Select(metaclass=Interned):
-    """``yes if condition else no``. A bvec condition picks component by component.
+    """``yes if condition else no``.
 
-    With a bool condition any value type is picked whole.
+    A bvec condition selects component by component. A bool condition selects the whole value, of
+    any value type.
     """
 
     condition: Expr
@@ -224,7 +237,7 @@ class Splat(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Compose(metaclass=Interned):
-    """A vector from scalars and vectors of its kind, or a matrix from its columns."""
+    """A vector built from scalars and vectors of its kind, or a matrix built from its columns."""
 
     parts: tuple[Expr, ...]
     type: Type
@@ -233,7 +246,7 @@ class Compose(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Swizzle(metaclass=Interned):
-    """Components of a vector picked by letters of ``xyzw``: ``base.xz``; one letter: a scalar."""
+    """Components of a vector selected by letters of ``xyzw``: ``base.xz``; one letter: a scalar."""
 
     base: Expr
     lanes: str
@@ -245,8 +258,9 @@ class Swizzle(metaclass=Interned):
 class Index(metaclass=Interned):
     """``base[index]`` of an array, vector, matrix (a column) or buffer; the index is an int.
 
-    Every index is clamped into range in meaning. The bounds pass makes that explicit where it
-    cannot prove it; after it an index is in range (buffers stay clamped by the backend).
+    Every index is defined to be clamped into range. The bounds pass makes the clamp explicit unless
+    it proves that the index is in range; after this pass an index is always in range (the backend
+    still clamps indices of buffers).
     """
 
     base: Expr
@@ -257,7 +271,7 @@ class Index(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Field(metaclass=Interned):
-    """``base.name`` of a struct."""
+    """The field ``base.name`` of a struct."""
 
     base: Expr
     name: str
@@ -267,7 +281,7 @@ class Field(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Construct(metaclass=Interned):
-    """A struct from its fields in order, or an array from its elements."""
+    """A struct built from its fields in order, or an array built from its elements."""
 
     parts: tuple[Expr, ...]
     type: Type
@@ -276,10 +290,10 @@ class Construct(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Cast(metaclass=Interned):
-    """A scalar or vector with its components converted.
+    """A scalar or vector with its components converted to another kind.
 
-    float to int or uint truncates, saturates, NaN gives 0; int and uint keep their bits; bool is
-    0 or 1; anything to bool is ``!= 0``.
+    float to int or uint truncates and saturates, and NaN gives 0; conversions between int and uint
+    keep the bits; bool converts to 0 or 1; conversion to bool is ``!= 0``.
     """
 
     value: Expr
@@ -299,7 +313,7 @@ class Builtin(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Call(metaclass=Interned):
-    """A call of a module function. Functions have no effects."""
+    """A call of a module function. Functions have no side effects."""
 
     function: str
     args: tuple[Expr, ...]
@@ -309,7 +323,7 @@ class Call(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Apply(metaclass=Interned):
-    """A call of a function value (a Read of FunctionType, a FunctionRef). Gone after specialise."""
+    """A call of a function value (a Read of FunctionType, a FunctionRef). Removed by specialise."""
 
     function: Expr
     args: tuple[Expr, ...]
@@ -321,8 +335,8 @@ class Apply(metaclass=Interned):
 class Gradient(metaclass=Interned):
     """The exact derivative of a float-valued function value at ``point`` (float, vec2-4).
 
-    ``type`` is the point's type; with ``with_value`` it is the tuple (float, gradient), from one
-    evaluation. Gone after the gradient pass.
+    ``type`` is the point's type; with ``with_value`` it is the tuple (float, gradient), both from
+    one evaluation. Removed by the gradient pass.
     """
 
     function: Expr
@@ -334,10 +348,11 @@ class Gradient(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Sample(metaclass=Interned):
-    """A filtered texture value, vec4. No mip maps: every target reads level 0.
+    """A filtered texture value, a vec4. There are no mip maps: every target reads level 0.
 
-    2D: (0, 0) is the lower left corner of the picture, (1, 1) the upper right. Linear filter,
-    wrapping as the texture was declared. Cube: a direction. 3D: (0,0,0) to (1,1,1).
+    2D: (0, 0) is the lower left corner of the picture, (1, 1) the upper right. The filter is
+    linear; coordinates outside wrap as the texture declares. Cube: a direction. 3D: (0, 0, 0) to
+    (1, 1, 1).
     """
 
     texture: Expr
@@ -348,7 +363,7 @@ class Sample(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Texel(metaclass=Interned):
-    """One unfiltered texel, vec4, at an ivec2 (2D) or ivec3 (3D; cube: x, y, face); clamped."""
+    """One unfiltered texel, a vec4, at an ivec2 (2D) or ivec3 (3D; cube: x, y, face); clamped."""
 
     texture: Expr
     index: Expr
@@ -358,7 +373,7 @@ class Texel(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Size(metaclass=Interned):
-    """ivec2 (2D, cube) or ivec3 (3D) of a texture in texels, int count of a buffer."""
+    """The size of a texture in texels, ivec2 (2D, cube) or ivec3 (3D), or a buffer's int length."""
 
     resource: Expr
     type: Type
@@ -397,7 +412,7 @@ Expr: TypeAlias = (
 
 @dataclass(frozen=True, slots=True)
 class Let:
-    """Bind a local for good."""
+    """Bind an immutable local."""
 
     name: str
     value: Expr
@@ -415,7 +430,7 @@ class Var:
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """Change a Var or a part of it.
+    """Assign to a Var or to a part of it.
 
     ``target`` is a Read of the Var, or a Swizzle (no letter twice), Index or Field of a target.
     """
@@ -427,7 +442,7 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """Run one of two blocks."""
+    """Run one of two blocks, selected by a bool condition."""
 
     condition: Expr
     then: tuple[Stmt, ...]
@@ -437,10 +452,11 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class For:
-    """``for name in range(start, stop, step)``: a real loop with a step.
+    """``for name in range(start, stop, step)``: a loop at run time with a constant step.
 
-    ``start`` and ``stop`` are computed once, before. ``name`` is a read-only int, alive in the
-    body only; ``step`` is not 0. The count never overflows: the loop ends at the int range.
+    ``start`` and ``stop`` are computed once, before the loop. ``name`` is a read-only int, visible
+    only in the body; ``step`` is not 0. The counter never overflows: the loop ends at the limits of
+    int.
     """
 
     name: str
@@ -469,14 +485,14 @@ class Break:
 
 @dataclass(frozen=True, slots=True)
 class Continue:
-    """Go on with the innermost loop's next round."""
+    """Continue with the next iteration of the innermost loop."""
 
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """Leave the function with a value."""
+    """Return a value from the function."""
 
     value: Expr
     span: Span | None = field(default=None, repr=False, kw_only=True)
@@ -487,7 +503,7 @@ Stmt: TypeAlias = Let | Var | Assign | If | For | While | Break | Continue | Ret
 
 @dataclass(frozen=True, slots=True)
 class Param:
-    """A parameter of a function: read-only in the body."""
+    """A parameter of a function, read-only in the body."""
 
     name: str
     type: Type
@@ -497,10 +513,18 @@ class Param:
 class Function:
     """A function. Every path ends in Return (or in a ``while True`` that never ends).
 
-    ``name`` is unique in the module; ``source_name`` is what the author called it. ``native`` is
-    the built-in that the function replaces on a rough target, of the same arguments: a text
-    may let its host choose the driver's own. ``apart`` is a piece of a longer function, which a
-    backend must not put together again.
+    Attributes:
+        name: Unique in the module.
+        params: The parameters, in order.
+        result: The type of the returned value.
+        body: The statements.
+        source_name: The author's name of the function.
+        native: The built-in, with the same arguments, that this function replaces on a target with
+            inaccurate built-ins (``Target.rough``). A shader text may let its host select the
+            driver's own function instead. None: it replaces no built-in.
+        apart: Whether the function is a piece of a longer function that was cut; a backend must not
+            inline it again.
+        span: The place in the author's code.
     """
 
     name: str
@@ -514,20 +538,25 @@ class Function:
 
 
 class Origin(Enum):
-    """Where a uniform's value comes from."""
+    """The source of a uniform's value."""
 
     FRAME = "frame"  # resolution, time, mouse, index, seed
-    PARAMETER = "parameter"  # a slider or the like
-    NUMBER = "number"  # a number of a scene's shapes: its default, which is no part of the code
+    PARAMETER = "parameter"  # a parameter of the scene, such as a slider
+    NUMBER = "number"  # a number in a scene's shapes: its default value is not part of the code
 
 
 @dataclass(frozen=True, slots=True)
 class UniformDeclaration:
     """One uniform of a module.
 
-    ``default`` is a bool, int, float or a tuple of floats. ``interface`` holds what the JSON
-    interface says of a parameter besides (label, kind, low, high, step, log, group, help, options).
-    ``source`` is the author's parameter, which checks values.
+    Attributes:
+        name: Unique among the uniforms.
+        type: The type of its value.
+        origin: The source of its value.
+        default: A bool, int, float or a tuple of floats.
+        interface: The other properties of a parameter in the JSON interface (label, kind, low,
+            high, step, log, group, help, options).
+        source: The author's parameter object, which validates values.
     """
 
     name: str
@@ -540,10 +569,15 @@ class UniformDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class ResourceDeclaration:
-    """One texture or buffer of a module; ``source`` is the author's object that has its data.
+    """One texture or buffer of a module.
 
-    ``wrap`` is "repeat" or "clamp" (textures). ``values`` are the elements of a buffer that the
-    compiler made of the program's own tables; the host has no data for it.
+    Attributes:
+        name: Unique among the resources.
+        type: A texture or buffer type.
+        source: The author's object that holds the data.
+        wrap: "repeat" or "clamp" (textures).
+        values: The elements of a buffer that the compiler created for a constant table of the
+            program; None: the host provides the data.
     """
 
     name: str
@@ -554,18 +588,18 @@ class ResourceDeclaration:
 
 
 class EntryKind(Enum):
-    """How the entry function is run."""
+    """How the entry function is run: once for each pixel, or over arrays of arguments."""
 
     IMAGE = "image"  # an @image: after the entry pass, main(coord: vec2) -> vec4, per pixel
-    FUNCTION = "function"  # a @func: over arrays of its parameters
+    FUNCTION = "function"  # a @func: run over arrays of its parameters
 
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """Everything one compilation needs.
+    """The complete input of one compilation.
 
     Attributes:
-        functions: A callee stands before its callers; no recursion. Only what is reachable.
+        functions: The reachable functions; each callee precedes its callers; no recursion.
         entry: The name of the function that is run.
         kind: How it is run.
         uniforms: The uniforms in a fixed order: frame values first, then parameters by first use.
@@ -582,12 +616,12 @@ class Module:
     frame: tuple[tuple[str, Expr], ...] = ()
 
     def function(self, name: str) -> Function:
-        """The function of that name."""
+        """Return the function named ``name``."""
         return next(f for f in self.functions if f.name == name)
 
 
 def span_in(stmt_span: Span | None, expr: Expr) -> Span | None:
-    """The best span for a diagnostic about ``expr`` inside a statement with ``stmt_span``."""
+    """Return the best span for a diagnostic about ``expr`` in a statement with ``stmt_span``."""
     inner = expr.span
     if stmt_span is None or inner is None or inner.file != stmt_span.file:
         return stmt_span or inner

@@ -1,13 +1,13 @@
-"""The IR as text: readable, deterministic and complete.
+"""Print the IR as text: readable, deterministic and complete.
 
-Input: a module. Output: text: what ``--target ir`` shows, what golden tests compare, and (all
-but the values of a scene's numbers) what the object cache hashes, so everything that changes the
-meaning is in it. Spans and the data of resources are not. ``@name`` is a uniform, ``$name`` a value
-of the per-frame part, ``&name`` a texture or buffer; ``name(...)`` calls a function of the module
-and ``(name ...)`` a built-in.
+Input: a module. Output: the text that ``--target ir`` shows, that golden tests compare, and that
+the object cache hashes (without the values of a scene's numbers). It contains everything that
+affects the compiled code; spans and the data of resources are not part of it. ``@name`` is a
+uniform, ``$name`` a value of the per-frame part, ``&name`` a texture or buffer; ``name(...)`` calls
+a function of the module and ``(name ...)`` a built-in.
 
-Expressions share their parts. A part that a statement uses more than once is written once, as ``%3
-= ...`` before the statement, so that the text stays as small as the graph.
+Expressions share subexpressions. A shared subexpression that a statement uses more than once is
+written once, as ``%3 = ...`` before the statement, so the text grows with the size of the graph.
 """
 
 from __future__ import annotations
@@ -63,12 +63,12 @@ from distal.ir.nodes import (
 from distal.ir.types import UINT, FunctionType, Struct, Type, contained_structs
 from distal.ir.walk import children, expressions_in, nodes_in
 
-# A shared part no longer than this is repeated: a name for it would not make the text shorter.
+# A shared part of at most this many characters is repeated: naming it would not shorten the text.
 _SHORT = 24
 
 
 def print_module(module: Module) -> str:
-    """Write a whole module."""
+    """Return a whole module as text."""
     lines = [f"entry {module.entry} {module.kind.value}"]
     for struct in _structs(module):
         fields = ", ".join(f"{name}: {type}" for name, type in struct.fields)
@@ -88,7 +88,7 @@ def print_module(module: Module) -> str:
 
 
 def print_identity(module: Module) -> str:
-    """What the code of a module depends on: all of it but the values of a scene's numbers."""
+    """Return the text that a module's code depends on: all but the values of a scene's numbers."""
     uniforms = tuple(
         replace(u, default=None) if u.origin is Origin.NUMBER else u for u in module.uniforms
     )
@@ -96,7 +96,7 @@ def print_identity(module: Module) -> str:
 
 
 def print_expression(e: Expr) -> str:
-    """Write one expression on a line; shared parts before it, each on its own."""
+    """Return one expression as text; each shared part is on a line before it."""
     writer = _ModulePrinter()
     writer.line(0, [e], "")
     return "\n".join(line.strip() for line in writer.lines)
@@ -109,7 +109,7 @@ def _uniform_line(uniform: UniformDeclaration) -> str:
 
 
 def _structs(module: Module) -> Iterator[Struct]:
-    """Every struct of the module, parts before wholes, by first use."""
+    """Yield every struct of the module once: inner structs before outer ones, by first use."""
     seen: set[Struct] = set()
     for type in _types(module):
         for struct in contained_structs(type):
@@ -144,7 +144,7 @@ def _function_lines(function: Function) -> list[str]:
 
 
 class _ModulePrinter:
-    """Lines of one function; numbers the parts that are named."""
+    """Writes the lines of one function and numbers its shared parts."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -184,7 +184,7 @@ class _ModulePrinter:
                 assert_never(stmt)
 
     def line(self, depth: int, values: list[Expr], *words: str) -> None:
-        """Write words and values in turn, after the shared parts of the values."""
+        """Write words and values alternately, after the shared parts of the values."""
         indent = "  " * depth
         uses = Counter(values)
         for e in nodes_in(*values):
@@ -202,7 +202,7 @@ class _ModulePrinter:
 
 
 def _text(e: Expr, parts: list[str]) -> str:
-    """One node, its operands already written."""
+    """Return the text of one node; ``parts`` are the texts of its operands."""
     joined = " ".join(parts)
     match e:
         case Const(value, type):

@@ -1,4 +1,4 @@
-"""What a built-in takes and gives, as patterns over types, and how a call is matched to one."""
+"""Signatures of built-ins: patterns over types, and how a call is matched to a signature."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from distal.ir.types import (
 
 
 class Follows(Enum):
-    """A type that follows from the signature's type variable T."""
+    """A type derived from the signature's type variable T."""
 
     T = "T"
     AS_BOOL = "bool for each component of T"
@@ -59,7 +59,7 @@ MATRICES: Final[tuple[Type, ...]] = (MAT2, MAT3, MAT4)
 
 
 def resolve(pattern: Pattern, variable: Type) -> Type:
-    """The type that a pattern means when T is ``variable``."""
+    """Return the type that a pattern denotes when T is ``variable``."""
     match pattern:
         case Follows.T:
             return variable
@@ -80,14 +80,14 @@ def resolve(pattern: Pattern, variable: Type) -> Type:
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """Parameters and result as patterns of one type variable T that ranges over ``over``."""
+    """Parameters and result as patterns of a type variable T, which takes the types in ``over``."""
 
     params: tuple[Pattern, ...]
     result: Pattern
     over: tuple[Type, ...]
 
     def instances(self) -> Iterator[tuple[tuple[Type, ...], Type]]:
-        """Every (parameter types, result type) this signature describes."""
+        """Yield every pair (parameter types, result type) that this signature describes."""
         for variable in self.over:
             yield (
                 tuple(resolve(p, variable) for p in self.params),
@@ -95,7 +95,7 @@ class Signature:
             )
 
     def match(self, args: Sequence[Type]) -> Type | None:
-        """The result type when the arguments have exactly these types, else None."""
+        """Return the result type if the arguments have exactly these types, else None."""
         for params, result in self.instances():
             if params == tuple(args):
                 return result
@@ -103,7 +103,7 @@ class Signature:
 
 
 def componentwise(arity: int, over: tuple[Type, ...] = FLOATS) -> Signature:
-    """``arity`` arguments of one type T give T."""
+    """Return the signature of a function of ``arity`` arguments of type T with result type T."""
     return Signature((T,) * arity, T, over)
 
 

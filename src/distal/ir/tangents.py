@@ -1,9 +1,10 @@
-"""Arithmetic on tangents: how a value changes along one direction, kept as small as it is.
+"""Arithmetic on tangents (the derivatives of values along one direction), keeping them sparse.
 
-Input and output: values (expressions) and tangents, expressions of the same type, or None for a
-tangent that is zero throughout. A tangent's int and bool parts are zero. Most tangents of a
-distance field are sparse, such as (1, 0, 0) times something; their zeros are seen here, so that a
-derivative does not multiply by them. Whoever asks for a derivative takes 0 * x as 0, whatever x.
+Input and output: values (expressions) and tangents. A tangent is an expression of the value's type,
+or None for a tangent that is zero in every component. The int and bool parts of a tangent are zero.
+Most tangents in a distance field are sparse, such as (1, 0, 0) times a factor; the functions here
+detect the zeros, so that a derivative does not multiply by them. Derivatives therefore treat 0 * x
+as 0 for every x, including infinity and NaN.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ LETTERS = "xyzw"
 
 
 def has_floats(type: Type) -> bool:
-    """True when a value of the type can change smoothly at all."""
+    """Return whether values of the type have a float part, so that they can have a derivative."""
     match type:
         case Scalar(kind) | Vector(kind):
             return kind is Kind.FLOAT
@@ -65,7 +66,11 @@ def has_floats(type: Type) -> bool:
 
 
 def zero(type: Type) -> Expr:
-    """Zero, in every part of a value type."""
+    """Return the value of a type with zero in every part.
+
+    Raises:
+        AssertionError: The type is not a value type.
+    """
     match type:
         case Scalar(kind):
             return Const({Kind.FLOAT: 0.0, Kind.BOOL: False}.get(kind, 0), type)
@@ -82,7 +87,7 @@ def zero(type: Type) -> Expr:
 
 
 def seeds(type: Type) -> tuple[Expr, ...]:
-    """The tangents of a point along its own axes."""
+    """Return the tangents of a point along its coordinate axes (the unit vectors)."""
     if type is FLOAT:
         return (Const(1.0, FLOAT),)
     assert isinstance(type, Vector)
@@ -91,18 +96,18 @@ def seeds(type: Type) -> tuple[Expr, ...]:
 
 
 def filled(tangent: Tangent, type: Type) -> Expr:
-    """The tangent as an expression, zeros written out."""
+    """Return the tangent as an expression: a zero tangent is written out as zeros."""
     return zero(type) if tangent is None else tangent
 
 
 def number(value: float, type: Type) -> Expr:
-    """A float constant in every component."""
+    """Return a float constant in every component."""
     constant = Const(value, FLOAT)
     return constant if type is FLOAT else Splat(constant, type)
 
 
 def constant_of(e: Expr) -> float | None:
-    """The one number in every component, if that is constant."""
+    """Return the number that every component has if it is a constant, else None."""
     match e:
         case Const(value) if e.type is FLOAT:
             return float(value)
@@ -113,7 +118,7 @@ def constant_of(e: Expr) -> float | None:
 
 
 def is_constant(e: Expr) -> bool:
-    """True for a scalar or vector written in numbers only."""
+    """Return whether a scalar or vector consists of literal numbers only."""
     match e:
         case Const():
             return True
@@ -126,7 +131,13 @@ def is_constant(e: Expr) -> bool:
 
 
 def binary(op: BinaryOp, lhs: Expr, rhs: Expr) -> Expr:
-    """``lhs op rhs`` of values, a scalar side splatted."""
+    """Return ``lhs op rhs`` of values; if one side is a scalar, it is splatted.
+
+    Args:
+        op: The operator.
+        lhs: The left operand.
+        rhs: The right operand.
+    """
     if lhs.type is not rhs.type:
         if isinstance(lhs.type, Scalar):
             lhs = Splat(lhs, rhs.type)
@@ -136,7 +147,7 @@ def binary(op: BinaryOp, lhs: Expr, rhs: Expr) -> Expr:
 
 
 def product(lhs: Expr, rhs: Expr) -> Expr:
-    """A product of values, component by component."""
+    """Return the product of two values, component by component."""
     for one, other in ((lhs, rhs), (rhs, lhs)):
         value = constant_of(one)
         if value in (1.0, -1.0) and (one.type is other.type or one.type is FLOAT):
@@ -147,23 +158,35 @@ def product(lhs: Expr, rhs: Expr) -> Expr:
 
 
 def compared(op: CompareOp, lhs: Expr, rhs: Expr) -> Expr:
-    """``lhs op rhs`` of values of one type."""
+    """Return ``lhs op rhs`` of values of one type.
+
+    Args:
+        op: The comparison.
+        lhs: The left operand.
+        rhs: The right operand.
+    """
     return Compare(op, lhs, rhs, with_kind(lhs.type, Kind.BOOL))
 
 
 def where_positive(test: Expr, value: Expr) -> Expr:
-    """``value`` where ``test > 0``, else 0: a derivative's guard at the ends of a domain."""
+    """Return ``value`` where ``test > 0``, else 0: guards a derivative at the ends of a domain."""
     return where_above(test, 0.0, value)
 
 
 def where_above(test: Expr, end: float, value: Expr) -> Expr:
-    """``value`` where ``test > end``, else 0."""
+    """Return ``value`` where ``test > end``, else 0.
+
+    Args:
+        test: The value that is compared.
+        end: The limit.
+        value: The result above the limit, of the same type as ``test``.
+    """
     none = zero(value.type)
     return Select(compared(CompareOp.GT, test, number(end, test.type)), value, none, value.type)
 
 
 def lanes_of(tangent: Tangent) -> Lanes | None:
-    """The components of a vector tangent when some of them are known to be zero."""
+    """Return the components of a vector tangent if at least one is known to be zero, else None."""
     if not isinstance(tangent, Compose) or not isinstance(tangent.type, Vector):
         return None
     if not all(isinstance(p.type, Scalar) for p in tangent.parts):
@@ -173,14 +196,14 @@ def lanes_of(tangent: Tangent) -> Lanes | None:
 
 
 def from_lanes(lanes: Lanes, type: Type) -> Tangent:
-    """A vector tangent from its components."""
+    """Return a vector tangent built from its components."""
     if all(lane is None for lane in lanes):
         return None
     return Compose(tuple(filled(lane, FLOAT) for lane in lanes), type)
 
 
 def lane(value: Expr, i: int) -> Expr:
-    """Component i of a vector value."""
+    """Return component ``i`` of a vector value."""
     assert isinstance(value.type, Vector)
     if isinstance(value, Splat):
         return value.value
@@ -192,7 +215,7 @@ def lane(value: Expr, i: int) -> Expr:
 
 
 def plus(a: Tangent, b: Tangent) -> Tangent:
-    """The sum."""
+    """Return the sum ``a + b``."""
     if a is None or b is None:
         return b if a is None else a
     left, right = lanes_of(a), lanes_of(b)
@@ -206,7 +229,7 @@ def plus(a: Tangent, b: Tangent) -> Tangent:
 
 
 def minus(a: Tangent, b: Tangent) -> Tangent:
-    """The difference."""
+    """Return the difference ``a - b``."""
     if b is None:
         return a
     if a is None:
@@ -218,7 +241,7 @@ def minus(a: Tangent, b: Tangent) -> Tangent:
 
 
 def negative(a: Tangent) -> Tangent:
-    """The opposite."""
+    """Return ``-a``."""
     if a is None:
         return None
     lanes = lanes_of(a)
@@ -234,7 +257,7 @@ def negative(a: Tangent) -> Tangent:
 
 
 def scaled(a: Tangent, factor: Expr) -> Tangent:
-    """The product with a value, component by component; a scalar factor is splatted."""
+    """Return the product with a value, component by component; a scalar factor is splatted."""
     if a is None or constant_of(factor) == 0.0:
         return None
     lanes = lanes_of(a)
@@ -248,7 +271,7 @@ def scaled(a: Tangent, factor: Expr) -> Tangent:
 
 
 def over(a: Tangent, divisor: Expr) -> Tangent:
-    """The quotient by a value, component by component; a scalar divisor is splatted."""
+    """Return the quotient by a value, component by component; a scalar divisor is splatted."""
     if a is None:
         return None
     lanes = lanes_of(a)
@@ -260,12 +283,19 @@ def over(a: Tangent, divisor: Expr) -> Tangent:
 
 
 def splatted(a: Tangent, type: Type) -> Tangent:
-    """The same change in every component."""
+    """Return the vector or matrix tangent with the same tangent in every component."""
     return None if a is None else Splat(a, type)
 
 
 def picked(condition: Expr, yes: Tangent, no: Tangent, type: Type) -> Tangent:
-    """``yes`` where the condition holds, else ``no``."""
+    """Return ``yes`` where the condition holds, else ``no``.
+
+    Args:
+        condition: A bool, or a bvec that selects component by component.
+        yes: The tangent where the condition holds.
+        no: The tangent where it does not.
+        type: The type of the result.
+    """
     if yes is no:
         return yes
     left, right = _sparse(yes, type), _sparse(no, type)
@@ -284,7 +314,7 @@ def _sparse(tangent: Tangent, type: Type) -> Lanes | None:
 
 
 def inner(value: Expr, a: Tangent) -> Tangent:
-    """The inner product of a vector value with a tangent."""
+    """Return the inner product of a vector value with a tangent."""
     lanes = lanes_of(a)
     if lanes is not None:
         total: Tangent = None
@@ -295,7 +325,13 @@ def inner(value: Expr, a: Tangent) -> Tangent:
 
 
 def composed(parts: tuple[Expr, ...], tangents: Lanes, type: Type) -> Tangent:
-    """The tangent of a vector or matrix put together from ``parts``."""
+    """Return the tangent of a vector or matrix built from ``parts``.
+
+    Args:
+        parts: The scalars and vectors, or the columns.
+        tangents: The tangent of each part.
+        type: The type of the vector or matrix.
+    """
     if all(t is None for t in tangents):
         return None
     whole = tuple(filled(t, p.type) for p, t in zip(parts, tangents, strict=True))
@@ -315,7 +351,7 @@ def composed(parts: tuple[Expr, ...], tangents: Lanes, type: Type) -> Tangent:
 
 
 def swizzled(a: Tangent, letters: str) -> Tangent:
-    """``a.letters``."""
+    """Return the tangent of a swizzle, ``a.letters``."""
     if a is None:
         return None
     type = vector_of(Kind.FLOAT, len(letters))
@@ -329,12 +365,24 @@ def swizzled(a: Tangent, letters: str) -> Tangent:
 
 
 def element(a: Tangent, position: Expr, type: Type) -> Tangent:
-    """``a[position]`` of an array, vector or matrix."""
+    """Return ``a[position]`` of an array, vector or matrix.
+
+    Args:
+        a: The tangent of the array, vector or matrix.
+        position: The index, an int.
+        type: The type of the element.
+    """
     return None if a is None else Index(a, position, type)
 
 
 def member(a: Tangent, name: str, type: Type) -> Tangent:
-    """``a.name`` of a struct; None for what cannot change."""
+    """Return ``a.name`` of a struct's tangent; None if the field has no float part.
+
+    Args:
+        a: The tangent of the struct.
+        name: The field's name.
+        type: The field's type.
+    """
     if a is None or not has_floats(type):
         return None
     if isinstance(a, Construct):
@@ -344,5 +392,11 @@ def member(a: Tangent, name: str, type: Type) -> Tangent:
 
 
 def matrix_product(lhs: Expr, rhs: Expr, type: Type) -> Expr:
-    """``lhs @ rhs``."""
+    """Return ``lhs @ rhs``.
+
+    Args:
+        lhs: The left matrix or vector.
+        rhs: The right matrix or vector.
+        type: The type of the product.
+    """
     return MatMul(lhs, rhs, type)

@@ -1,4 +1,4 @@
-"""What a target can do. Passes read it and decompose the rest."""
+"""The capabilities of a target. Passes read them and decompose what the target cannot do."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-# Numbers. Mesa's Vulkan takes .1 s longer over an array of 64 floats than over a buffer, a second
-# over one of 256, and has not compiled 1024 floats, or 256 vec3, after 40 s; its OpenGL takes 4.5 s
-# over 48 structs of 8 numbers; SwiftShader 6 s over 4096 vec3.
+# The largest number of scalars in a table. Mesa's Vulkan takes 0.1 s longer for an array of 64
+# floats than for a buffer, 1 s for one of 256, and does not finish 1024 floats, or 256 vec3, in
+# 40 s; its OpenGL takes 4.5 s for 48 structs of 8 numbers; SwiftShader 6 s for 4096 vec3.
 LARGEST_TABLE: Final = 63
 
 
 class FramePlace(Enum):
-    """Where a target computes the per-frame part."""
+    """The place where a target computes the per-frame part."""
 
-    HOST = "host"  # beside the pixel program: the CPU's scalar prelude, a GPU dispatch
+    HOST = "host"  # outside the pixel program: a scalar prelude (CPU), a dispatch (GPU)
     VERTEX = "vertex"  # the vertex stage, passed as at most 15 packed flat vec4
-    PIXEL = "pixel"  # at the top of the pixel function: the target has a single stage
+    PIXEL = "pixel"  # at the start of the pixel function: the target has a single stage
     NONE = "none"  # nothing is hoisted (the reference)
 
 
@@ -26,26 +26,26 @@ class Target:
     """The capabilities of one target.
 
     Attributes:
-        name: As the command line spells it.
-        family: The column of the intrinsic table: glsl, glsl100, wgsl, llvm or numpy.
-        frame: Where per-frame work is done.
+        name: The name used on the command line.
+        family: Selects the spelling in each intrinsic: glsl, glsl100, wgsl, llvm or numpy.
+        frame: The place where per-frame values are computed.
         unsigned: Has 32-bit unsigned integers and bit operations.
-        dynamic_loops: Has while and loops whose bounds are not constant.
-        dynamic_index: Indexes arrays and vectors by any expression.
-        integer_floor: Has floored // and % of ints with x // 0 = x (else the prelude's).
-        saturating_cast: Its float to int conversion saturates and gives 0 for NaN.
-        texel_fetch: Reads single texels and sizes.
-        samples: Filters textures itself (else the prelude's filter over single texels).
-        rough: Built-ins whose errors in its drivers a picture may show; the table's ``careful``
-            functions replace them, unless a host that has measured its driver trusts it. Texts for
-            people and their sites keep the short names.
-        inline: Wants small functions inlined.
-        predicated: Wants loops without break, continue and return inside (see passes.predicate).
-        outlined: Wants very long functions cut into pieces (see passes.outline).
-        one_way: Wants no If of two ways of equal length (see passes.one_way).
-        largest_table: How many numbers an array of literals may have; larger ones are kept in
-            buffers, whose values the interface holds (see passes.tables). None: any, because there
-            are no buffers or because arrays are quick.
+        dynamic_loops: Has while, and loops with bounds that are not constant.
+        dynamic_index: Arrays and vectors can be indexed by any expression.
+        integer_floor: Has floored // and % of ints with x // 0 = x (else the prelude's are used).
+        saturating_cast: Its conversion from float to int saturates and gives 0 for NaN.
+        texel_fetch: Can read single texels and texture sizes.
+        samples: Filters textures itself (else the prelude filters single texels).
+        rough: Built-ins whose errors in the target's drivers may be visible in a picture. They are
+            replaced by the intrinsics' ``careful`` functions, unless the host has measured that its
+            driver is accurate. Texts written for people keep the target's own functions.
+        inline: Small functions should be inlined.
+        predicated: Loops must not contain break, continue and return (see passes.predicate).
+        outlined: Very long functions should be cut into pieces (see passes.outline).
+        one_way: Should have no If with two branches of equal length (see passes.one_way).
+        largest_table: The largest number of scalars in an array of literals; larger arrays are kept
+            in buffers, whose values are in the interface (see passes.tables). None: no limit, as
+            the target has no buffers or arrays are fast on it.
     """
 
     name: str

@@ -1,7 +1,8 @@
 """The types of the IR. Equal types are the same object.
 
 A value type is a scalar, vector, matrix, struct or array. Textures, buffers and functions are
-static: they may be passed to functions, and the specialise pass binds every one of them.
+static types: they may be passed to functions, but the specialise pass replaces each such parameter
+by the argument passed.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from distal.ir.interning import Interned
 
 
 class Kind(Enum):
-    """What a component is. The value is its spelling."""
+    """The kind of a component. The value of a member is its spelling."""
 
     __hash__ = object.__hash__
 
@@ -30,7 +31,7 @@ _VECTOR_PREFIX: Final = {Kind.FLOAT: "vec", Kind.INT: "ivec", Kind.UINT: "uvec",
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Scalar(metaclass=Interned):
-    """One number or truth value."""
+    """A single number or bool."""
 
     kind: Kind
 
@@ -40,7 +41,7 @@ class Scalar(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Vector(metaclass=Interned):
-    """2 to 4 components of one kind."""
+    """A vector of 2 to 4 components of one kind."""
 
     kind: Kind
     size: int
@@ -61,14 +62,17 @@ class Matrix(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Struct(metaclass=Interned):
-    """Named fields, a value. A returned tuple is a struct with ``is_tuple`` and fields item0 on."""
+    """A value with named fields.
+
+    A returned tuple is a struct with ``is_tuple`` set and the fields item0, item1 ...
+    """
 
     name: str
     fields: tuple[tuple[str, Type], ...]
     is_tuple: bool
 
     def field(self, name: str) -> Type | None:
-        """The type of a field, or None."""
+        """Return the type of a field; None if there is no such field."""
         return dict(self.fields).get(name)
 
     def __str__(self) -> str:
@@ -79,7 +83,7 @@ class Struct(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Array(metaclass=Interned):
-    """``length`` values of one type; the length is at least 1."""
+    """An array of ``length`` values of one type; the length is at least 1."""
 
     element: Type
     length: int
@@ -89,7 +93,7 @@ class Array(metaclass=Interned):
 
 
 class TextureShape(Enum):
-    """How a texture is addressed. The value is the name of its type in the language."""
+    """The shape of a texture. The value of a member is the name of its type in the language."""
 
     FLAT = "Texture2D"
     CUBE = "TextureCube"
@@ -98,7 +102,7 @@ class TextureShape(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Texture(metaclass=Interned):
-    """A read-only picture of vec4 texels, sampled by a vec2 (2D) or a vec3 (cube, 3D)."""
+    """A read-only texture of vec4 texels, sampled at a vec2 (2D) or a vec3 (cube, 3D)."""
 
     shape: TextureShape
 
@@ -108,7 +112,7 @@ class Texture(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Buffer(metaclass=Interned):
-    """A read-only run of scalars or float vectors, its length known when it is bound."""
+    """A read-only sequence of scalars or float vectors; its length is known when data is bound."""
 
     element: Type
 
@@ -118,7 +122,7 @@ class Buffer(metaclass=Interned):
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class FunctionType(metaclass=Interned):
-    """A function passed to a function. It exists at compile time only."""
+    """The type of a function that is passed to a function. Exists at compile time only."""
 
     params: tuple[Type, ...]
     result: Type
@@ -142,7 +146,7 @@ TEXTURE_2D: Final = Texture(TextureShape.FLAT)
 TEXTURE_CUBE: Final = Texture(TextureShape.CUBE)
 TEXTURE_3D: Final = Texture(TextureShape.VOLUME)
 
-# What an @image receives. The entry pass replaces it: coord becomes a parameter, the rest uniforms.
+# The parameter of an @image. The entry pass turns coord into a parameter, the rest into uniforms.
 FRAME: Final = Struct(
     "Frame",
     (
@@ -158,7 +162,7 @@ FRAME: Final = Struct(
 
 
 def tuple_type(items: tuple[Type, ...]) -> Struct:
-    """The struct that carries a returned tuple; its name holds its items' types."""
+    """Return the struct that represents a returned tuple; its name contains the items' types."""
     name = "Tuple_" + "_".join(_plain(t) for t in items)
     return Struct(name, tuple((f"item{i}", t) for i, t in enumerate(items)), True)
 
@@ -174,7 +178,7 @@ def _plain(type: Type) -> str:
 
 
 def kind_of(type: Type) -> Kind | None:
-    """The kind of a scalar's, vector's or matrix's components; None for other types."""
+    """Return the kind of the components of a scalar, vector or matrix; None for other types."""
     match type:
         case Scalar(kind) | Vector(kind):
             return kind
@@ -185,7 +189,11 @@ def kind_of(type: Type) -> Kind | None:
 
 
 def with_kind(type: Type, kind: Kind) -> Type:
-    """The scalar or vector of the same size with components of another kind."""
+    """Return the scalar or vector type of the same size with components of another kind.
+
+    Raises:
+        AssertionError: The type is neither scalar nor vector.
+    """
     match type:
         case Scalar():
             return Scalar(kind)
@@ -196,12 +204,16 @@ def with_kind(type: Type, kind: Kind) -> Type:
 
 
 def vector_of(kind: Kind, size: int) -> Type:
-    """The vector of ``size`` components, or the scalar when ``size`` is 1."""
+    """Return the vector type with ``size`` components, or the scalar type when ``size`` is 1."""
     return Scalar(kind) if size == 1 else Vector(kind, size)
 
 
 def component_count(type: Type) -> int:
-    """How many scalars a scalar, vector or matrix holds."""
+    """Return the number of scalars in a scalar, vector or matrix.
+
+    Raises:
+        AssertionError: The type has no components.
+    """
     match type:
         case Scalar():
             return 1
@@ -214,7 +226,11 @@ def component_count(type: Type) -> int:
 
 
 def index_count(type: Type) -> int | None:
-    """How many elements an index chooses among; None for a buffer, whose length is bound later."""
+    """Return the number of elements that an index selects from; None for a buffer (known later).
+
+    Raises:
+        AssertionError: The type cannot be indexed.
+    """
     match type:
         case Array(_, length):
             return length
@@ -227,12 +243,12 @@ def index_count(type: Type) -> int | None:
 
 
 def is_static(type: Type) -> bool:
-    """True for what exists at compile time only: functions, textures and buffers."""
+    """Return whether values of the type exist at compile time only (function, texture, buffer)."""
     return isinstance(type, Texture | Buffer | FunctionType)
 
 
 def contained_structs(type: Type) -> Iterator[Struct]:
-    """Every struct that ``type`` is made of, innermost first, with repeats."""
+    """Yield every struct contained in ``type``, innermost first, possibly several times."""
     match type:
         case Struct(_, fields):
             for _, field_type in fields:

@@ -1,8 +1,8 @@
-"""The rules every module must obey; run after each pass under tests and with ``--verify``.
+"""Verify that a module obeys the rules of the IR, after each pass in tests and with ``--verify``.
 
-Input: a module. Output: nothing, or an AssertionError that shows the node: a failure is our mistake
-and never the author's, so it is no CompileError. What each node demands of its operands is in
-``distal.ir.verify_types``; here are names, scopes, order and paths.
+Input: a module. Output: nothing, or an AssertionError that shows the node. A failure is a bug in
+the compiler and never the author's mistake, so it is not a CompileError. This module checks names,
+scopes, order and paths; ``distal.ir.verify_types`` checks the types of each node's operands.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ from distal.ir.walk import children, expressions, nodes_in, per_frame_reads, roo
 
 DEEPEST = 200
 
-# The passes in order (``distal.passes.pipeline``), and what each leaves behind for good.
+# The passes in order (``distal.passes.pipeline``), and what is absent after each of them.
 _STAGES = (
     *("entry", "specialise", "gradient", "decompose", "specialise-prelude", "bounds"),
     *("fold", "frequency", "inline", "fold-inlined", "tables", "share", "predicate"),
@@ -67,7 +67,7 @@ _STAGES = (
 )
 _NO_FRAME = frozenset(_STAGES)
 _NO_FUNCTION_VALUES = frozenset(_STAGES[1:])
-_NO_STATIC_PARAMETERS = frozenset(_STAGES[1:]) - {"decompose"}  # which brings in prelude functions
+_NO_STATIC_PARAMETERS = frozenset(_STAGES[1:]) - {"decompose"}  # decompose adds prelude functions
 _NO_GRADIENT = frozenset(_STAGES[2:])
 _INDICES_IN_RANGE = frozenset(_STAGES[5:])
 _PER_FRAME = frozenset(_STAGES[_STAGES.index("frequency") :])
@@ -76,36 +76,43 @@ _PER_FRAME = frozenset(_STAGES[_STAGES.index("frequency") :])
 def verify(module: Module, stage: str | None = None) -> None:
     """Raise AssertionError when the module breaks a rule.
 
-    ``stage`` is the name of the pass that made it: what that pass and those before it guarantee is
-    checked too. None checks what holds of every module.
+    ``stage`` is the name of the last pass that ran: the guarantees of that pass and of the passes
+    before it are checked too. None checks only the rules for every module.
+
+    Raises:
+        AssertionError: A rule is broken.
     """
     Verifier().verify(module, stage)
 
 
 class Verifier:
-    """Checks the outputs of one run of the passes; what a pass left alone is checked once.
+    """Checks the outputs of one run of the pipeline; checks only once what a pass did not change.
 
-    A function is not checked again when it is the same object, and everything that its check
-    depends on is equal: the rules of the stage, the types of uniforms, resources and per-frame
-    values, and the signatures of the functions that it mentions. Nodes are interned, so the types
-    of a node's operands are checked once for all functions and passes.
+    A function is not checked again when it is the same object and everything that its check depends
+    on is equal: the rules of the stage; the types of uniforms, resources and per-frame values; the
+    signatures of the functions that it mentions. Nodes are interned, so the types of a node's
+    operands are checked once for all functions and passes.
     """
 
     def __init__(self) -> None:
         self._context: _CheckContext | None = None
         self._depths: dict[Expr, int] = {}
         self._checked: set[Expr] = set()
-        # By the function's id: a record keeps the function alive.
+        # Keyed by the function's id; a record keeps the function alive, so ids stay unique.
         self._records: dict[int, _CheckedFunction] = {}
 
     def verify(self, module: Module, stage: str | None = None) -> None:
-        """Raise AssertionError when the module breaks a rule; see ``verify``."""
+        """Raise AssertionError when the module breaks a rule; see the function ``verify``.
+
+        Raises:
+            AssertionError: A rule is broken.
+        """
         assert stage is None or stage in _STAGES, f"no pass {stage}"
         context = _CheckContext.of(module, stage)
         if context != self._context:
             self._context, self._checked, self._records = context, set(), {}
         functions: dict[str, Function] = {}
-        # Functions of the frame part stand anywhere in the module.
+        # Functions called by the frame part may be anywhere in the module.
         every = {f.name: f for f in module.functions}
         _Checker(context, every, self._depths, set()).frame_part(module)
         frame_reads = per_frame_reads(*(value for _, value in module.frame))
@@ -121,7 +128,7 @@ class Verifier:
             functions[function.name] = function
         assert module.entry in functions, f"no entry function {module.entry}"
         if stage in _PER_FRAME:
-            # A backend would declare and compute what nobody reads.
+            # Otherwise a backend would declare and compute a value that is never read.
             unread = {name for name, _ in module.frame} - frame_reads
             assert not unread, f"nothing reads the per-frame values {sorted(unread)}"
         _unique("uniform", [u.name for u in module.uniforms])
@@ -134,7 +141,7 @@ class Verifier:
 
 @dataclass(frozen=True, slots=True)
 class _CheckContext:
-    """What the check of a function depends on besides the function and those that it calls."""
+    """Everything that the check of a function depends on, except the function and its callees."""
 
     no_frame: bool
     no_function_values: bool
@@ -148,7 +155,7 @@ class _CheckContext:
 
     @classmethod
     def of(cls, module: Module, stage: str | None) -> _CheckContext:
-        """The rules that hold after a pass, and what the module declares."""
+        """Return the rules that hold after a pass, and the declarations of the module."""
         return cls(
             stage in _NO_FRAME,
             stage in _NO_FUNCTION_VALUES,
@@ -164,11 +171,11 @@ class _CheckContext:
 
 @dataclass(frozen=True, slots=True)
 class _CheckedFunction:
-    """A function that was checked.
+    """A record of a function that was checked.
 
     Attributes:
         function: The function.
-        mentioned: The functions that it calls or refers to, as they were.
+        mentioned: The functions that it called or referred to when it was checked.
         frame_reads: The per-frame values that it reads.
     """
 
@@ -177,7 +184,7 @@ class _CheckedFunction:
     frame_reads: set[str]
 
     def holds(self, functions: Mapping[str, Function]) -> bool:
-        """Whether the functions it mentions still have the same signatures."""
+        """Return whether the mentioned functions still have the same signatures."""
         return all(
             (found := functions.get(name)) is not None
             and found.result is before.result
@@ -191,7 +198,7 @@ def _unique(what: str, names: list[str]) -> None:
 
 
 class _Checker:
-    """The check of one function, or of the per-frame part."""
+    """Checks one function, or the per-frame part."""
 
     def __init__(
         self,
@@ -203,10 +210,10 @@ class _Checker:
         """Prepare the check.
 
         Args:
-            context: What it depends on.
-            functions: Those before the one being checked.
-            depths: The depths of expressions whose types were checked; grows.
-            checked: The expressions that were checked in this context, calls left out; grows.
+            context: The rules and declarations that the check depends on.
+            functions: The functions before the one being checked.
+            depths: The depths of expressions whose types were checked; extended by the check.
+            checked: The expressions checked in this context, except calls; extended by the check.
         """
         self._context = context
         self._functions = functions
@@ -217,7 +224,7 @@ class _Checker:
         self.frame_reads: set[str] = set()
 
     def frame_part(self, module: Module) -> None:
-        """Check that each per-frame value reads earlier ones only."""
+        """Check that each per-frame value reads only earlier ones."""
         before: dict[str, Type] = {}
         self._frame = before
         for name, value in module.frame:
@@ -245,7 +252,16 @@ class _Checker:
             assert not is_static(type), f"{where}: a parameter of type {type} after specialise"
 
     def expression(self, root: Expr, scope: Mapping[str, Type], where: str) -> None:
-        """Check every node below ``root`` once, and every read against this scope."""
+        """Check every node of an expression, each node once, and every read against its scope.
+
+        Args:
+            root: The expression.
+            scope: The locals in scope -> their types.
+            where: The name of the function, for error messages.
+
+        Raises:
+            AssertionError: A rule is broken.
+        """
         for e in nodes_in(root):
             if isinstance(e, Read):
                 found = scope.get(e.name)
@@ -269,7 +285,7 @@ class _Checker:
                 self._checked.add(e)
 
     def _references(self, e: Expr) -> None:
-        """Names that lead out of the function."""
+        """Check the names that refer to something outside the function."""
         match e:
             case Uniform(nodes.FRAME_TIME, type) if not self._context.no_frame:
                 assert type is FLOAT, "the time is a float"
@@ -332,7 +348,7 @@ def _match(types: Iterable[Type], args: tuple[Expr, ...], name: str) -> None:
 
 
 class _Walker:
-    """The statements of one function."""
+    """Checks the statements of one function."""
 
     def __init__(self, checker: _Checker, function: Function, bound: set[str]) -> None:
         self._checker = checker

@@ -1,7 +1,7 @@
-"""What each node demands of the types of its operands: the docstrings of ``nodes`` as assertions.
+"""Check the types of each node's operands: the rules in the docstrings of ``nodes``, as assertions.
 
-Input: one expression node, its operands already checked. Raises an AssertionError. Does not depend
-on names and scopes.
+Input: one expression node whose operands were already checked. Raises an AssertionError if a rule
+is broken. Does not depend on names and scopes.
 """
 
 from __future__ import annotations
@@ -113,12 +113,16 @@ _SIZE: Final = {
 
 
 def check_types(e: Expr) -> None:
-    """Raise AssertionError when ``e`` does not fit its operands."""
+    """Check that the type of ``e`` matches the types of its operands.
+
+    Raises:
+        AssertionError: The types do not match.
+    """
     match e:
         case Const(value, type):
             _constant(value, type)
         case Read() | Uniform() | PerFrame() | Resource() | Call() | FunctionRef():
-            pass  # their types follow from declarations
+            pass  # their types are checked against declarations, in ``verify``
         case Unary(op, operand, type):
             assert operand.type is type and kind_of(type) in _UNARY_KINDS[op], operand.type
             assert not isinstance(type, Matrix) or op is UnaryOp.NEGATE, "matrix"

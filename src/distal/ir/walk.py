@@ -1,7 +1,7 @@
-"""Going through expressions and statements without naming every node.
+"""Traverse and transform expressions and statements without a case for every node class.
 
-``children`` and ``rebuild`` are the only functions that know every node's operands; passes that
-treat most nodes alike use them.
+``children`` and ``rebuild`` are the only functions that know the operands of every node class;
+passes that treat most nodes alike use them.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ def _both_sides(e: Any) -> tuple[Expr, ...]:
     return (e.lhs, e.rhs)
 
 
-# A table, not a match: passes need this of every node many times, and trying one class after the
-# other took a third of their time.
+# A table instead of a match statement: passes look this up many times for every node, and testing
+# one class after another took a third of their time.
 _OPERANDS: Final[dict[type, Callable[[Any], tuple[Expr, ...]]]] = {
     **dict.fromkeys((Const, Read, Uniform, PerFrame, Resource), _none),
     **dict.fromkeys((Binary, Compare, Logical, MatMul), _both_sides),
@@ -86,12 +86,12 @@ assert set(_OPERANDS) == set(get_args(Expr)), "a node without operands"
 
 
 def children(e: Expr) -> tuple[Expr, ...]:
-    """The operands of an expression, left to right."""
+    """Return the operands of an expression, left to right."""
     return _OPERANDS[type(e)](e)
 
 
 def rebuild(e: Expr, operands: tuple[Expr, ...]) -> Expr:
-    """The same expression with other operands of the same types; ``e`` itself when unchanged."""
+    """Return ``e`` with other operands of the same types; ``e`` itself when they are unchanged."""
     if operands == children(e):
         return e
     span = e.span
@@ -145,7 +145,13 @@ def rebuild(e: Expr, operands: tuple[Expr, ...]) -> Expr:
 
 
 def rewrite(e: Expr, change: Callable[[Expr], Expr], memo: dict[Expr, Expr]) -> Expr:
-    """Rewrite bottom up: ``change`` sees each node once, its operands already rewritten."""
+    """Rewrite bottom up: call ``change`` once for each node, after its operands were rewritten.
+
+    Args:
+        e: The expression.
+        change: Returns the replacement of a node.
+        memo: The nodes rewritten so far; extended.
+    """
     done = memo.get(e)
     if done is None:
         operands = tuple(rewrite(c, change, memo) for c in children(e))
@@ -155,7 +161,13 @@ def rewrite(e: Expr, change: Callable[[Expr], Expr], memo: dict[Expr, Expr]) -> 
 
 
 def substitute(e: Expr, replacements: dict[Expr, Expr], memo: dict[Expr, Expr]) -> Expr:
-    """Replace whole nodes, such as Reads, by other expressions; top down, each once."""
+    """Replace whole nodes, such as Reads, by other expressions; top down, each node once.
+
+    Args:
+        e: The expression.
+        replacements: The node to replace -> its replacement.
+        memo: The nodes processed so far; extended.
+    """
     done = memo.get(e)
     if done is None:
         done = replacements.get(e)
@@ -166,9 +178,10 @@ def substitute(e: Expr, replacements: dict[Expr, Expr], memo: dict[Expr, Expr]) 
 
 
 def nodes_in(*roots: Expr) -> Iterator[Expr]:
-    """Every distinct node below and including ``roots``, operands before users."""
+    """Yield every distinct node of the expressions, including ``roots``; operands before users."""
     seen: set[Expr] = set()
-    # A node in a tuple of its own comes by for the second time, its operands are done.
+    # A node is pushed again inside a one-element tuple; it is yielded when the tuple is popped,
+    # after its operands.
     stack: list[Any] = list(reversed(roots))
     while stack:
         e = stack.pop()
@@ -185,7 +198,7 @@ def nodes_in(*roots: Expr) -> Iterator[Expr]:
 
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
-    """The expressions directly in a statement (an Assign's target included)."""
+    """Return the expressions directly in a statement (including the target of an Assign)."""
     match stmt:
         case Let(_, value) | Var(_, value) | Return(value):
             return (value,)
@@ -202,7 +215,7 @@ def expressions(stmt: Stmt) -> tuple[Expr, ...]:
 
 
 def blocks(stmt: Stmt) -> tuple[tuple[Stmt, ...], ...]:
-    """The blocks inside a statement."""
+    """Return the blocks directly inside a statement."""
     match stmt:
         case If(_, then, otherwise):
             return (then, otherwise)
@@ -215,7 +228,7 @@ def blocks(stmt: Stmt) -> tuple[tuple[Stmt, ...], ...]:
 
 
 def statements_in(body: tuple[Stmt, ...]) -> Iterator[Stmt]:
-    """Every statement of a block and of the blocks inside it, in order."""
+    """Yield every statement of a block and of the blocks inside it, in order."""
     for stmt in body:
         yield stmt
         for block in blocks(stmt):
@@ -223,7 +236,7 @@ def statements_in(body: tuple[Stmt, ...]) -> Iterator[Stmt]:
 
 
 def expressions_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
-    """Every distinct expression node of a block, blocks inside it included."""
+    """Yield every distinct expression node of a block, including the blocks inside it."""
     seen: set[Expr] = set()
     for stmt in statements_in(body):
         for e in nodes_in(*expressions(stmt)):
@@ -233,7 +246,7 @@ def expressions_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
 
 
 def is_unchanging(e: Expr, variables: Collection[str]) -> bool:
-    """True for a leaf that means the same everywhere in a function.
+    """Return whether a leaf node has the same value everywhere in a function.
 
     ``variables`` are the locals that an Assign may change.
     """
@@ -243,12 +256,12 @@ def is_unchanging(e: Expr, variables: Collection[str]) -> bool:
 
 
 def per_frame_reads(*roots: Expr) -> set[str]:
-    """The names of the per-frame values that expressions read."""
+    """Return the names of the per-frame values that the expressions read."""
     return {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
 
 
 def per_frame_reads_in(functions: Iterable[Function]) -> set[str]:
-    """The names of the per-frame values that functions read themselves."""
+    """Return the names of the per-frame values that the functions read directly."""
     found = set()
     for function in functions:
         found |= {e.name for e in expressions_in(function.body) if isinstance(e, PerFrame)}
@@ -256,7 +269,7 @@ def per_frame_reads_in(functions: Iterable[Function]) -> set[str]:
 
 
 def names_read(body: tuple[Stmt, ...]) -> set[str]:
-    """The parameters and locals that a block reads, blocks inside it included."""
+    """Return the parameters and locals that a block reads, including the blocks inside it."""
     return {e.name for e in expressions_in(body) if isinstance(e, Read)}
 
 
@@ -265,7 +278,13 @@ def map_statement(
     expr: Callable[[Expr], Expr],
     block: Callable[[tuple[Stmt, ...]], tuple[Stmt, ...]],
 ) -> Stmt:
-    """The statement with its expressions and its blocks mapped (targets of Assign too)."""
+    """Return the statement with its expressions (also the target of an Assign) and blocks mapped.
+
+    Args:
+        stmt: The statement.
+        expr: Maps each expression directly in the statement.
+        block: Maps each block directly inside the statement.
+    """
     span = stmt.span
     match stmt:
         case Let(name, value):
@@ -289,12 +308,12 @@ def map_statement(
 
 
 def map_expressions(body: tuple[Stmt, ...], expr: Callable[[Expr], Expr]) -> tuple[Stmt, ...]:
-    """A block with the expressions of its statements mapped, inner blocks included."""
+    """Return a block with the expressions of its statements mapped, including inner blocks."""
     return tuple(map_statement(s, expr, lambda inner: map_expressions(inner, expr)) for s in body)
 
 
 def root_of(target: Expr) -> Read:
-    """The Var that an Assign's target is a part of."""
+    """Return the Var that the target of an Assign belongs to."""
     while not isinstance(target, Read):
         assert isinstance(target, Swizzle | Index | Field)
         target = target.base
@@ -302,7 +321,7 @@ def root_of(target: Expr) -> Read:
 
 
 def map_indices(target: Expr, change: Callable[[Expr], Expr]) -> Expr:
-    """An Assign's target with its indices mapped: the Var itself is written, not computed."""
+    """Map the indices in the target of an Assign; the rest of the target is kept."""
     match target:
         case Index(base, index):
             return rebuild(target, (map_indices(base, change), change(index)))

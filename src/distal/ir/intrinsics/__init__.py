@@ -1,23 +1,23 @@
-"""The one table of built-in functions.
+"""The table of built-in functions (intrinsics).
 
-A declaration is everything that is known of a built-in: its types, its one-sentence meaning, its
-definition, cost, folding and derivative, the functions of Python and NumPy that mean the same, how
-each target spells it, how far targets may differ, where tests sample it. Type checks, error hints,
-passes, backends, the generated stub, the parity tests and the reference page read it here. To add a
-built-in, add a declaration to the module of its theme.
+A declaration contains all facts about a built-in: its types, a one-sentence description, its
+definition, cost, folding and derivative, the equivalent functions of Python and NumPy, its spelling
+on each target, the allowed difference between targets, and the domain that tests sample. Type
+checks, error hints, passes, backends, the generated stub, the parity tests and the reference page
+read it from here. To add a built-in, add a declaration to the module of its subject.
 
-The definition is either ``meaning`` (NumPy, taking the array module as its first argument) or
-``scene``: the name of a function in ``distal.lang.prelude``, scene code, which then is the meaning
-on every target. Spellings for a target family:
+The definition is either ``meaning`` (NumPy code; its first argument is the array module) or
+``scene``: the name of a function in ``distal.lang.prelude``, written in scene code, which is then
+the definition on every target. Spellings for a target family:
 
-- ``None``: the target has it under the same name, meaning the same;
-- a template: ``{0}`` is the first argument; arguments arrive bracketed where needed;
+- ``None``: the target has the function under the same name and with the same meaning;
+- a template: ``{0}`` is the first argument; arguments are already in parentheses where needed;
 - ``SCENE``: the target calls the ``scene`` function;
 - ``"@name"``: the target calls that other prelude function (the CPU's elementary functions).
 
 The target families are glsl (ES 3.00, 3.30, Shadertoy), glsl100 (ES 1.00; ``None`` there means "as
-glsl"), wgsl and llvm (``None`` there: the LLVM backend makes it itself). The NumPy reference runs
-``meaning``, or the scene function.
+glsl"), wgsl and llvm (``None`` there: the LLVM backend generates the code itself). The NumPy
+reference runs ``meaning``, or the scene function.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ INTRINSICS: Final[dict[str, Intrinsic]] = {
 
 
 def python_functions(module: str) -> dict[str, str]:
-    """The functions of a Python module that mean a built-in, to its name.
+    """Map the functions of a Python module to the names of the equivalent built-ins.
 
     ``module`` is "math", "numpy", or empty for Python's own functions.
     """

@@ -1,4 +1,4 @@
-"""Bits of numbers, integer quotients, conversions and hashes."""
+"""Declarations of the intrinsics for bits, integer quotients, conversions and hashes."""
 
 from __future__ import annotations
 

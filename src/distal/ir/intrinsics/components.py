@@ -1,4 +1,4 @@
-"""Built-ins that work on each component: choosing, rounding, blending."""
+"""Declarations of the intrinsics that work on each component: selecting, rounding, blending."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""What the declaration of a built-in function holds.
+"""The class ``Intrinsic``: the declaration of a built-in function.
 
-Input: one ``Intrinsic(...)`` for each built-in, in the modules beside this one. Output: the columns
-that type checks, passes, backends, generated files and tests read. A declaration without its cost,
-folding, derivative or Python names is a type error.
+Input: one ``Intrinsic(...)`` for each built-in, in the other modules of this package. Output: the
+attributes that type checks, passes, backends, generated files and tests read. A declaration without
+cost, folding, derivative or Python names is a type error.
 """
 
 from __future__ import annotations
@@ -21,61 +21,63 @@ Interval: TypeAlias = tuple[float, float]
 
 SCENE: Final = "@"
 
-# Often used values of columns: domains, names of arguments, tolerances, results.
+# Frequent values of attributes: domains, names of arguments, tolerances, results.
 R: Final[Interval] = (-10.0, 10.0)
 UNIT: Final[Interval] = (-1.0, 1.0)
 ONE: Final = ("x",)
 TWO: Final = ("a", "b")
-# Tolerances are what the parity tests measure between the reference, our vector code and Mesa's
-# drivers (``DISTAL_PARITY_REPORT``), times 2 to 4. The loosest are Mesa's: asin and acos are off
-# by 4e-4, atan by 2e-5 of its value. exp, log, sin and the like are off by at most 8e-7 of the
-# value plus 5e-7; ours alone by 1.6e-7 (``tests/parity/test_elementary.py``).
+# Tolerances are the differences that the parity tests measure between the reference, our vector
+# code and Mesa's drivers (``DISTAL_PARITY_REPORT``), times 2 to 4. The largest are Mesa's: asin
+# and acos have errors of 4e-4, atan of 2e-5 of its value. exp, log, sin and other elementary
+# functions have errors of at most 8e-7 of the value plus 5e-7; ours alone of 1.6e-7
+# (``tests/parity/test_elementary.py``).
 CLOSE_RTOL: Final = 2e-6
 CLOSE_ATOL: Final = 1e-6
 ANYWHERE: Final[Interval] = (-math.inf, math.inf)
 NOT_NEGATIVE: Final[Interval] = (0.0, math.inf)
-# A driver's own function may overshoot.
+# The function of a driver may exceed 1 slightly.
 WITHIN_ONE: Final[Interval] = (-1.01, 1.01)
-WIDER: Final = 2e-6  # relative: more than the error of any target's arithmetic
+WIDER: Final = 2e-6  # relative; larger than the error of any target's arithmetic
 ZERO_TO_ONE: Final[Interval] = (0.0, 1.0 + WIDER)
 
 
 @dataclass(frozen=True, slots=True)
 class Intrinsic:
-    """A built-in function.
+    """The declaration of a built-in function.
 
     Attributes:
-        name: How an author writes it.
+        name: The name in scene code.
         doc: One sentence; angles in radians.
         args: The names of the arguments.
-        signatures: The types it takes; tried in order.
-        domain: For each argument, the closed interval that tests sample (floats; ints likewise).
-        cost: Scalar operations for each component of the first argument, roughly
+        signatures: The accepted types; tried in order.
+        domain: For each argument, the closed interval that tests sample (floats and ints).
+        cost: Approximate scalar operations for each component of the first argument
             (``distal.passes.cost``).
-        fold: Its result for constant arguments, or ``folding.not_folded``.
-        derivative: The rule for its derivative; None where the result is no float.
-        python: The functions of Python and NumPy that mean the same in scene code and between
+        fold: Computes the result for constant arguments, or ``folding.not_folded``.
+        derivative: The rule for its derivative; None where the result is not a float.
+        python: The equivalent functions of Python and NumPy, accepted in scene code and between
             expressions: ``abs``, ``math.fabs``, ``numpy.fabs``.
         meaning: NumPy definition, or None when ``scene`` is the definition.
         scene: The prelude function that defines it or can replace it.
-        rtol: Relative disagreement allowed between any two targets; 0 means equal bits.
-        atol: Absolute disagreement allowed.
-        glsl: Spelling; see the package's text.
+        rtol: Allowed relative difference between any two targets; 0 means equal bits.
+        atol: Allowed absolute difference.
+        glsl: Spelling; see the docstring of the package.
         glsl100: Spelling for GLSL ES 1.00 where it differs from ``glsl``.
-        glsl_scalars: Positions of arguments that GLSL also takes as scalars beside vectors.
+        glsl_scalars: Positions of arguments that GLSL also accepts as scalars next to vectors.
         wgsl: Spelling.
         llvm: Spelling.
-        careful: The prelude function that replaces it on targets whose drivers are inexact
-            (``Target.rough``); elsewhere, and where a host trusts its driver, they spell it as
-            their family does.
-        held: The interval to which the only argument is clamped before anything else; ``meaning``
-            and the prelude's functions need to mean something only there.
-        guarded: Targets that spell it themselves do so only where that certainly means the same
-            (``passes.decompose.edges``); elsewhere they call the ``scene`` function too.
-        results: An interval that holds every result on every target.
-        edges: What it gives where mathematics has no answer or many, in a sentence. Elsewhere, and
-            wherever this is empty, ordinary numbers (``limits.ORDINARY``) give a finite number.
-        reach: Up to which magnitude of its arguments that holds.
+        careful: The prelude function that replaces it on targets whose drivers are inaccurate
+            (``Target.rough``). Other targets, and hosts that trust their driver, use the spelling
+            of their family.
+        held: The interval to which the only argument is clamped first; ``meaning`` and the
+            prelude's functions have to be defined only on this interval.
+        guarded: Targets with a spelling of their own use it only where it provably gives the same
+            result (``passes.decompose.edges``); otherwise they too call the ``scene`` function.
+        results: An interval that contains every result on every target.
+        edges: One sentence: the result where the mathematical function has no value or several.
+            Otherwise, and wherever this is empty, ordinary numbers (``limits.ORDINARY``) give a
+            finite number.
+        reach: The largest magnitude of arguments for which the result is finite.
         hidden: Not a name of the language: only prelude code and passes use it.
     """
 
@@ -107,7 +109,11 @@ class Intrinsic:
     reach: float = limits.ORDINARY
 
     def spelling(self, family: str) -> str | None:
-        """The spelling for a target family, with ``SCENE`` filled in as ``@name``."""
+        """Return the spelling for a target family; ``SCENE`` becomes ``@`` and the function's name.
+
+        Raises:
+            KeyError: There is no such family.
+        """
         column: str | None
         match family:
             case "glsl":

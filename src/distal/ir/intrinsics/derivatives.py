@@ -2,11 +2,11 @@
 
 Input: a ``Builtin`` and, for one direction, the tangent of each argument (None where an argument
 does not change). Output: the tangent of the result, an expression over the same arguments. The
-builtin itself is its value, for rules that need it.
+``Builtin`` node itself is the function's value, for rules that need it.
 
-Where a function has no derivative, one is chosen: 0 for length, abs and sqrt at 0 and wherever the
-true slope is infinite; a tie of min or max follows the first argument. At ordinary numbers no rule
-gives NaN or an infinity (``distal.ir.limits``).
+Where a function has no derivative, a value is chosen: 0 for length, abs and sqrt at 0 and wherever
+the true derivative is infinite; at a tie, min and max use the first argument. For ordinary numbers
+no rule gives NaN or an infinity (``distal.ir.limits``).
 """
 
 from __future__ import annotations
@@ -81,86 +81,86 @@ def _dot(lhs: Expr, rhs: Expr) -> Expr:
 
 
 def _ordinary(slope: Expr) -> Expr:
-    """A slope that may be beyond all numbers, held among the ordinary ones."""
+    """Clamp a derivative that may overflow to the range of ordinary numbers."""
     end = number(ORDINARY, slope.type)
     return _call("min", _call("max", slope, _negated(end)), end)
 
 
 def constant(e: Builtin, d: Lanes) -> Tangent:
-    """Steps, and what is not a float: no change."""
+    """Differentiate a step function, or a function whose result is not a float: zero."""
     return None
 
 
-# One argument, component by component.
+# Rules for one argument, component by component.
 
 
 def absolute(e: Builtin, d: Lanes) -> Tangent:
-    """Abs: the sign, 0 at 0."""
+    """Differentiate abs: the sign of the argument, 0 at 0."""
     return scaled(d[0], _call("sign", e.args[0]))
 
 
 def same(e: Builtin, d: Lanes) -> Tangent:
-    """Fract: x less a step."""
+    """Differentiate fract, the argument minus a step function: the tangent is unchanged."""
     return d[0]
 
 
 def to_radians(e: Builtin, d: Lanes) -> Tangent:
-    """A constant factor."""
+    """Differentiate radians: a constant factor."""
     return scaled(d[0], number(math.pi / 180.0, e.type))
 
 
 def to_degrees(e: Builtin, d: Lanes) -> Tangent:
-    """A constant factor."""
+    """Differentiate degrees: a constant factor."""
     return scaled(d[0], number(180.0 / math.pi, e.type))
 
 
 def square_root(e: Builtin, d: Lanes) -> Tangent:
-    """1 / (2 sqrt(x)); 0 at 0."""
+    """Differentiate sqrt: 1 / (2 sqrt(x)); 0 at 0."""
     return scaled(d[0], where_positive(e.args[0], _quotient(number(0.5, e.type), e)))
 
 
 def inverse_square_root(e: Builtin, d: Lanes) -> Tangent:
-    """-1 / (2 x sqrt(x)); 0 where that is beyond all numbers."""
+    """Differentiate inversesqrt: -1 / (2 x sqrt(x)); 0 where that could overflow."""
     x = e.args[0]
     slope = _quotient(product(number(-0.5, e.type), e), x)
     return scaled(d[0], where_above(x, SMALLEST_DIVISOR, slope))
 
 
 def exponential(e: Builtin, d: Lanes) -> Tangent:
-    """Itself."""
+    """Differentiate exp: the function itself."""
     return scaled(d[0], e)
 
 
 def exponential_base_2(e: Builtin, d: Lanes) -> Tangent:
-    """Itself times log 2."""
+    """Differentiate exp2: the function itself times log 2."""
     return scaled(d[0], product(e, number(math.log(2.0), e.type)))
 
 
 def logarithm(e: Builtin, d: Lanes) -> Tangent:
-    """1 / x; 0 where the argument is held."""
+    """Differentiate log: 1 / x; 0 where the argument is clamped."""
     x = e.args[0]
     return scaled(d[0], where_above(x, SMALLEST, _quotient(number(1.0, e.type), x)))
 
 
 def logarithm_base_2(e: Builtin, d: Lanes) -> Tangent:
-    """1 / (x log 2); 0 where the argument is held."""
+    """Differentiate log2: 1 / (x log 2); 0 where the argument is clamped."""
     x = e.args[0]
     slope = _quotient(number(1.0 / math.log(2.0), e.type), x)
     return scaled(d[0], where_above(x, 2.0 * SMALLEST, slope))
 
 
 def sine(e: Builtin, d: Lanes) -> Tangent:
-    """Cosine."""
+    """Differentiate sin: the cosine."""
     return scaled(d[0], _call("cos", e.args[0]))
 
 
 def cosine(e: Builtin, d: Lanes) -> Tangent:
-    """Minus sine."""
+    """Differentiate cos: minus the sine."""
     return scaled(d[0], _negated(_call("sin", e.args[0])))
 
 
 def tangent(e: Builtin, d: Lanes) -> Tangent:
-    """1 + tan^2."""
+    """Differentiate tan: 1 + tan^2."""
     return scaled(d[0], _sum(number(1.0, e.type), product(e, e)))
 
 
@@ -170,74 +170,74 @@ def _arc_slope(x: Expr) -> Expr:
 
 
 def arc_sine(e: Builtin, d: Lanes) -> Tangent:
-    """1 / sqrt(1 - x^2); 0 at the ends."""
+    """Differentiate asin: 1 / sqrt(1 - x^2); 0 at -1 and 1."""
     return scaled(d[0], _arc_slope(e.args[0]))
 
 
 def arc_cosine(e: Builtin, d: Lanes) -> Tangent:
-    """-1 / sqrt(1 - x^2); 0 at the ends."""
+    """Differentiate acos: -1 / sqrt(1 - x^2); 0 at -1 and 1."""
     return scaled(d[0], _negated(_arc_slope(e.args[0])))
 
 
 def arc_tangent(e: Builtin, d: Lanes) -> Tangent:
-    """1 / (1 + x^2)."""
+    """Differentiate atan: 1 / (1 + x^2)."""
     x = e.args[0]
     return over(d[0], _sum(number(1.0, e.type), product(x, x)))
 
 
 def hyperbolic_sine(e: Builtin, d: Lanes) -> Tangent:
-    """Hyperbolic cosine."""
+    """Differentiate sinh: the hyperbolic cosine."""
     return scaled(d[0], _call("cosh", e.args[0]))
 
 
 def hyperbolic_cosine(e: Builtin, d: Lanes) -> Tangent:
-    """Hyperbolic sine."""
+    """Differentiate cosh: the hyperbolic sine."""
     return scaled(d[0], _call("sinh", e.args[0]))
 
 
 def hyperbolic_tangent(e: Builtin, d: Lanes) -> Tangent:
-    """1 - tanh^2."""
+    """Differentiate tanh: 1 - tanh^2."""
     return scaled(d[0], _difference(number(1.0, e.type), product(e, e)))
 
 
-# Several arguments, component by component.
+# Rules for several arguments, component by component.
 
 
 def minimum(e: Builtin, d: Lanes) -> Tangent:
-    """The smaller one's; a tie follows the first."""
+    """Differentiate min: the tangent of the smaller argument; at a tie, of the first."""
     a, b = e.args
     return picked(_less(b, a), d[1], d[0], e.type)
 
 
 def maximum(e: Builtin, d: Lanes) -> Tangent:
-    """The larger one's; a tie follows the first."""
+    """Differentiate max: the tangent of the larger argument; at a tie, of the first."""
     a, b = e.args
     return picked(_less(a, b), d[1], d[0], e.type)
 
 
 def clamped(e: Builtin, d: Lanes) -> Tangent:
-    """Of min(max(x, low), high)."""
+    """Differentiate clamp, min(max(x, low), high)."""
     x, low, high = e.args
     raised = picked(_less(x, low), d[1], d[0], e.type)
     return picked(_less(high, _call("max", x, low)), d[2], raised, e.type)
 
 
 def remainder(e: Builtin, d: Lanes) -> Tangent:
-    """Of a - b * floor(a / b), floor being a step; 0 where b counts as 0."""
+    """Differentiate a - b * floor(a / b), with floor as a step; along b, 0 where b counts as 0."""
     a, b = e.args
     whole = _call("floor", _quotient(a, b))
     return minus(d[0], scaled(d[1], where_above(_call("abs", b), SMALLEST_DIVISOR, whole)))
 
 
 def mixed(e: Builtin, d: Lanes) -> Tangent:
-    """Of a + (b - a) * t."""
+    """Differentiate mix, a + (b - a) * t."""
     a, b, t = e.args
     across = plus(scaled(minus(d[1], d[0]), t), scaled(d[2], _difference(b, a)))
     return plus(d[0], across)
 
 
 def smoothstepped(e: Builtin, d: Lanes) -> Tangent:
-    """6 t (1 - t) times the change of t = (x - low) / (high - low)."""
+    """Differentiate smoothstep: 6 t (1 - t) times the tangent of t = (x - low) / (high - low)."""
     low, high, x = e.args
     between = _difference(high, low)
     is_step = _less(_call("abs", between), number(SMALLEST, e.type))
@@ -250,7 +250,7 @@ def smoothstepped(e: Builtin, d: Lanes) -> Tangent:
 
 
 def power(e: Builtin, d: Lanes) -> Tangent:
-    """Along x: y x^(y-1); along y: x^y log x; 0 for x <= 0."""
+    """Differentiate pow: along x, y x^(y-1); along y, x^y log x; 0 for x <= 0."""
     x, y = e.args
     along_x = scaled(d[0], where_above(x, SMALLEST, _ordinary(_quotient(product(e, y), x))))
     along_y = scaled(d[1], where_above(x, SMALLEST, _ordinary(product(e, _call("log", x)))))
@@ -258,36 +258,36 @@ def power(e: Builtin, d: Lanes) -> Tangent:
 
 
 def arc_tangent_2(e: Builtin, d: Lanes) -> Tangent:
-    """(x dy - y dx) / (x^2 + y^2); 0 at the origin."""
+    """Differentiate atan2: (x dy - y dx) / (x^2 + y^2); 0 at the origin."""
     y, x = e.args
     square = _sum(product(x, x), product(y, y))
     around = minus(scaled(d[0], x), scaled(d[1], y))
     return scaled(around, where_above(square, SMALLEST, _quotient(number(1.0, e.type), square)))
 
 
-# Vectors.
+# Rules for vectors.
 
 
 def _unit(v: Expr, length: Expr) -> tuple[Expr, Expr]:
-    """The vector ``v / length``, and 1 / length; zero for a zero vector."""
+    """Return the unit vector ``v / length`` and 1 / length; both are zero for a zero vector."""
     inverse = where_positive(length, _quotient(number(1.0, FLOAT), length))
     return product(v, inverse), inverse
 
 
 def length(e: Builtin, d: Lanes) -> Tangent:
-    """The part of the change along v; 0 for a zero vector."""
+    """Differentiate length: the component of the tangent along v; 0 for a zero vector."""
     direction, _ = _unit(e.args[0], e)
     return inner(direction, d[0])
 
 
 def distance(e: Builtin, d: Lanes) -> Tangent:
-    """Of length(a - b)."""
+    """Differentiate length(a - b)."""
     direction, _ = _unit(_difference(e.args[0], e.args[1]), e)
     return inner(direction, minus(d[0], d[1]))
 
 
 def normalized(e: Builtin, d: Lanes) -> Tangent:
-    """The part of the change across v, over its length."""
+    """Differentiate normalize: the part of the tangent perpendicular to v, over the length of v."""
     v = e.args[0]
     direction, inverse = _unit(v, _call("length", v, type=FLOAT))
     along = splatted(inner(direction, d[0]), e.type)
@@ -295,7 +295,7 @@ def normalized(e: Builtin, d: Lanes) -> Tangent:
 
 
 def dot(e: Builtin, d: Lanes) -> Tangent:
-    """The product rule."""
+    """Differentiate dot: the product rule."""
     return plus(inner(e.args[1], d[0]), inner(e.args[0], d[1]))
 
 
@@ -306,12 +306,12 @@ def _bilinear(e: Builtin, d: Lanes) -> Tangent:
 
 
 def cross(e: Builtin, d: Lanes) -> Tangent:
-    """The product rule."""
+    """Differentiate cross: the product rule."""
     return _bilinear(e, d)
 
 
 def reflected(e: Builtin, d: Lanes) -> Tangent:
-    """Of i - 2 dot(n, i) n."""
+    """Differentiate reflect, i - 2 dot(n, i) n."""
     incident, normal = e.args
     facing = product(number(2.0, FLOAT), _dot(normal, incident))
     turned = scaled(plus(inner(incident, d[1]), inner(normal, d[0])), number(2.0, FLOAT))
@@ -320,7 +320,10 @@ def reflected(e: Builtin, d: Lanes) -> Tangent:
 
 
 def refracted(e: Builtin, d: Lanes) -> Tangent:
-    """Of eta i - (eta c + sqrt(k)) n, c = dot(n, i), k = 1 - eta^2 (1 - c^2); 0 for k < 0."""
+    """Differentiate refract; 0 for k < 0 (total reflection).
+
+    The value is eta i - (eta c + sqrt(k)) n, with c = dot(n, i) and k = 1 - eta^2 (1 - c^2).
+    """
     incident, normal, eta = e.args
     facing = _dot(normal, incident)
     d_facing = plus(inner(incident, d[1]), inner(normal, d[0]))
@@ -343,28 +346,28 @@ def refracted(e: Builtin, d: Lanes) -> Tangent:
 
 
 def facing_forward(e: Builtin, d: Lanes) -> Tangent:
-    """Plus or minus the normal's."""
+    """Differentiate faceforward: plus or minus the tangent of the normal."""
     _, incident, reference = e.args
     return picked(
         _less(_dot(incident, reference), number(0.0, FLOAT)), d[0], negative(d[0]), e.type
     )
 
 
-# Matrices.
+# Rules for matrices.
 
 
 def transposed(e: Builtin, d: Lanes) -> Tangent:
-    """Linear."""
+    """Differentiate transpose, which is linear: the transpose of the tangent."""
     return None if d[0] is None else _call("transpose", d[0])
 
 
 def outer(e: Builtin, d: Lanes) -> Tangent:
-    """The product rule."""
+    """Differentiate the outer product: the product rule."""
     return _bilinear(e, d)
 
 
 def determinant(e: Builtin, d: Lanes) -> Tangent:
-    """The sum over the columns of the determinant with that column's change in its place."""
+    """Differentiate determinant: sum the determinants with one column replaced by its tangent."""
     m, dm = e.args[0], d[0]
     if dm is None:
         return None
@@ -379,7 +382,7 @@ def determinant(e: Builtin, d: Lanes) -> Tangent:
 
 
 def inverse(e: Builtin, d: Lanes) -> Tangent:
-    """-m^-1 dm m^-1."""
+    """Differentiate inverse: -m^-1 dm m^-1."""
     if d[0] is None:
         return None
     return negative(matrix_product(matrix_product(e, d[0], e.type), e, e.type))

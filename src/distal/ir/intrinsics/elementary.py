@@ -1,4 +1,4 @@
-"""Roots, powers, angles and the other elementary functions."""
+"""Declarations of the elementary intrinsics: roots, powers, exponentials, logarithms, angles."""
 
 from __future__ import annotations
 

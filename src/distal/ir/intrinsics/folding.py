@@ -1,8 +1,8 @@
-"""What a built-in gives for constant arguments.
+"""Results of built-ins for constant arguments.
 
-Input: a ``ConstantCall``. Output: the components of the result, or NotFoldableError. Each step
-rounds to the module's precision in the order of the definition; elementary functions are computed
-in 64 bits and rounded once, closer than the declared tolerance.
+Input: a ``ConstantCall``. Output: the components of the result, or NotFoldableError. Each step is
+rounded to the module's precision in the order of the definition; elementary functions are computed
+in 64 bits and rounded once, which is more accurate than the declared tolerance.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class ConstantCall:
     """A call with constant arguments.
 
     Attributes:
-        args: The components of each argument, clamped where the intrinsic says so.
+        args: The components of each argument, clamped if the intrinsic clamps its argument.
         kind: The kind of the first argument's components.
         result: The kind of the result's components.
         arithmetic: Operations in the module's precision.
@@ -42,17 +42,21 @@ Fold: TypeAlias = Callable[[ConstantCall], Components]
 
 
 def not_folded(call: ConstantCall) -> Components:
-    """The result comes from the target."""
+    """Leave the result to the target.
+
+    Raises:
+        NotFoldableError: Always.
+    """
     raise NotFoldableError
 
 
 def whole(function: Callable[[float], float]) -> Fold:
-    """A whole number for each component."""
+    """Return a fold that applies a function with integral results to each component."""
     return lambda call: tuple(float(function(a)) for a in call.args[0])
 
 
 def rounded_once(function: Callable[..., float]) -> Fold:
-    """A function of 64 bits for each component, rounded to the precision."""
+    """Return a fold that computes each component in 64 bits and rounds it to the precision."""
 
     def fold(call: ConstantCall) -> Components:
         parts = zip(*call.args, strict=True)
@@ -62,12 +66,12 @@ def rounded_once(function: Callable[..., float]) -> Fold:
 
 
 def by_component(function: Callable[..., Number]) -> Fold:
-    """An exact function of a kind and of numbers of it, for each component."""
+    """Return a fold that applies an exact function of (kind, numbers of it) to each component."""
     return lambda call: tuple(function(call.kind, *p) for p in zip(*call.args, strict=True))
 
 
 def stepwise(function: Callable[..., Components]) -> Fold:
-    """A function of ``ConstantArithmetic`` and vectors, each step rounded."""
+    """Return a fold that calls ``function(arithmetic, *vectors)``, where each step is rounded."""
     return lambda call: function(call.arithmetic, *call.args)
 
 
@@ -79,86 +83,124 @@ def _rounded(calc: ConstantArithmetic, function: Callable[..., float], *args: Nu
     return calc.round(value)
 
 
-# Folds of whole calls.
+# Folds that take the whole call.
 
 
 def any_true(call: ConstantCall) -> Components:
-    """Whether a component is true."""
+    """Return whether any component is true."""
     return (any(call.args[0]),)
 
 
 def all_true(call: ConstantCall) -> Components:
-    """Whether every component is true."""
+    """Return whether every component is true."""
     return (all(call.args[0]),)
 
 
 def never(call: ConstantCall) -> Components:
-    """False for each component: no constant is NaN or infinite."""
+    """Return False for each component: no constant is NaN or infinite."""
     return tuple(False for _ in call.args[0])
 
 
 def reinterpreted(call: ConstantCall) -> Components:
-    """The same bits as numbers of the result's kind."""
+    """Return the same bits as numbers of the result's kind."""
     return tuple(call.arithmetic.bits(a, call.kind, call.result) for a in call.args[0])
 
 
 def in_range(call: ConstantCall) -> Components:
-    """Each float as a whole number, if the result's kind holds it."""
+    """Convert each float to an integer, if the result's kind can hold it.
+
+    Raises:
+        NotFoldableError: A component is out of range.
+    """
     found = tuple(int(a) for a in call.args[0])
     if any(wrap(a, call.result) != a for a in found):
         raise NotFoldableError
     return found
 
 
-# For ``by_component``.
+# Functions for ``by_component``.
 
 
 def smaller(kind: Kind, a: Number, b: Number) -> Number:
-    """Min."""
+    """Compute min.
+
+    Args:
+        kind: The kind of the numbers.
+        a: The first number.
+        b: The second number.
+    """
     return b if b < a else a
 
 
 def larger(kind: Kind, a: Number, b: Number) -> Number:
-    """Max."""
+    """Compute max.
+
+    Args:
+        kind: The kind of the numbers.
+        a: The first number.
+        b: The second number.
+    """
     return b if a < b else a
 
 
 def clamped(kind: Kind, x: Number, low: Number, high: Number) -> Number:
-    """Clamp: min(max(x, low), high)."""
+    """Compute clamp, min(max(x, low), high).
+
+    Args:
+        kind: The kind of the numbers.
+        x: The number to clamp.
+        low: The lower limit.
+        high: The upper limit.
+    """
     return smaller(kind, larger(kind, x, low), high)
 
 
 def magnitude(kind: Kind, a: Number) -> Number:
-    """Abs."""
+    """Compute abs; an int wraps."""
     return abs(a) if kind is Kind.FLOAT else wrap(abs(int(a)), kind)
 
 
 def sign(kind: Kind, a: Number) -> Number:
-    """-1, 0 or 1 of a's own type."""
+    """Return -1, 0 or 1, with the Python type of ``a``."""
     return type(a)((a > 0) - (a < 0))
 
 
 def truncated_quotient(kind: Kind, a: int, b: int) -> int:
-    """The quotient of whole numbers toward zero."""
+    """Compute the quotient of integers, rounded toward zero.
+
+    Args:
+        kind: The kind of the numbers.
+        a: The dividend.
+        b: The divisor.
+
+    Raises:
+        NotFoldableError: The divisor is 0.
+    """
     if b == 0:
         raise NotFoldableError
     quotient = abs(a) // abs(b)
     return wrap(quotient if (a < 0) == (b < 0) else -quotient, kind)
 
 
-# For ``rounded_once``.
+# Functions for ``rounded_once``.
 
 
 def angle(y: float, x: float) -> float:
-    """atan2; no zero is negative."""
+    """Compute atan2; negative zeros count as positive."""
     return math.atan2(y + 0.0, x + 0.0)
 
 
-# For ``stepwise``.
+# Functions for ``stepwise``.
 
 
 def power(calc: ConstantArithmetic, x: Floats, y: Floats) -> Floats:
-    """Pow, within its limits."""
+    """Compute pow with its limits.
+
+    Args:
+        calc: Operations in the module's precision.
+        x: The bases.
+        y: The exponents.
+    """
 
     def one(base: float, exponent: float) -> float:
         most = limits.largest_power(calc.precision)
@@ -173,7 +215,13 @@ def power(calc: ConstantArithmetic, x: Floats, y: Floats) -> Floats:
 
 
 def dot(calc: ConstantArithmetic, a: Floats, b: Floats) -> tuple[float]:
-    """The inner product, from the first component to the last."""
+    """Compute the inner product, summed from the first component to the last.
+
+    Args:
+        calc: Operations in the module's precision.
+        a: The first vector.
+        b: The second vector.
+    """
     total = calc.mul(a[0], b[0])
     for x, y in zip(a[1:], b[1:], strict=True):
         total = calc.add(total, calc.mul(x, y))
@@ -185,39 +233,57 @@ def _root(calc: ConstantArithmetic, a: float) -> float:
 
 
 def length(calc: ConstantArithmetic, a: Floats) -> tuple[float]:
-    """The Euclidean length."""
+    """Compute the Euclidean length."""
     return (_root(calc, dot(calc, a, a)[0]),)
 
 
 def distance(calc: ConstantArithmetic, a: Floats, b: Floats) -> tuple[float]:
-    """The length of a - b."""
+    """Compute the length of a - b.
+
+    Args:
+        calc: Operations in the module's precision.
+        a: The first point.
+        b: The second point.
+    """
     return length(calc, tuple(calc.sub(x, y) for x, y in zip(a, b, strict=True)))
 
 
 def normalized(calc: ConstantArithmetic, a: Floats) -> Floats:
-    """The vector over its length; 0 for the zero vector."""
+    """Divide the vector by its length; the zero vector gives 0."""
     square = max(dot(calc, a, a)[0], limits.smallest(calc.precision))
     return tuple(calc.div(x, _root(calc, square)) for x in a)
 
 
 def cross(calc: ConstantArithmetic, a: Floats, b: Floats) -> Floats:
-    """The vector product."""
+    """Compute the cross product.
+
+    Args:
+        calc: Operations in the module's precision.
+        a: The first vector.
+        b: The second vector.
+    """
     pairs = ((1, 2), (2, 0), (0, 1))
     return tuple(calc.sub(calc.mul(a[i], b[j]), calc.mul(a[j], b[i])) for i, j in pairs)
 
 
 def inverse_square_root(calc: ConstantArithmetic, a: Floats) -> Floats:
-    """1 / sqrt(x)."""
+    """Compute 1 / sqrt(x) for each component."""
     return tuple(calc.div(1.0, _root(calc, x)) for x in a)
 
 
 def fraction(calc: ConstantArithmetic, a: Floats) -> Floats:
-    """X - floor(x)."""
+    """Compute x - floor(x) for each component."""
     return tuple(calc.sub(x, float(math.floor(x))) for x in a)
 
 
 def remainder(calc: ConstantArithmetic, a: Floats, b: Floats) -> Floats:
-    """Mod; 0 where b counts as 0."""
+    """Compute mod; 0 where b counts as 0.
+
+    Args:
+        calc: Operations in the module's precision.
+        a: The dividends.
+        b: The divisors.
+    """
     parts = zip(a, b, strict=True)
     least = limits.SMALLEST_DIVISOR
     return tuple(0.0 if abs(y) < least else calc.float_binary(BinaryOp.MOD, x, y)
@@ -225,18 +291,38 @@ def remainder(calc: ConstantArithmetic, a: Floats, b: Floats) -> Floats:
 
 
 def stepped(calc: ConstantArithmetic, edge: Floats, a: Floats) -> Floats:
-    """Step: 0 where a < edge, else 1."""
+    """Compute step: 0 where a < edge, else 1.
+
+    Args:
+        calc: Operations in the module's precision.
+        edge: The limits.
+        a: The values.
+    """
     return tuple(0.0 if x < e else 1.0 for e, x in zip(edge, a, strict=True))
 
 
 def mixed(calc: ConstantArithmetic, a: Floats, b: Floats, t: Floats) -> Floats:
-    """A + (b - a) * t."""
+    """Compute a + (b - a) * t.
+
+    Args:
+        calc: Operations in the module's precision.
+        a: The values at t = 0.
+        b: The values at t = 1.
+        t: The weights of ``b``.
+    """
     parts = zip(a, b, t, strict=True)
     return tuple(calc.add(x, calc.mul(calc.sub(y, x), s)) for x, y, s in parts)
 
 
 def smoothstepped(calc: ConstantArithmetic, low: Floats, high: Floats, a: Floats) -> Floats:
-    """Smoothstep; a step where low and high are equal."""
+    """Compute smoothstep; a step where low and high are equal.
+
+    Args:
+        calc: Operations in the module's precision.
+        low: Where the result is 0.
+        high: Where the result is 1.
+        a: The values.
+    """
     result = []
     for bottom, top, x in zip(low, high, a, strict=True):
         extent = calc.sub(top, bottom)

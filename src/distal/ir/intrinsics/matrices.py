@@ -1,4 +1,4 @@
-"""Built-ins of matrices."""
+"""Declarations of the intrinsics on matrices."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Built-ins of vectors, and truth values of components."""
+"""Declarations of the intrinsics on vectors and on vectors of bools."""
 
 from __future__ import annotations
 
