@@ -1,1 +1,1 @@
-"""The compiler: the driver, the linked prelude library, and the evaluation of constants."""
+"""The compiler: the driver, the linker of prelude functions, and the evaluation of constants."""

@@ -1,8 +1,8 @@
-"""Built-ins of plain values, computed without a device: ``SUN = normalize(vec3(1, 2, 3))``.
+"""Evaluate built-ins of plain values without a device: ``SUN = normalize(vec3(1, 2, 3))``.
 
-Input: an intrinsic and Python numbers or vectors. Output: the value in 64 bits, by the same rules
-that fold constants in scene code; None where those leave it to a device. A scene's module may thus
-compute its constants where nothing but the standard library is.
+Input: an intrinsic and Python numbers or vectors. Output: the value in 64 bits, computed by the
+rules that fold constants in scene code; None where these rules leave the operation to a device. So
+a scene's module can compute its constants with only the standard library installed.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from distal.passes.fold.fold import fold_expression
 
 
 def compute(intrinsic: Intrinsic, args: Sequence[Any]) -> Any | None:
-    """``intrinsic(*args)``, or None where it is not known here."""
+    """Return ``intrinsic(*args)``, or None if it cannot be computed here."""
     try:
         call = call_with_constants(intrinsic, args)
-    except RefusedError:  # NaN and the like
+    except RefusedError:  # the result is NaN or infinite, for example
         return None
     return None if call is None else _python_value(fold_expression(call, 64))
 

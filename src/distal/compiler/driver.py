@@ -1,7 +1,7 @@
-"""The whole pipeline on one screen: scene code in, a target's text out.
+"""The whole compiler pipeline: from scene code to the text for a target.
 
-``lower`` makes IR of the author's function, the passes shape it for a target, a backend writes it.
-Needs the standard library only.
+``lower`` converts the author's function to IR, the passes transform the IR for a target, and a
+backend writes the text. Depends on the standard library only.
 """
 
 from __future__ import annotations
@@ -25,26 +25,32 @@ from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.pipeline import PASS_NAMES, PIPELINE
 
-# The tests set this: every pass's output is then held against the IR's rules.
+# The tests set this: then the output of every pass is verified against the rules of the IR.
 VERIFY = os.environ.get("DISTAL_VERIFY", "") == "1"
 
-IR_TARGET = "ir"  # the IR as the CPU's passes leave it, printed
-# The reference is run, not written.
+IR_TARGET = "ir"  # prints the IR after the CPU's passes
+# "numpy", the reference, runs the IR directly and has no text.
 COMPILE_TARGETS: Final = (IR_TARGET, *(name for name in target_names() if name != "numpy"))
 
 
 def run_passes(
     module: Module, target: Target, precision: int = 32, after: str | None = None
 ) -> Module:
-    """Shape a lowered module for a target, up to and including the pass ``after``.
+    """Run the passes on a lowered module for a target.
+
+    Args:
+        module: The lowered module.
+        target: The target to compile for.
+        precision: The bits of a float, 32 or 64.
+        after: The last pass to run; None runs all.
 
     Raises:
-        CompileError: The scene code says what the target cannot do.
+        CompileError: The scene code uses something that the target does not support.
     """
     try:
         return _run_passes(module, target, precision, after)
     except RecursionError:
-        # A ladder of hundreds of elif is as many blocks inside one another.
+        # An elif chain of hundreds of branches is a chain of as many nested blocks.
         entry = module.function(module.entry)
         hint = "put parts of it into functions of their own"
         message = f"'{entry.source_name}' or what it calls is too deeply nested"
@@ -53,7 +59,7 @@ def run_passes(
 
 def _run_passes(module: Module, target: Target, precision: int, after: str | None) -> Module:
     context = Context(target, PreludeLibrary(), precision)
-    # The passes rely on callees before callers; each keeps it, which ``verify`` checks.
+    # The passes rely on callees preceding callers, and keep this order; ``verify`` checks it.
     module = replace(module, functions=in_call_order(module.functions, module.entry))
     verifier = Verifier() if VERIFY else None
     if verifier is not None:
@@ -71,15 +77,15 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
     """Compile a scene, an ``@image`` or a ``@func`` to the text of a target.
 
     Args:
-        obj: What to compile. Of a ``@func`` the text holds the functions, and no entry point
+        obj: What to compile. For a ``@func``, the text contains the functions and no entry point
             (``wgsl-compute``: one that calls it for many points).
         target: One of ``COMPILE_TARGETS``: "ir", "llvm", or a text: "glsl-es300", "wgsl" ...
-        after: For ``ir``: the pass after which to stop; ``"lower"`` for none at all.
+        after: For ``ir``: the pass after which to stop; ``"lower"`` runs no pass.
 
     Raises:
-        CompileError: The scene code has mistakes, or says what the target cannot do.
+        CompileError: The scene code has mistakes, or uses something the target does not support.
         ValueError: There is no such target or pass.
-        TypeError: It is neither.
+        TypeError: ``obj`` is not a scene, an ``@image`` or a ``@func``.
     """
     if not isinstance(obj, Func | Composed):
         kind = type(obj).__name__

@@ -1,7 +1,7 @@
-"""The prelude as passes see it: lowered on demand, linked into a module under free names.
+"""The prelude for passes: functions are lowered on demand and linked to a module under free names.
 
-Input: the name of a prelude function and argument types. Output: IR functions. It implements
-``distal.ir.library.Library``, what passes require, with the front end.
+Input: the name of a prelude function and argument types. Output: IR functions. Implements
+``distal.ir.library.Library``, the interface that passes require, with the front end.
 """
 
 from __future__ import annotations
@@ -18,26 +18,35 @@ from distal.ir.walk import map_expressions, rewrite
 
 @cache
 def _lowered(name: str, args: tuple[Type, ...]) -> tuple[Function, ...]:
-    """The overload and what it calls, callees first; empty when there is no such overload."""
+    """Return the overload and its callees, callees first; empty if there is no such overload."""
     module, _, function = name.partition(".")
     func = getattr(importlib.import_module(f"distal.lang.prelude.{module}"), function)
     return lower_overload(func, args) if has_overload(func, args) else ()
 
 
 class PreludeLibrary:
-    """The prelude, linked into one module after another of a single compilation."""
+    """Links prelude functions into the successive modules of a single compilation."""
 
     def __init__(self) -> None:
-        # Lowered prelude function -> the function as it was put into the module.
+        # Lowered prelude function -> the function as it was added to the module.
         self._linked: dict[Function, Function] = {}
 
     def find(self, name: str, args: tuple[Type, ...]) -> Function | None:
-        """The lowered overload for exactly these types, or None."""
+        """Return the lowered overload for exactly these types, or None."""
         functions = _lowered(name, args)
         return functions[-1] if functions else None
 
     def link(self, module: Module, name: str, args: tuple[Type, ...]) -> tuple[Module, str]:
-        """The module with the overload and its callees in it, and the overload's name there."""
+        """Add an overload and its callees to the module.
+
+        Args:
+            module: The module to add to.
+            name: The prelude function's name, such as ``elementary.sine``.
+            args: The argument types of the overload.
+
+        Returns:
+            The new module, and the overload's name in it.
+        """
         functions = _lowered(name, args)
         assert functions, f"the prelude has no {name} of {', '.join(map(str, args))}"
         present = {f.name: f for f in module.functions}
@@ -64,7 +73,7 @@ def _free_name(wanted: str, taken: dict[str, Function]) -> str:
 
 
 def _renamed(function: Function, name: str, callees: dict[str, str]) -> Function:
-    """The function under another name, calling its callees by theirs."""
+    """Return the function under another name, calling its callees by their new names."""
     memo: dict[Expr, Expr] = {}
 
     def call(e: Expr) -> Expr:
