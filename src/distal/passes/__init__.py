@@ -1,4 +1,4 @@
-"""Passes from IR to IR. One file, one pass, one public function ``run(module, context)``.
+"""Passes that transform the IR. Each is one file with one public function ``run(module, context)``.
 
-``pipeline`` lists them in the order they run.
+``pipeline`` lists them in the order in which they run.
 """

@@ -1,8 +1,9 @@
 """Make the clamping of indices explicit where an index is not provably in range.
 
-Input: a module whose every index is clamped in meaning. Output: the same, with ``min(max(i, 0), n -
-1)`` in place of ``i`` unless its interval lies within 0 .. n - 1. Memory safety of compiled code
-rests on this pass. Buffers, whose length is known when they are bound, stay with the backend.
+Input: a module in which every index is implicitly clamped. Output: the same module with
+``min(max(i, 0), n - 1)`` instead of ``i`` unless the interval of ``i`` lies within 0 .. n - 1. The
+memory safety of compiled code depends on this pass. Indices of buffers, whose length is known only
+when data is bound to them, are clamped by the backend.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from distal.ir.walk import expressions_in, map_statement, rewrite
 from distal.passes.context import Context
 from distal.passes.ranges import Ranges
 
-# Prelude functions that bound their result, as (name, argument types): the intrinsic or operator.
+# Prelude functions with a bounded result, (name, argument types) -> the intrinsic or operator.
 _BOUNDING: Final[dict[tuple[str, tuple[Type, ...]], str]] = {
     ("integers.floor_remainder", (INT, INT)): "%",
     ("integers.floor_remainder", (UINT, UINT)): "%",
@@ -27,7 +28,7 @@ _BOUNDING: Final[dict[tuple[str, tuple[Type, ...]], str]] = {
 
 
 def run(module: Module, context: Context) -> Module:
-    """Clamp every index that needs it."""
+    """Clamp every index that is not provably in range."""
     if not any(_indexes(f) for f in module.functions):
         return module
     meanings = _bounding_functions(module, context)
@@ -40,14 +41,15 @@ def _indexes(function: Function) -> bool:
 
 
 def _bounding_functions(module: Module, context: Context) -> dict[str, str]:
-    """Which functions of the module are linked prelude functions that bound their result."""
+    """Return the module's functions that are linked from ``_BOUNDING``, with their operations."""
     found: dict[str, str] = {}
     present = {f.name for f in module.functions}
     for (name, args), meaning in _BOUNDING.items():
         base = name.partition(".")[2]
         if not any(f.source_name.startswith(base) for f in module.functions):
             continue
-        # Linking what is there adds nothing and returns its name; what it adds is not called.
+        # Linking a function that is present adds nothing and returns its name; otherwise the module
+        # does not call it.
         linked, function = context.library.link(module, name, args)
         if function in present and len(linked.functions) == len(module.functions):
             found[function] = meaning
@@ -55,7 +57,7 @@ def _bounding_functions(module: Module, context: Context) -> dict[str, str]:
 
 
 class _IndexBounder:
-    """One function, gone through in order so that every local is known where it is read."""
+    """Bounds the indices of one function, visiting each local before its reads."""
 
     def __init__(self, meanings: dict[str, str]) -> None:
         self._ranges = Ranges(meanings)

@@ -1,7 +1,7 @@
-"""Callees before callers.
+"""Sort functions so that each callee precedes its callers.
 
-Input: functions in any order, and the entry. Output: those that the entry reaches, each after
-everything it calls; otherwise in the order they are called, so that the same program always gives
+Input: functions in any order, and the entry. Output: the functions that the entry reaches, each
+after its callees, otherwise in the order in which they are called. The same program always gives
 the same order.
 """
 
@@ -14,7 +14,7 @@ from distal.ir.walk import expressions_in
 
 
 def in_call_order(functions: Iterable[Function], entry: str) -> tuple[Function, ...]:
-    """The functions that ``entry`` reaches, callees first."""
+    """Return the functions that ``entry`` reaches, callees first."""
     known = {f.name: f for f in functions}
     done: dict[str, Function] = {}
     opened: set[str] = set()

@@ -1,4 +1,4 @@
-"""What every pass is handed beside the module."""
+"""The arguments of every pass besides the module."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from distal.ir.target import Target
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """The target compiled for, the prelude, and the float precision in bits (32 or 64)."""
+    """The target, the prelude library, and the float precision in bits (32 or 64)."""
 
     target: Target
     library: Library

@@ -1,8 +1,8 @@
-"""What computing a node costs, in scalar operations, roughly.
+"""Estimate the cost of computing a node, in scalar operations.
 
-Input: expressions and functions. Output: whole numbers that passes compare with each other; they
-only have to be right within a factor of two. Taking values apart and putting them together is free:
-it is no work on any target.
+Input: expressions and functions. Output: integers that passes compare with each other; they only
+have to be right within a factor of two. Taking components from a value and building a value from
+components is free on every target.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from distal.ir.nodes import (
 from distal.ir.types import Kind, Matrix, Scalar, Type, Vector, component_count, kind_of
 from distal.ir.walk import blocks, expressions, nodes_in, statements_in
 
-UNKNOWN_ROUNDS: Final = 16  # what a loop is taken to run when its bounds are not constant
+UNKNOWN_ROUNDS: Final = 16  # the assumed number of iterations of a loop with non-constant bounds
 MOST_ROUNDS: Final = 128
 
 
@@ -57,7 +57,7 @@ def _components(type: Type) -> int:
 
 
 def node_cost(e: Expr, calls: Mapping[str, int]) -> int:
-    """The cost of one node without its operands; ``calls`` holds what functions cost."""
+    """Return the cost of one node without its operands; ``calls`` maps functions to their costs."""
     match e:
         case Const() | Read() | Uniform() | PerFrame() | Resource():
             return 0
@@ -98,14 +98,14 @@ def _operator_cost(op: BinaryOp, kind: Kind | None) -> int:
 
 
 class Costs:
-    """Costs of whole expressions, each distinct node counted once."""
+    """Costs of whole expressions; each distinct node is counted once."""
 
     def __init__(self, calls: Mapping[str, int]) -> None:
         self.calls = calls
         self._found: dict[Expr, int] = {}
 
     def of(self, e: Expr) -> int:
-        """The cost of an expression."""
+        """Return the cost of an expression."""
         found = self._found.get(e)
         if found is None:
             found = self._found[e] = sum(node_cost(n, self.calls) for n in nodes_in(e))
@@ -113,7 +113,7 @@ class Costs:
 
 
 def function_costs(functions: Iterable[Function]) -> dict[str, int]:
-    """What a call of each function costs; callees stand first."""
+    """Return the cost of each function's body; requires that callees precede callers."""
     costs: dict[str, int] = {}
     for function in functions:
         costs[function.name] = block_cost(function.body, costs)
@@ -121,7 +121,7 @@ def function_costs(functions: Iterable[Function]) -> dict[str, int]:
 
 
 def block_cost(body: tuple[Stmt, ...], calls: Mapping[str, int]) -> int:
-    """The cost of running a block, both branches of an If counted."""
+    """Return the cost of running a block; both branches of an If are counted."""
     total = 0
     for stmt in body:
         own = sum(node_cost(n, calls) for n in nodes_in(*expressions(stmt)))
@@ -133,7 +133,7 @@ def block_cost(body: tuple[Stmt, ...], calls: Mapping[str, int]) -> int:
 
 
 def rounds(stmt: Stmt) -> int:
-    """How often a statement's blocks are taken to run."""
+    """Return the assumed number of times that a statement's blocks run."""
     match stmt:
         case For(_, Const(start), Const(stop), step):
             return min(len(range(int(start), int(stop), step)), MOST_ROUNDS)
@@ -144,7 +144,7 @@ def rounds(stmt: Stmt) -> int:
 
 
 def size(body: tuple[Stmt, ...]) -> int:
-    """How much code a block is: its statements and the distinct nodes in each that do work."""
+    """Return the size of a block: its statements plus its nodes except constants and reads."""
     return sum(
         1 + sum(1 for n in nodes_in(*expressions(s)) if not isinstance(n, Const | Read))
         for s in statements_in(body)

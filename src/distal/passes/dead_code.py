@@ -1,8 +1,8 @@
-"""Removing locals that nothing reads.
+"""Remove locals that nothing reads.
 
-Input: the body of a function. Output: the same without Lets, Vars, assignments, branches and
-counted loops that no result depends on. A ``while`` stays: whether it ends is part of what the
-author wrote.
+Input: the body of a function. Output: the same body without Lets, Vars, assignments, branches and
+counted loops on which no result depends. A ``while`` is kept: whether it terminates is part of the
+program's behaviour.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ FreshNames: TypeAlias = frozenset[str]
 
 
 class ReadNames:
-    """The locals that expressions read, remembered for each node."""
+    """The locals that expressions read, cached for each node."""
 
     def __init__(self) -> None:
         self._found: dict[Expr, FreshNames] = {}
 
     def of(self, root: Expr) -> FreshNames:
-        """The names of the Reads in an expression."""
+        """Return the names of the Reads in an expression."""
         found = self._found
         known = found.get(root)
         if known is not None:
@@ -42,7 +42,7 @@ class ReadNames:
 
 
 def remove_dead(body: tuple[Stmt, ...], reads: ReadNames | None = None) -> tuple[Stmt, ...]:
-    """The body without what no Return, condition or bound depends on."""
+    """Return the body without the locals on which no Return, condition or loop bound depends."""
     reads = reads or ReadNames()
     needs: dict[str, set[str]] = {}
     wanted: set[str] = set()
@@ -59,7 +59,7 @@ def remove_dead(body: tuple[Stmt, ...], reads: ReadNames | None = None) -> tuple
 def _collect(
     body: tuple[Stmt, ...], reads: ReadNames, needs: dict[str, set[str]], wanted: set[str]
 ) -> None:
-    """Gather what each local's value depends on, and what is wanted in any case."""
+    """Collect the locals that each local depends on, and the locals that are always needed."""
     for stmt in body:
         match stmt:
             case Let(name, value) | Var(name, value):

@@ -1,14 +1,15 @@
-"""Give the module a plain entry point: what the host provides becomes coord and uniforms.
+"""Give the module a plain entry point: the values from the host become coord and uniforms.
 
 Input: a lowered module whose image function takes a ``Frame``. Output: a module without ``Frame``.
-A parameter of that type is now the vec2 ``coord``; every other part of it is a uniform of origin
-FRAME, declared only when it is read. An image is wrapped into ``main(coord: vec2) -> vec4``. The
-time that expressions made in Python read is the frame's, also where no ``Frame`` is. The pass does
-not know how a target provides coord or uniforms.
+A parameter of type ``Frame`` becomes the vec2 ``coord``; each other field of it becomes a uniform
+of origin FRAME, declared only when it is read. An image is wrapped into
+``main(coord: vec2) -> vec4``. The time in expressions created from Python becomes the frame's time,
+also in functions without a ``Frame``. The pass does not depend on how a target provides coord or
+uniforms.
 
-A frame's values own their uniforms' names. A parameter uniform of the same name (a slider called
+The names of the frame's values are reserved. A parameter uniform with such a name (a slider called
 "Time") gets ``_value`` appended, and its interface then ends in ``("parameter", "time")``, the name
-under which people set it.
+by which users set it.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ _FRAME_UNIFORMS: Final = {
 
 
 def run(module: Module, context: Context) -> Module:
-    """Replace ``Frame`` and wrap an image."""
+    """Replace ``Frame`` by coord and uniforms, and wrap an image into the entry function."""
     renamed = renamed_parameters(module.uniforms)
     used: set[str] = set()
     functions = [_FrameReplacer(f, renamed, used).function() for f in module.functions]
@@ -76,7 +77,7 @@ def run(module: Module, context: Context) -> Module:
 
 
 def renamed_parameters(uniforms: Iterable[UniformDeclaration]) -> dict[str, str]:
-    """The new names of the parameters that are called like a value of the frame."""
+    """Return the new names of the parameters that have the name of a frame value."""
     declared = [u.name for u in uniforms]
     alike = [name for name in declared if name in _FRAME_UNIFORMS]
     if not alike:
@@ -118,7 +119,7 @@ def _wrapper(functions: list[Function], entry: str) -> Function:
 
 
 def _without_frame(type: Type) -> Type:
-    """The type with a vec2 for each Frame a function value takes."""
+    """Return the type with vec2 in place of Frame, also in the parameters of a function type."""
     if type is FRAME:
         return VEC2
     if isinstance(type, FunctionType):
@@ -128,12 +129,12 @@ def _without_frame(type: Type) -> Type:
 
 
 class _FrameReplacer:
-    """One function: its frames by name, and how its expressions are rewritten."""
+    """Replaces the frames of one function by their coords and by uniforms."""
 
     def __init__(self, function: Function, renamed: dict[str, str], used: set[str]) -> None:
         self._function = function
         self._renamed = renamed
-        self._used = used  # the frame's uniforms read so far, in the whole module
+        self._used = used  # the frame's uniforms read so far in the whole module; extended
         self._coords: dict[str, Expr] = {}  # a local of type Frame -> its coord
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = function.span
@@ -194,7 +195,7 @@ class _FrameReplacer:
         return _retyped(rebuild(e, operands))
 
     def _coord(self, frame: Expr) -> Expr:
-        """The coord that replaces a value of type Frame."""
+        """Return the coord that replaces a value of type Frame."""
         if isinstance(frame, Read) and frame.name in self._coords:
             return self._coords[frame.name]
         raise self._misuse(frame)
@@ -208,7 +209,7 @@ class _FrameReplacer:
 
 
 def _retyped(e: Expr) -> Expr:
-    """A function value that takes a Frame takes its coord now."""
+    """Return a function value with each Frame parameter in its type replaced by the coord."""
     type = _without_frame(e.type)
     if type is e.type:
         return e

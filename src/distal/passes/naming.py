@@ -1,7 +1,8 @@
-"""Names that are free.
+"""Choose names that are not taken.
 
-Input: the names already taken, and a wanted name. Output: that name, or that name with the first
-number that is free. Deterministic: the same names in the same order give the same result.
+Input: the names already taken, and a wanted name. Output: the wanted name, or the wanted name with
+the first free number appended. Deterministic: the same names in the same order give the same
+result.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ class FreshNames:
         self._next: dict[str, int] = {}
 
     def fresh(self, wanted: str) -> str:
-        """``wanted`` if it is free, else ``wanted_2``, ``wanted_3`` ...; taken from now on."""
+        """Return and reserve ``wanted`` if it is free, else ``wanted_2``, ``wanted_3`` ..."""
         name = wanted
         if name in self._taken:
             count = self._next.get(wanted, 2)
@@ -32,7 +33,7 @@ class FreshNames:
         return name
 
     def numbered(self, stem: str) -> str:
-        """The first free name of ``stem_0``, ``stem_1`` ...; taken from now on."""
+        """Return and reserve the first free name of ``stem_0``, ``stem_1`` ..."""
         count = self._next.get(f"{stem}#", 0)
         while f"{stem}_{count}" in self._taken:
             count += 1
@@ -43,7 +44,7 @@ class FreshNames:
 
 
 def local_names(function: Function) -> Iterator[str]:
-    """The parameters and locals of a function."""
+    """Yield the parameters and locals of a function."""
     for param in function.params:
         yield param.name
     for stmt in statements_in(function.body):
@@ -52,7 +53,7 @@ def local_names(function: Function) -> Iterator[str]:
 
 
 def module_names(module: Module) -> Iterator[str]:
-    """The names a module gives to functions, uniforms, resources and per-frame values."""
+    """Yield the names of a module's functions, uniforms, resources and per-frame values."""
     yield from (f.name for f in module.functions)
     yield from (u.name for u in module.uniforms)
     yield from (r.name for r in module.resources)

@@ -1,7 +1,8 @@
-"""The numbers of a scene's shapes as constants, for a text or a kernel that is final.
+"""Replace the numbers in a scene's shapes by constants, for a text or kernel that will not change.
 
-Input: a lowered module. Output: the same without uniforms of origin NUMBER: each value stands where
-it was read, and the passes fold it. It costs a compilation for every change of a number.
+Input: a lowered module. Output: the same module without uniforms of origin NUMBER: each read is
+replaced by the value, so that the passes fold it. Then every change of a number requires a new
+compilation.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from distal.ir.walk import map_expressions, substitute
 
 
 def freeze(module: Module) -> Module:
-    """The module with its numbers as constants."""
+    """Return the module with its numbers as constants."""
     constants: dict[Expr, Expr] = {
         Uniform(u.name, u.type): constant(u.default, u.type)
         for u in module.uniforms
@@ -34,7 +35,11 @@ def freeze(module: Module) -> Module:
 
 
 def constant(value: Any, type: Type) -> Expr:
-    """A uniform's value as an expression."""
+    """Return a uniform's value as an expression.
+
+    Raises:
+        AssertionError: A uniform cannot have this type.
+    """
     match type:
         case Scalar():
             return number(value, type)

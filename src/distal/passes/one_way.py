@@ -1,10 +1,12 @@
-"""Ifs of two ways as Ifs of one, for drivers whose time doubles with each.
+"""Split Ifs with two branches into two Ifs, for drivers whose compile time doubles with each.
 
-Input: functions as a text would show them. Output: the same meaning; where two ways of an If may be
-equally long, its condition is bound first, and each way has an If of its own. Two returns at the
-end of a function are such ways too. Knows nothing of drivers beyond this: SwiftShader walks a loop
-block by block to find its way back, and walks on twice from a block that two ways of one length
-lead to: 2 to the power of such Ifs, over a loop and all that it calls.
+Input: functions just before a backend writes them. Output: functions with the same meaning; where
+the two branches of an If may be equally long, its condition is bound to a local first, and each
+branch gets its own If. Two returns at the end of a function count as such branches too.
+
+The reason: SwiftShader follows the blocks of a loop to find its back edge. From a block that two
+paths of equal length reach, it continues twice, so its time is 2 to the power of the number of such
+Ifs, over a loop and everything that the loop calls.
 """
 
 from __future__ import annotations
@@ -39,20 +41,20 @@ _Block = tuple[Stmt, ...]
 
 
 def run(module: Module, context: Context) -> Module:
-    """Part the ways of every function's Ifs, where the target wants it."""
+    """Split the Ifs of every function, if the target requires it."""
     if not context.target.one_way:
         return module
     return replace(module, functions=tuple(map(parted, module.functions)))
 
 
 def parted(function: Function) -> Function:
-    """The function without an If whose two ways may be equally long."""
+    """Return the function without an If whose two branches may be equally long."""
     names = FreshNames(local_names(function))
     return replace(function, body=_parted(_joined(function, names), names))
 
 
 def _joined(function: Function, names: FreshNames) -> _Block:
-    """The body; where it ends in two ways to return, these assign, and one Return follows."""
+    """Return the body; if it ends in two branches that return, they assign to a result instead."""
     *before, last = function.body
     after: list[Stmt] = []
     while before and isinstance(before[-1], Let | Var | Assign):
@@ -94,7 +96,7 @@ def _parted(block: _Block, names: FreshNames) -> _Block:
 
 
 def _two(fork: If, names: FreshNames) -> list[Stmt]:
-    """Both ways, one after the other; the first may change what the condition reads."""
+    """Return the branches as two Ifs. A local holds the condition, as the first may change it."""
     name = names.fresh("first")
     first = Read(name, BOOL)
     return [
@@ -105,7 +107,10 @@ def _two(fork: If, names: FreshNames) -> list[Stmt]:
 
 
 def _lengths(block: Sequence[Stmt]) -> frozenset[int]:
-    """How many branches lie on the ways through a block; none where one leaves it, or loops."""
+    """Return the possible numbers of branches on paths through a block.
+
+    Empty if a path leaves the block, or if the block contains a loop.
+    """
     found = frozenset([0])
     for stmt in block:
         match stmt:
@@ -115,7 +120,7 @@ def _lengths(block: Sequence[Stmt]) -> frozenset[int]:
                 through, around = _lengths(then), _lengths(otherwise)
                 if not (through and around):
                     return frozenset()
-                # To a way's first block, through it, and on to where the ways meet.
+                # The branches to the first block, through it, and to the block where paths join.
                 ways = {2 + n for n in through} | {(2 if otherwise else 1) + n for n in around}
                 found = frozenset(a + b for a in found for b in ways)
             case _:

@@ -1,12 +1,12 @@
-"""Outline: a very long function is cut into functions of its own, where the target wants it.
+"""Outline: cut a very long function into several functions, if the target requires it.
 
-Input: predicated functions. Output: the same values; of a function that is larger than ``LARGE``,
-runs of statements are functions of about ``PIECE`` that stay apart. LLVM's instruction selection
-and register allocation take time that grows with the square of a block's length: 800 lines of one
-block took 10 s, in pieces they take a tenth.
+Input: predicated functions. Output: functions with the same values; in a function larger than
+``LARGE``, sequences of statements become functions of about size ``PIECE`` that are not inlined
+again. The time of LLVM's instruction selection and register allocation grows with the square of a
+block's length: 800 lines of one block took 10 s, in pieces they take a tenth.
 
-A run takes the locals that it reads and returns those that are read after it. Large arrays are not
-handed over: statements that touch one stay where they are, as do exits.
+A piece takes the locals that it reads as parameters and returns those that are read after it. Large
+arrays are not passed: statements that use one stay in the original function, and so do exits.
 """
 
 from __future__ import annotations
@@ -38,15 +38,15 @@ from distal.passes.cost import size
 from distal.passes.naming import FreshNames, local_names, module_names
 from distal.passes.versions import assigned_in
 
-# The largest function of the examples has 3600. A union of 150 shapes has 5700: cut, it compiles in
-# 8.8 s instead of 11.5, and renders a quarter slower.
+# The largest function of the examples has size 3600. A union of 150 shapes has 5700: cut into
+# pieces, it compiles in 8.8 s instead of 11.5, and renders a quarter slower.
 LARGE: Final = 5000
 PIECE: Final = 1200
-LARGE_ARRAY: Final = 16  # elements
+LARGE_ARRAY: Final = 16  # in elements; larger arrays are not passed
 
 
 def run(module: Module, context: Context) -> Module:
-    """Cut every large function, where the target wants it."""
+    """Cut every large function, if the target requires it."""
     if not context.target.outlined:
         return module
     if all(size(f.body) <= LARGE for f in module.functions):
@@ -63,14 +63,14 @@ def run(module: Module, context: Context) -> Module:
 
 @dataclass(slots=True)
 class _Run:
-    """Statements that follow one another, and what they weigh."""
+    """Consecutive statements, and their total size."""
 
     body: list[Stmt]
     weight: int = 0
 
 
 class _Outlining:
-    """One large function."""
+    """Cuts one large function."""
 
     def __init__(self, function: Function, names: FreshNames) -> None:
         self._function = function
@@ -85,7 +85,7 @@ class _Outlining:
         self._pieces: list[Function] = []
 
     def functions(self) -> list[Function]:
-        """The pieces, and the function that calls them."""
+        """Return the pieces, and the function that calls them."""
         body = self._block(self._function.body)
         return [*self._pieces, replace(self._function, body=body)]
 
@@ -101,7 +101,7 @@ class _Outlining:
         position = 0
         for run in self._runs(body):
             position += len(run.body)
-            # A short rest is as well where it is.
+            # A short run stays: a function of its own would not help.
             if run.weight < PIECE // 2:
                 result.extend(run.body)
             else:
@@ -109,7 +109,7 @@ class _Outlining:
         return tuple(result)
 
     def _runs(self, body: tuple[Stmt, ...]) -> list[_Run]:
-        """The block in runs; what has to stay is a run of no weight."""
+        """Split the block into runs; a statement that has to stay is a run of weight 0."""
         runs: list[_Run] = []
         for stmt in body:
             if self._stays(stmt):
@@ -129,7 +129,7 @@ class _Outlining:
         return any(_is_large(self._types[name]) for name in names)
 
     def _piece(self, body: tuple[Stmt, ...], last_reads: dict[str, int], last: int) -> list[Stmt]:
-        """Make a function of a run, and call it in its place."""
+        """Create a function from a run, and return the statements that call it."""
         declared = _declared_in(body)
         assigned = sorted(assigned_in(body) - declared)
         given = sorted(names_read(body) - declared)
@@ -166,7 +166,7 @@ class _Outlining:
     def _results(
         self, call: Call, wanted: list[Read], lets: set[str], assigned: list[str]
     ) -> list[Stmt]:
-        """The locals as they are after a run."""
+        """Return the statements that restore the locals after the call of a piece."""
         span = call.span
         result: list[Stmt] = []
         values: list[Expr] = [call]

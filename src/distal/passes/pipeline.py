@@ -1,4 +1,4 @@
-"""The one list that says which passes run, and in which order."""
+"""The list of all passes, in the order in which they run."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from distal.passes.tables import tables
 
 Pass: TypeAlias = Callable[[Module, Context], Module]
 
-# Specialise runs twice: decompose brings in prelude functions that take a texture. Frequency stands
-# before inline: across functions it finds 9 per-frame values in the raymarcher where it would carry
-# 42 through inlined copies, and the passes take two thirds of the time. Fold runs again on what
-# inlining brings together.
+# Specialise runs twice because decompose adds prelude functions that take a texture. Frequency runs
+# before inline: across functions it finds 9 per-frame values in the raymarcher; after inlining it
+# would find 42 in the copies, and the passes take two thirds of the time. Fold runs again to
+# simplify the inlined code.
 PIPELINE: Final[tuple[tuple[str, Pass], ...]] = (
     ("entry", entry.run),
     ("specialise", specialise.run),

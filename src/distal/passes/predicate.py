@@ -1,11 +1,11 @@
-"""Early exits turned into flags, for targets that run many pixels in step.
+"""Turn early exits into flags, for targets that run many pixels in lockstep.
 
-Input: functions with return, break and continue anywhere. Output: functions with one Return, their
-last statement, and loops whose only Break is a last statement ``if flag: break``. A backend with
-lane masks then needs to know ifs and loops only. Knows nothing of masks.
+Input: functions with return, break and continue anywhere. Output: functions whose only Return is
+the last statement, and loops whose only Break is a last statement ``if flag: break``. A backend
+with lane masks then only has to handle ifs and loops. Does not depend on masks.
 
-An exit on one side of an If moves what follows into the other side, which costs nothing; a flag is
-made only where an exit hides deeper than that.
+If one branch of an If always exits, the statements after the If move into the other branch, which
+costs nothing; a flag is created only for exits that are nested more deeply.
 """
 
 from __future__ import annotations
@@ -57,14 +57,14 @@ _EXITS = (Return, Break, Continue)
 
 
 def run(module: Module, context: Context) -> Module:
-    """Predicate every function, where the target wants it."""
+    """Predicate every function, if the target requires it."""
     if not context.target.predicated:
         return module
     return replace(module, functions=tuple(map(predicated, module.functions)))
 
 
 def predicated(function: Function) -> Function:
-    """The function with a single Return at its end and single exits at the ends of loops."""
+    """Return the function with a single Return at its end and one exit at the end of each loop."""
     *before, last = function.body
     exits = any(isinstance(s, _EXITS) for s in statements_in(tuple(before)))
     if isinstance(last, Return) and not exits:
@@ -73,7 +73,11 @@ def predicated(function: Function) -> Function:
 
 
 def zero(type: Type) -> Expr:
-    """The value of a type whose every component is zero or false."""
+    """Return the value of a type with every component zero or false.
+
+    Raises:
+        AssertionError: The type is not a value type.
+    """
     match type:
         case Scalar() | Vector():
             return build.number(0, type)
@@ -92,14 +96,14 @@ def zero(type: Type) -> Expr:
 
 @dataclass(slots=True)
 class _LoopFlags:
-    """The loop being rewritten: its flags, made when first needed."""
+    """The flags of the loop being rewritten, created when first needed."""
 
-    leave: str | None = None  # this loop ends
-    skip: str | None = None  # this round ends
+    leave: str | None = None  # set when the loop ends
+    skip: str | None = None  # set when the current iteration ends
 
 
 def _always_exits(block: _Block) -> bool:
-    """Whether the end of a block is never reached."""
+    """Return whether control never reaches the end of a block."""
     if not block:
         return False
     match block[-1]:
@@ -131,7 +135,7 @@ class _Predicate:
         return (*head, *inner, last)
 
     def _guarded(self, block: _Block, *, in_loop: bool) -> _Block:
-        """The block with each loop that may return followed by an exit of its own."""
+        """Return the block with an exit after each loop that may return."""
         done: list[Stmt] = []
         for stmt in block:
             match stmt:
@@ -163,7 +167,7 @@ class _Predicate:
         return name
 
     def _block(self, block: _Block, loop: _LoopFlags | None) -> _Block:
-        """A block without exits: what follows one is moved or guarded."""
+        """Return a block without exits: the statements after an exit are moved or guarded."""
         done: list[Stmt] = []
         for position, stmt in enumerate(block):
             rest = block[position + 1 :]
@@ -196,14 +200,14 @@ class _Predicate:
         return tuple(done)
 
     def _branch(self, stmt: If, rest: _Block, loop: _LoopFlags | None) -> Iterator[Stmt]:
-        """An If that may exit, and what follows it."""
+        """Yield the statements for an If that may exit and for the statements after it."""
         then, otherwise = stmt.then, stmt.otherwise
         if _always_exits(then):
             yield self._if(stmt, then, (*otherwise, *rest), loop)
         elif _always_exits(otherwise):
             yield self._if(stmt, (*then, *rest), otherwise, loop)
         elif loop is None:
-            # Only a return hides here: the rest runs where none was met.
+            # Outside a loop the nested exit is a Return: the rest runs if none was executed.
             flag = self._returned()
             yield self._if(stmt, self._marked(then, flag), self._marked(otherwise, flag), None)
             yield from self._unless(flag, self._block(rest, None), stmt.span)
@@ -221,7 +225,7 @@ class _Predicate:
         return If(condition, yes, no, span=stmt.span)
 
     def _marked(self, block: _Block, flag: str) -> _Block:
-        """The block with ``flag`` raised before each exit from it."""
+        """Return the block with ``flag`` set before each exit from it."""
         done: list[Stmt] = []
         for stmt in block:
             match stmt:
@@ -242,7 +246,7 @@ class _Predicate:
             yield If(condition, block, (), span=span)
 
     def _loop(self, stmt: For | While) -> Stmt:
-        """A loop whose only exit is its last statement."""
+        """Return a loop whose only exit is its last statement."""
         loop = _LoopFlags()
         body = self._block(stmt.body, loop)
         head: list[Stmt] = []

@@ -1,8 +1,8 @@
-"""Which values an integer can take.
+"""Compute the interval of values that an integer expression can have.
 
-Input: int and uint expressions and what is known of the locals they read. Output: for each a closed
-interval, the whole range of its type when nothing better is known. Arithmetic that could wrap gives
-the whole range. Var locals are not followed.
+Input: int and uint expressions and the ranges of the locals that they read. Output: a closed
+interval for each expression; the whole range of its type if nothing better is known. Arithmetic
+that may wrap gives the whole range. Var locals are not tracked.
 """
 
 from __future__ import annotations
@@ -37,8 +37,10 @@ _WHOLE: Final[dict[Type, Range]] = {INT: (-(2**31), 2**31 - 1), UINT: (0, 2**32 
 class Ranges:
     """Ranges of the locals of one function, entered in the order of its statements.
 
-    ``meanings`` maps the names of module functions that do an operation to "clamp" or "%".
-    ``uniforms`` holds what is known of uniforms: nothing, where memory safety rests on the answer.
+    Args:
+        meanings: The names of module functions that compute "clamp" or "%" -> the operation.
+        uniforms: The ranges of uniforms. Leave it out where memory safety depends on the result: a
+            host may pass a value outside the declared range.
     """
 
     def __init__(
@@ -52,18 +54,18 @@ class Ranges:
         self._memo: dict[Expr, Range] = {}
 
     def enter(self, stmt: Let | For) -> None:
-        """Note a local that is about to be read."""
+        """Record the range of a local before its reads."""
         if isinstance(stmt, Let):
             if stmt.value.type in _WHOLE:
                 self._locals[stmt.name] = self.of(stmt.value)
             return
         start, stop = self.of(stmt.start), self.of(stmt.stop)
         low, high = (start[0], stop[1] - 1) if stmt.step > 0 else (stop[0] + 1, start[1])
-        # An empty range means a body that never runs: any bound holds, but keep it an interval.
+        # If the range is empty, the body never runs, so every bound is valid; keep low <= high.
         self._locals[stmt.name] = (low, max(low, high))
 
     def of(self, e: Expr) -> Range:
-        """The interval of an int or uint expression."""
+        """Return the interval of an int or uint expression."""
         found = self._memo.get(e)
         if found is None:
             whole = _WHOLE[e.type]
@@ -72,7 +74,7 @@ class Ranges:
         return found
 
     def constant(self, e: Expr) -> int | None:
-        """The only value, if there is only one."""
+        """Return the value of the expression if it can have only one, else None."""
         low, high = self.of(e)
         return low if low == high else None
 
@@ -140,7 +142,7 @@ class Ranges:
 
 
 def _remainder(divisor: Range) -> Range | None:
-    """Of a floored remainder; by 0 it is 0."""
+    """Return the range of a floored remainder; the remainder by 0 is 0."""
     return (0, max(0, divisor[1] - 1)) if divisor[0] >= 0 else None
 
 
@@ -149,7 +151,7 @@ def _both(choose: Callable[[int, int], int], a: Range, b: Range) -> Range:
 
 
 def declared_ranges(uniforms: Iterable[UniformDeclaration]) -> dict[str, Range]:
-    """What the author declared of whole-number parameters: a host keeps to it, or should."""
+    """Return the declared ranges of int parameters. A host may pass values outside of them."""
     found: dict[str, Range] = {}
     for uniform in uniforms:
         about = dict(uniform.interface)

@@ -1,7 +1,7 @@
-"""Which functions and per-frame values a module's entry still needs.
+"""Remove the functions and per-frame values that a module's entry does not need.
 
-Input: a module. Output: the same without functions that nothing calls and without per-frame values
-that nothing reads.
+Input: a module. Output: the same module without functions that nothing calls and without per-frame
+values that nothing reads.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from distal.ir.walk import expressions_in, nodes_in, per_frame_reads, per_frame_
 
 
 def called_in(*roots: Expr) -> set[str]:
-    """The functions that expressions call or mention."""
+    """Return the functions that expressions call or refer to."""
     return {
         e.function if isinstance(e, Call) else e.name
         for e in nodes_in(*roots)
@@ -22,7 +22,7 @@ def called_in(*roots: Expr) -> set[str]:
 
 
 def callees(function: Function) -> set[str]:
-    """The functions that a function calls directly."""
+    """Return the functions that a function calls or refers to directly."""
     return {
         e.function if isinstance(e, Call) else e.name
         for e in expressions_in(function.body)
@@ -31,7 +31,7 @@ def callees(function: Function) -> set[str]:
 
 
 def closure(functions: tuple[Function, ...], roots: set[str]) -> set[str]:
-    """``roots`` and everything they call; callees stand first in ``functions``."""
+    """Return ``roots`` and everything they call; callees must precede callers in ``functions``."""
     found = set(roots)
     for function in reversed(functions):
         if function.name in found:
@@ -40,7 +40,7 @@ def closure(functions: tuple[Function, ...], roots: set[str]) -> set[str]:
 
 
 def drop_unused(module: Module) -> Module:
-    """The module without functions and per-frame values that the entry does not reach."""
+    """Return the module without functions and per-frame values that the entry does not reach."""
     called, read = _reached(module)
     if len(called) == len(module.functions) and len(read) == len(module.frame):
         return module
@@ -50,7 +50,7 @@ def drop_unused(module: Module) -> Module:
 
 
 def _reached(module: Module) -> tuple[set[str], set[str]]:
-    """The functions and the per-frame values that are called and read, directly or not."""
+    """Return the functions that are called and the per-frame values that are read, transitively."""
     values = dict(module.frame)
     called, read = closure(module.functions, {module.entry}), set[str]()
     new_functions, new_values = called, read

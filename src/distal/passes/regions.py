@@ -1,7 +1,7 @@
-"""Where in a function something is computed.
+"""The regions of a function, and where a value can be computed once for several uses.
 
-Input: blocks and positions, as ``versions`` numbers a function. Output: answers to where a value
-that several statements use may be computed once, and whether it would have been computed anyway.
+Input: blocks and positions, as numbered by ``versions``. Output: where a value that several
+statements use may be computed once, and whether every execution would compute it anyway.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from distal.ir.nodes import Const, For, If, Stmt, While
 
 @dataclass(eq=False, slots=True)
 class Region:
-    """A block, or the head of a ``while``: what its condition and its body share.
+    """A block, or the head of a ``while``, which contains its condition and its body.
 
     Attributes:
         parent: The region around it, None for a function's body.
         position: Its statement's position in the parent.
-        repeats: It runs once for each round of a loop.
-        is_head: It is the head of a ``while``; nothing can be bound there.
+        repeats: Whether it runs once for each iteration of a loop.
+        is_head: Whether it is the head of a ``while``; nothing can be bound there.
         body: Its statements.
         inner: The regions of each statement that has blocks: both branches of an If, the body of
-            a For, the head of a While (whose one inner region is the body).
-        depth: How many regions are around it.
+            a For, the head of a While (whose only inner region is the body).
+        depth: The number of regions around it.
     """
 
     parent: Region | None
@@ -42,7 +42,7 @@ class Region:
             self.depth = self.parent.depth + 1
 
     def outwards(self) -> Iterator[Region]:
-        """This region and all around it."""
+        """Yield this region and all regions around it, innermost first."""
         region: Region | None = self
         while region is not None:
             yield region
@@ -50,20 +50,23 @@ class Region:
 
 
 class UseSite(NamedTuple):
-    """Where a value is used: a statement, and whether the statement may skip the use."""
+    """A place where a value is used: a statement, and whether the statement may skip the use."""
 
     region: Region
     position: int
     lazy: bool = False
 
 
-UseSites: TypeAlias = Mapping[UseSite, int]  # with how many uses there are at each
+UseSites: TypeAlias = Mapping[UseSite, int]  # the sites and the number of uses at each
 
 
 def within(
     region: Region, sites: UseSites
 ) -> tuple[dict[int, bool], dict[Region, dict[UseSite, int]]]:
-    """Split sites: positions used directly (true: certainly), and the sites of inner regions."""
+    """Split sites into the positions used directly in ``region`` and the sites in inner regions.
+
+    The value for a position is True if the statement always uses the value.
+    """
     direct: dict[int, bool] = {}
     inner: dict[Region, dict[UseSite, int]] = {}
     for site, uses in sites.items():
@@ -79,7 +82,7 @@ def within(
 
 
 def cleared(sites: UseSites) -> dict[UseSite, int]:
-    """The sites as if no statement skipped any."""
+    """Return the sites with ``lazy`` cleared, as if no statement skipped a use."""
     found: dict[UseSite, int] = {}
     for site, uses in sites.items():
         certain = site._replace(lazy=False)
@@ -88,13 +91,17 @@ def cleared(sites: UseSites) -> dict[UseSite, int]:
 
 
 def first_position(region: Region, sites: UseSites) -> int:
-    """The first statement of ``region`` that uses, itself or inside."""
+    """Return the position of the first statement of ``region`` with a use, itself or inside it."""
     direct, inner = within(region, sites)
     return min([*direct, *(child.position for child in inner)])
 
 
 def in_loop(region: Region, site: UseSite) -> bool:
-    """True when a site runs repeatedly while ``region`` runs once."""
+    """Return whether a site runs repeatedly while ``region`` runs once.
+
+    Raises:
+        AssertionError: The site is outside the region.
+    """
     for around in site.region.outwards():
         if around is region:
             return False
@@ -104,10 +111,16 @@ def in_loop(region: Region, site: UseSite) -> bool:
 
 
 def is_certain(region: Region, sites: UseSites, start: int = 0) -> bool:
-    """True when from ``start`` on one of the sites is reached whatever happens."""
+    """Return whether every path from position ``start`` reaches one of the sites.
+
+    Args:
+        region: The region that contains the sites.
+        sites: The sites where a value is used.
+        start: The position of the statement to start from.
+    """
     direct, inner = within(region, sites)
     if region.is_head:
-        # The condition is computed once at least; the body perhaps never.
+        # The condition is computed at least once; the body may never run.
         (loop_body,) = region.inner[0]
         head = region.parent.body[region.position] if region.parent else None
         if direct.get(0):
@@ -142,7 +155,7 @@ def _is_true(loop: While) -> bool:
 
 
 def _runs_once(loop: For) -> bool:
-    """True when a counted loop surely has a round."""
+    """Return whether a counted loop has at least one iteration."""
     if not isinstance(loop.start, Const) or not isinstance(loop.stop, Const):
         return False
     return bool(range(int(loop.start.value), int(loop.stop.value), loop.step))

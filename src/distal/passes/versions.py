@@ -1,11 +1,11 @@
-"""One name for each value: reads of a changing local are distinguished by what it holds.
+"""Give each value one name: reads of a variable are distinguished by the value it holds.
 
-Input: a function's body. Output: its places, with every read of a Var renamed to ``name#3``, a new
-number wherever the value may have changed, so that equal nodes have equal values wherever both are
-in scope (static single assignment, without the phis: after a branch and around a loop a Var simply
-has a new number). A Let whose value an earlier one in scope already has goes away, its reads become
-reads of the earlier. ``plain`` takes the numbers off again. ``births`` holds the region in which
-each local and each numbered value is made.
+Input: a function's body. Output: its regions, with every read of a Var renamed to ``name#3``, with
+a new number wherever the value may have changed, so that equal nodes have equal values wherever
+both are in scope (static single assignment without phi nodes: after a branch and around a loop a
+Var simply gets a new number). A Let whose value an earlier Let in scope already has is removed, and
+its reads become reads of the earlier one. ``plain`` removes the numbers again. ``births`` maps each
+local and each numbered value to the region that creates it.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ from distal.ir.nodes import (
 from distal.ir.walk import children, map_indices, nodes_in, rebuild, root_of, statements_in
 from distal.passes.regions import Region
 
-MARK = "#"  # in no name of a module
+MARK = "#"  # not part of any name in a module
 
 
 def assigned_in(body: Iterable[Stmt]) -> set[str]:
-    """The Vars that a block changes, blocks inside it included."""
+    """Return the Vars that a block assigns, including the blocks inside it."""
     return {root_of(s.target).name for s in statements_in(tuple(body)) if isinstance(s, Assign)}
 
 
 class Versions:
-    """Numbers the values of one function's Vars."""
+    """Numbers the values of the Vars of one function."""
 
     def __init__(self, function: Function) -> None:
         self._mutable = assigned_in(function.body)
         self._count = 0
-        # Name of a Var or of a Let that went away -> what a read of it is at this point.
+        # The name of a Var or of a removed Let -> the name that a read of it has at this point.
         self._now: dict[str, str] = {}
         self._available: list[dict[Expr, str]] = []
         self._region = Region(None, 0)
@@ -70,7 +70,7 @@ class Versions:
         return memo[root]
 
     def _fill(self, region: Region, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-        """Number a block, its statements going into ``region``."""
+        """Number a block and store its statements in ``region``."""
         outer, self._region = self._region, region
         self._available.append({})
         numbered: list[Stmt] = []
@@ -158,7 +158,7 @@ class Versions:
 
 
 def plain(e: Expr) -> Expr:
-    """The expression with its numbers taken off."""
+    """Return the expression with the version numbers removed from its names."""
     memo: dict[Expr, Expr] = {}
     for n in nodes_in(e):
         if isinstance(n, Read):
