@@ -1,1 +1,1 @@
-"""Decompose: built-ins and statements that a target lacks, expressed by those that it has."""
+"""Decompose: replace built-ins and statements that a target lacks by ones that it has."""

@@ -1,13 +1,13 @@
-"""Say with what a target has what it has not.
+"""Express the operations that a target lacks by operations that it has.
 
-Input: a module without function values and gradients. Output: one that says everything in
-operations the target has (``distal.ir.target``), mostly by calls of the prelude, whose functions
-are linked in and treated likewise until nothing is left to do. What cannot be said on the target is
-a CompileError at the author's line (``decompose_limits``).
+Input: a module without function values and gradients. Output: a module with only those operations
+that the target has (``distal.ir.target``). Most replacements are calls of prelude functions, which
+are linked in and decomposed too, until nothing is left to replace. An operation that cannot be
+expressed on the target is a CompileError at the author's line (``decompose.limits``).
 
-Nothing is moved: a replacement stands where the operation stood, so that what is computed only
-sometimes still is. Where the prelude has a function of scalars only, a function of its own applies
-it to each component.
+Nothing is moved: a replacement takes the place of the operation, so that conditional computation
+stays conditional. If the prelude function takes scalars only, a new function applies it to each
+component.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ _WHOLE: Final = (Kind.INT, Kind.UINT)
 
 
 def run(module: Module, context: Context) -> Module:
-    """Rewrite every function, then the prelude functions they came to need, and so on."""
+    """Decompose every function, then the prelude functions that this adds, until none is left."""
     linker = _Linker(module, context)
     done: dict[str, Function] = {}
     while len(done) < len(linker.module.functions):
@@ -85,26 +85,33 @@ def run(module: Module, context: Context) -> Module:
 
 
 class _Linker:
-    """The module as it grows by prelude functions.
+    """The module, to which prelude functions are added.
 
     Attributes:
-        module: As it is so far.
-        natives: Functions that replace what rough drivers have themselves: its name.
+        module: The module with the functions added so far.
+        natives: Functions that replace a built-in of an inaccurate driver -> the built-in's name.
     """
 
     def __init__(self, module: Module, context: Context) -> None:
         self.module = module
         self.natives: dict[str, str] = {}
         self._library = context.library
-        self._blames: dict[str, Blame] = {}  # prelude functions: what the author wrote
+        self._blames: dict[str, Blame] = {}  # prelude function -> who needs it
         self._wrappers: dict[tuple[str, tuple[Type, ...]], str] = {}
 
     def blame(self, function: str) -> Blame | None:
-        """What of the author's brought a prelude function in; None for the author's own."""
+        """Return the author's operation that needs a prelude function; None for other functions."""
         return self._blames.get(function)
 
     def call(self, name: str, args: tuple[Expr, ...], type: Type, blame: Blame) -> Call:
-        """A call of a prelude function, component by component if it takes scalars only."""
+        """Return a call of a prelude function, by components if it takes scalars only.
+
+        Args:
+            name: The prelude function.
+            args: The arguments.
+            type: The type of the result.
+            blame: The author's operation that needs the function.
+        """
         types = tuple(a.type for a in args)
         if self._library.find(name, types) is not None:
             return Call(self._link(name, types, blame), args, type, span=blame.span)
@@ -122,7 +129,7 @@ class _Linker:
         return function
 
     def _wrap(self, name: str, types: tuple[Type, ...], type: Type, blame: Blame) -> str:
-        """A function that applies the scalar overload to each component."""
+        """Create a function that applies the scalar overload to each component; return its name."""
         scalars = tuple(Scalar(t.kind) if isinstance(t, Vector) else t for t in types)
         found = self._library.find(name, scalars)
         assert found is not None, f"the prelude has no {name} of {', '.join(map(str, types))}"
@@ -141,7 +148,7 @@ class _Linker:
 
 
 class _Decomposer:
-    """One function."""
+    """Decomposes one function."""
 
     def __init__(self, linker: _Linker, context: Context, function: Function) -> None:
         self._linker = linker
@@ -150,7 +157,7 @@ class _Decomposer:
         self._original = function
         self._blame = linker.blame(function.name)
         self._names = FreshNames(local_names(function))
-        # A host that leaves a parameter's declared range gets a loop of that range's length.
+        # A loop over a parameter outside its declared range runs for that range's length only.
         self._ranges = Ranges(uniforms=declared_ranges(linker.module.uniforms))
         self._known: dict[Expr, Expr] = {}
         self._memo: dict[Expr, Expr] = {}
@@ -200,7 +207,7 @@ class _Decomposer:
         return map_statement(stmt, self._expression, self._block)
 
     def _path(self, target: Expr) -> Expr:
-        """An Assign's target: only the indices in it are computed."""
+        """Decompose the target of an Assign: only its indices are computed expressions."""
         match target:
             case Index(base, index):
                 path = rebuild(target, (self._path(base), self._expression(index)))
@@ -247,7 +254,7 @@ class _Decomposer:
             self._linker.natives[careful.function] = e.name
             return careful
         spelling = intrinsic.spelling(family)
-        # GLSL ES 1.00 has the functions of numbers for floats only.
+        # GLSL ES 1.00 has these functions for floats only, not for ints.
         if family == "glsl100" and intrinsic.scene and kind_of(e.args[0].type) in _WHOLE:
             spelling = f"@{intrinsic.scene}"
         if e.name == "mod" and divides(e.args[1], self._known):
@@ -257,7 +264,7 @@ class _Decomposer:
             return self._scene(e, intrinsic.scene, e.args, e.name)
         if spelling is None or not spelling.startswith("@"):
             return never_crossed(e) if e.name == "clamp" else e
-        # The elementary polynomials hold in 32 bits; in 64 the backend has the functions itself.
+        # The elementary polynomials are for 32 bits; for 64 bits the backend has its own functions.
         if self._context.precision == 64 and family == "llvm" and "@elementary." in spelling:
             return e
         return self._scene(e, spelling[1:], e.args, e.name)
@@ -273,7 +280,7 @@ class _Decomposer:
             return e
         power = _power_of_two(e.rhs)
         if power is not None and self._target.unsigned:
-            # An arithmetic shift and a mask floor exactly as // and % do.
+            # An arithmetic shift and a mask round down exactly as // and % do.
             if e.op is BinaryOp.FLOOR_DIV:
                 return binary(BinaryOp.SHR, e.lhs, _like(e.rhs, power))
             return binary(BinaryOp.AND, e.lhs, _like(e.rhs, (1 << power) - 1))
@@ -296,21 +303,21 @@ class _Decomposer:
 
 
 def _constant(e: Expr) -> int | None:
-    """The whole number in every component of a constant."""
+    """Return the integer that every component of a constant has, else None."""
     if isinstance(e, Splat):
         e = e.value
     return int(e.value) if isinstance(e, Const) else None
 
 
 def _like(e: Expr, value: int) -> Expr:
-    """A whole number in every component of e's type."""
+    """Return an integer constant in every component of the type of ``e``."""
     kind = kind_of(e.type)
     assert kind is not None
     return splat(Const(value, Scalar(kind)), e.type)
 
 
 def _power_of_two(e: Expr) -> int | None:
-    """The exponent of a constant power of two."""
+    """Return the exponent if ``e`` is a constant power of two, else None."""
     value = _constant(e)
     if value is None or value <= 0 or value & (value - 1):
         return None
@@ -318,7 +325,7 @@ def _power_of_two(e: Expr) -> int | None:
 
 
 def _shift_count(count: Expr) -> Expr:
-    """The count & 31, written out unless it is plain already."""
+    """Return ``count & 31``; the mask is left out for a constant that is already in range."""
     value = _constant(count)
     if value is None:
         return binary(BinaryOp.AND, count, _like(count, 31))

@@ -1,10 +1,10 @@
-"""Built-ins at their edges: arguments held, and where a target's own function serves.
+"""Handle the edge cases of built-ins: clamp arguments, and decide if a target's function is usable.
 
-Input: a call of an intrinsic and what is known of immutable locals. Output: the call with its
-argument between the intrinsic's limits (``ir.limits``; the fold pass takes away what is not
-needed), and whether the target's own function means what the table says for such arguments. GLSL
-leaves a smoothstep of equal edges, a clamp of crossed ones and the direction of nothing undefined,
-WGSL refuses some of them; most calls are seen to be none of these.
+Input: a call of an intrinsic and the values of immutable locals. Output: the call with its argument
+clamped to the intrinsic's limits (``ir.limits``; the fold pass removes clamps that are not needed),
+and whether the target's own function gives the declared result for these arguments. GLSL leaves
+smoothstep with equal edges, clamp with low > high, and normalize of a zero vector undefined; WGSL
+rejects some of them. Most calls are provably none of these.
 """
 
 from __future__ import annotations
@@ -26,7 +26,14 @@ Known = Mapping[Expr, Expr]
 
 
 def held(e: Builtin, intrinsic: Intrinsic, target: Target, precision: int) -> Builtin:
-    """The call with its argument between the intrinsic's limits."""
+    """Return the call with its argument clamped to the intrinsic's limits.
+
+    Args:
+        e: The call.
+        intrinsic: Its declaration.
+        target: The target to compile for.
+        precision: The bits of a float, 32 or 64.
+    """
     if intrinsic.held is None or not (intrinsic.held.by_targets or target.family in _OURS):
         return e
     (x,) = e.args
@@ -44,7 +51,7 @@ def held(e: Builtin, intrinsic: Intrinsic, target: Target, precision: int) -> Bu
 
 
 def never_crossed(e: Builtin) -> Expr:
-    """A clamp, as min(max(x, low), high) unless its bounds are seen to be in order."""
+    """Return a clamp; as min(max(x, low), high) unless its bounds are provably in order."""
     x, low, high = e.args
     if _in_order(low, high, lambda a, b: a <= b):
         return e
@@ -52,7 +59,7 @@ def never_crossed(e: Builtin) -> Expr:
 
 
 def target_serves(e: Builtin, known: Known) -> bool:
-    """True when a language's own function means the same for these arguments."""
+    """Return whether the target's own function gives the declared result for these arguments."""
     match e.name, e.args:
         case "smoothstep", (low, high, _):
             return _in_order(low, high, lambda a, b: b - a > SMALLEST)
@@ -63,23 +70,23 @@ def target_serves(e: Builtin, known: Known) -> bool:
 
 
 def divides(divisor: Expr, known: Known) -> bool:
-    """True when a remainder by it is seen to be one by a number that is not 0."""
+    """Return whether a divisor is provably not 0 (and not so small that it counts as 0)."""
     low, high = interval(divisor, known)
     return low >= SMALLEST_DIVISOR or high <= -SMALLEST_DIVISOR
 
 
 def remainder(a: Expr, b: Expr) -> Expr:
-    """``a - b * floor(a / b)``."""
+    """Return ``a - b * floor(a / b)``."""
     return subtract(a, multiply(b, builtin("floor", divide(a, b))))
 
 
 def floor_quotient(a: Expr, b: Expr) -> Expr:
-    """``floor(a / b)``."""
+    """Return ``floor(a / b)``."""
     return builtin("floor", binary(BinaryOp.DIV, a, b))
 
 
 def _in_order(low: Expr, high: Expr, test: Callable[[float, float], bool]) -> bool:
-    """True when both are constants and the test holds for every component."""
+    """Return whether both are literals and the test holds for every component."""
     bottoms, tops = literal_components(low), literal_components(high)
     if bottoms is None or tops is None:
         return False

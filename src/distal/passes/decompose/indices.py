@@ -1,7 +1,7 @@
-"""Indices for targets that only take numbers between brackets (arrays are structs there).
+"""Replace dynamic indices for targets that allow only constant ones (arrays are structs there).
 
-Input: an ``Index`` with any index, as a value or in an Assign's target. Output: a chain of choices
-among the elements, clamped at both ends as every index is in meaning.
+Input: an ``Index`` with any index, as a value or in the target of an Assign. Output: a chain of
+Selects among the elements (or of Ifs), clamped at both ends as every index is defined to be.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from distal.passes.ranges import Ranges
 
 
 def settled_index(e: Index, ranges: Ranges) -> Index:
-    """The same with the number in place of an index that can only be one."""
+    """Return the Index with a constant index if the index has only one possible value."""
     count = index_count(e.base.type)
     position = ranges.constant(e.index)
     if count is None or position is None:
@@ -37,12 +37,12 @@ def settled_index(e: Index, ranges: Ranges) -> Index:
 
 
 def _is_settled(e: Index) -> bool:
-    """True for a number between the brackets, and for a buffer, which is the backend's matter."""
+    """Return whether the index is a constant, or the base a buffer (left to the backend)."""
     return isinstance(e.index, Const) or isinstance(e.base.type, Buffer)
 
 
 def picked_element(e: Index) -> Expr:
-    """``base[index]`` as a chain of choices."""
+    """Return ``base[index]`` as a chain of Selects."""
     if _is_settled(e):
         return e
     count = index_count(e.base.type)
@@ -55,7 +55,7 @@ def picked_element(e: Index) -> Expr:
 
 
 def assignments(assign: Assign, names: FreshNames) -> list[Stmt]:
-    """The statement, or a ladder of Ifs that assigns the element a dynamic index means."""
+    """Return the statement, or a chain of Ifs that assigns to the element selected at run time."""
     found = _outermost_dynamic(assign.target)
     if found is None:
         return [assign]
@@ -88,7 +88,7 @@ def _outermost_dynamic(target: Expr) -> Index | None:
 
 
 def _replaced(target: Expr, part: Expr, by: Expr) -> Expr:
-    """The target with one part of its path replaced."""
+    """Return the target with one part of its path replaced."""
     if target is part:
         return by
     match target:

@@ -1,8 +1,8 @@
-"""What a target cannot say at all, and loops brought into the form it can.
+"""Reject what a target cannot express at all, and give loops the form that it requires.
 
-Input: a node or statement, the target, and what to blame. Output: nothing, or a CompileError that
-names the target and the fix. Inside a prelude function the blame is the author's operation that
-brought it in.
+Input: a node or statement, the target, and the author's operation to name in an error. Output:
+nothing, or a CompileError that names the target and the fix. Inside a prelude function the error
+names the author's operation that needs the function.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _BIT_ROWS: Final = frozenset(
     ("float_bits_to_int", "float_bits_to_uint", "int_bits_to_float", "uint_bits_to_float")
 )
 _BIT_OPS: Final = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.SHL, BinaryOp.SHR))
-# A loop longer than this is refused where its real length is only known when it runs.
+# A longer loop is rejected if its actual length is known only at run time.
 _LONGEST_CLAMPED_LOOP: Final = 65536
 
 _OTHER_TARGET: Final = "compile for another target, such as glsl-es300"
@@ -48,7 +48,7 @@ _OTHER_TARGET: Final = "compile for another target, such as glsl-es300"
 
 @dataclass(frozen=True, slots=True)
 class Blame:
-    """A place of the author's and, where it helps, the name of what stands there."""
+    """A place in the author's code and, if useful, the name of the operation there."""
 
     span: Span | None
     what: str
@@ -60,7 +60,16 @@ def _refusal(target: Target, lacks: str, blame: Blame, hint: str) -> CompileErro
 
 
 def refuse_expression(e: Expr, target: Target, blame: Blame) -> None:
-    """Raise a CompileError when the target has no such operation or type."""
+    """Check that the target has the operation and the type of ``e``.
+
+    Args:
+        e: The expression.
+        target: The target to compile for.
+        blame: The place to report.
+
+    Raises:
+        CompileError: The target lacks the operation or the type.
+    """
     if not target.unsigned:
         _refuse_bits(e, target, blame)
     if not target.texel_fetch and isinstance(e, Texel | Size):
@@ -93,7 +102,16 @@ def _has_uint(type: Type) -> bool:
 
 
 def refuse_statement(stmt: Stmt, target: Target, blame: Blame) -> None:
-    """Raise a CompileError when the target has no such statement."""
+    """Check that the target has the statement.
+
+    Args:
+        stmt: The statement.
+        target: The target to compile for.
+        blame: The place to report.
+
+    Raises:
+        CompileError: The target lacks the statement.
+    """
     if isinstance(stmt, While) and not target.dynamic_loops:
         raise CompileError.at(
             f"{target.name} has no while loops",
@@ -105,10 +123,21 @@ def refuse_statement(stmt: Stmt, target: Target, blame: Blame) -> None:
 def constant_loop(
     loop: For, ranges: Ranges, names: FreshNames, target: Target, blame: Blame, before: list[Stmt]
 ) -> For:
-    """The loop with constant bounds; ``before`` gets the statements that go in front of it.
+    """Return the loop with constant bounds.
 
-    Bounds that are clamped to a constant become that constant, and the loop leaves early or skips
-    the first rounds.
+    A bound that is not constant is replaced by the constant limit of its range, and the loop then
+    breaks early or skips the first iterations.
+
+    Args:
+        loop: The loop.
+        ranges: The ranges of the function's locals.
+        names: The taken names.
+        target: The target to compile for.
+        blame: The place to report.
+        before: Gets the statements to insert before the loop.
+
+    Raises:
+        CompileError: No constant limit is known for a bound, or the loop would be too long.
     """
     start, stop = ranges.constant(loop.start), ranges.constant(loop.stop)
     if start is not None and stop is not None:
@@ -138,7 +167,7 @@ def constant_loop(
 
 
 def _bound_before(name: str, value: Expr, loop: For, names: FreshNames, before: list[Stmt]) -> Expr:
-    """A bound, computed once before the loop."""
+    """Bind a loop bound before the loop, and return a read of it."""
     fresh = names.fresh(name)
     before.append(Let(fresh, value, span=loop.span))
     return Read(fresh, INT)
