@@ -1,1 +1,1 @@
-"""Fold: constants computed, expressions simplified."""
+"""Fold: compute constants and simplify expressions."""

@@ -1,7 +1,7 @@
-"""Simplifying vectors, matrices, arrays and structs put together and taken apart again.
+"""Simplify vectors, matrices, arrays and structs that are built and then taken apart again.
 
-Input: an expression whose operands are simple already. Output: an equal one, the same when no rule
-applies. All of these rules are exact.
+Input: an expression with simplified operands. Output: an equal expression; the same expression if
+no rule applies. All of these rules are exact.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from distal.passes.fold.constants import Constants
 
 
 class Aggregates(Constants):
-    """The rules about parts of one function's values."""
+    """The rules for components, elements and fields, for one function."""
 
     def compose(self, e: Compose) -> Expr:
-        """Vectors flattened, swizzles of one vector joined."""
+        """Flatten nested vectors, and join swizzles of the same vector."""
         type = e.type
         if not isinstance(type, Vector):
             return self._known_columns(e)
@@ -32,7 +32,7 @@ class Aggregates(Constants):
         return Compose(tuple(parts), type, span=e.span)
 
     def _known_columns(self, e: Compose) -> Expr:
-        """A matrix put together from all columns of a matrix, in order, is that matrix."""
+        """Replace a matrix built from all columns of a matrix, in order, by that matrix."""
         first = e.parts[0]
         if not isinstance(first, Index) or first.base.type is not e.type:
             return e
@@ -44,7 +44,7 @@ class Aggregates(Constants):
         return first.base
 
     def swizzle(self, e: Swizzle) -> Expr:
-        """Components taken from where they come from."""
+        """Take components directly from the vector or scalar that they come from."""
         base, lanes, type = e.base, e.lanes, e.type
         assert isinstance(base.type, Vector)
         if lanes == "xyzw"[: base.type.size]:
@@ -68,7 +68,7 @@ class Aggregates(Constants):
         return e
 
     def _look_through(self, base: Read, lanes: str) -> Expr:
-        """The value of a local when its lanes cost nothing."""
+        """Return the value of a local if its selected components are trivial, else the local."""
         value = self._known.get(base)
         if isinstance(value, Splat) and self.is_trivial(value.value):
             return value
@@ -79,7 +79,7 @@ class Aggregates(Constants):
         return base
 
     def index(self, e: Index) -> Expr:
-        """A constant index picks the part."""
+        """Replace an index by the selected part if the index is constant."""
         position = self.same(e.index)
         if position is None:
             return e
@@ -99,7 +99,7 @@ class Aggregates(Constants):
                 return e
 
     def field(self, e: Field) -> Expr:
-        """The field of a struct that was just put together."""
+        """Replace a field of a struct that was just built by the field's value."""
         base = e.base
         value = self._known.get(base, base)
         if isinstance(value, Construct):
@@ -111,7 +111,7 @@ class Aggregates(Constants):
         return e
 
     def construct(self, e: Construct, parts: tuple[Expr, ...]) -> Expr:
-        """A struct put together from all its own fields is that struct."""
+        """Replace a struct built from all fields of a struct, in order, by that struct."""
         first = parts[0] if parts else None
         if not isinstance(e.type, Struct) or not isinstance(first, Field):
             return e
@@ -124,7 +124,7 @@ class Aggregates(Constants):
 
 
 def _join(parts: list[Expr], piece: Expr) -> None:
-    """Add a part; swizzles of one vector that follow each other become one swizzle."""
+    """Append a part; consecutive swizzles of one vector become one swizzle."""
     last = parts[-1] if parts else None
     if isinstance(piece, Swizzle) and isinstance(last, Swizzle) and last.base is piece.base:
         lanes = last.lanes + piece.lanes
@@ -136,7 +136,7 @@ def _join(parts: list[Expr], piece: Expr) -> None:
 
 
 def _lanes(e: Compose) -> list[Expr]:
-    """The scalars of a composed vector."""
+    """Return the scalars of a Compose of vector type."""
     found: list[Expr] = []
     for part in e.parts:
         if isinstance(part.type, Scalar):

@@ -1,7 +1,7 @@
-"""What is constant, and what an operation on constants gives.
+"""Find constant expressions, and compute operations on constants.
 
-Input: expressions, and what is known of immutable locals. Output: components of constants, rounded
-to the module's precision, and expressions made of such components.
+Input: expressions, and the values of immutable locals. Output: components of constants, rounded to
+the module's precision, and expressions built from such components.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from distal.ir.walk import is_unchanging
 
 
 def constant(type: Type, values: Components) -> Expr:
-    """The expression of a scalar, vector or matrix with these components."""
+    """Return the expression of a scalar, vector or matrix with these components."""
     kind = kind_of(type)
     assert kind is not None
     scalars = [Const(v, Scalar(kind)) for v in values]
@@ -56,7 +56,7 @@ def fold_builtin(
     result: Type,
     arithmetic: ConstantArithmetic,
 ) -> Components:
-    """The components of ``name(*args)``.
+    """Compute the components of ``name(*args)``.
 
     Args:
         name: An intrinsic.
@@ -82,8 +82,10 @@ def fold_builtin(
 class Constants:
     """Constant expressions of one function.
 
-    ``known`` maps the Read of an immutable local to its value; it may grow between calls.
-    ``mutable`` holds the names of locals that an Assign changes.
+    Args:
+        arithmetic: Operations in the module's precision.
+        known: The Read of an immutable local -> its value; may grow between calls.
+        mutable: The names of the locals that an Assign changes.
     """
 
     def __init__(
@@ -94,7 +96,10 @@ class Constants:
         self._mutable = mutable
 
     def is_trivial(self, e: Expr) -> bool:
-        """True for what is free to name again: constants, uniforms, what never changes, parts."""
+        """Return whether an expression can be repeated at no cost.
+
+        True for constants, uniforms and immutable locals, and for their components and fields.
+        """
         while isinstance(e, Swizzle | Field):
             e = e.base
         if isinstance(e, Splat):
@@ -102,7 +107,7 @@ class Constants:
         return is_unchanging(e, self._mutable)
 
     def components(self, e: Expr) -> Components | None:
-        """The components of a constant scalar, vector or matrix, rounded; else None."""
+        """Return the components of a constant scalar, vector or matrix, rounded; else None."""
         match e:
             case Const(value):
                 return (self._math.round(value),) if isinstance(value, float) else (value,)
@@ -124,7 +129,7 @@ class Constants:
                 return None
 
     def same(self, e: Expr) -> Number | None:
-        """The one value of all components of a constant, else None."""
+        """Return the common value of all components of a constant, else None."""
         try:
             found = self.components(e)
         except NotFoldableError:
@@ -134,7 +139,11 @@ class Constants:
         return found[0]
 
     def folded(self, e: Expr) -> Expr | None:
-        """The value of an operation on constants only."""
+        """Return the result of an operation if all operands are constants, else None.
+
+        Raises:
+            NotFoldableError: The result is left to the target.
+        """
         match e:
             case Unary(unary_op, operand, type):
                 return self._each(type, operand, lambda k, a: self._math.unary(unary_op, a, k))
@@ -185,9 +194,10 @@ class Constants:
 
 
 def is_plain(e: Expr) -> bool:
-    """True for what is free to name again where it stands: a leaf, or components of one.
+    """Return whether an expression can be repeated at no cost at the same place.
 
-    Unlike ``Constants.is_trivial`` it lets pass a local that may change later.
+    True for a leaf and for its components. Unlike ``Constants.is_trivial``, also True for a local
+    that may change later.
     """
     while isinstance(e, Swizzle | Field):
         e = e.base

@@ -1,9 +1,9 @@
-"""Between which numbers a float expression certainly lies.
+"""Compute an interval that certainly contains a float expression.
 
-Input: an expression and what is known of immutable locals. Output: an interval that contains every
-component, infinite where nothing better is known. It serves to leave out guards that are not
-needed, so that ``exp(-0.02 * t * t)`` keeps its short form. Rounding is allowed for: what is not
-exact makes an interval a little wider, but 0 stays 0. A NaN is in no interval, and in all of them.
+Input: an expression and the values of immutable locals. Output: an interval that contains every
+component; infinite where nothing better is known. The intervals are used to leave out guards that
+are not needed, so that ``exp(-0.02 * t * t)`` keeps its short form. To allow for rounding, inexact
+operations widen an interval slightly, but 0 stays 0. The intervals say nothing about NaN.
 """
 
 from __future__ import annotations
@@ -30,11 +30,17 @@ from distal.ir.nodes import (
     UnaryOp,
 )
 
-_DEPTH: Final = 10  # operations within one another that are looked at
+_DEPTH: Final = 10  # the largest depth of nested operations that is examined
 
 
 def interval(e: Expr, known: Mapping[Expr, Expr], depth: int = _DEPTH) -> Interval:
-    """Where every component of ``e`` lies; ``known``: Reads of immutable locals to their values."""
+    """Return an interval that contains every component of ``e``.
+
+    Args:
+        e: A float expression.
+        known: The Reads of immutable locals -> their values.
+        depth: How many levels of nested operations are examined.
+    """
     if depth == 0:
         return ANYWHERE
 
@@ -94,14 +100,14 @@ def _hull(parts: list[Interval]) -> Interval:
 
 
 def _widened(low: float, high: float) -> Interval:
-    """Of arithmetic that rounds; what is no number is no bound."""
+    """Widen the interval of a rounded operation; a NaN bound becomes infinite."""
     low = -math.inf if math.isnan(low) else low - abs(low) * WIDER if math.isfinite(low) else low
     high = math.inf if math.isnan(high) else high + abs(high) * WIDER
     return low, high
 
 
 def _product(e: Binary, of: Callable[[Expr], Interval]) -> Interval:
-    """Of a chain of factors: what occurs twice is a square, wherever it stands."""
+    """Return the interval of a chain of factors; a factor that occurs twice is a square."""
     factors: list[Expr] = []
     rest: list[Expr] = [e]
     while rest and len(factors) < 8:
@@ -124,7 +130,7 @@ def _product(e: Binary, of: Callable[[Expr], Interval]) -> Interval:
 
 def _times(a: Interval, b: Interval) -> Interval:
     ends = [x * y for x in a for y in b]
-    if any(map(math.isnan, ends)):  # 0 times infinity: only the signs are known
+    if any(map(math.isnan, ends)):  # 0 * infinity: only the signs are known
         if a[0] >= 0.0 and b[0] >= 0.0:
             return NOT_NEGATIVE
         if (a[1] <= 0.0 and b[0] >= 0.0) or (a[0] >= 0.0 and b[1] <= 0.0):

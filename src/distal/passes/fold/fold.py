@@ -1,8 +1,8 @@
-"""Fold: constants computed, trivial locals forwarded, dead and unreachable code dropped.
+"""Fold: compute constants, forward trivial locals, remove dead and unreachable code.
 
-Input: any module after specialise. Output: the same functions, simpler. A name of the author's
-stays, unless its local is only another name for something as short (a constant, a parameter, a
-uniform, components of one), or nothing reads it.
+Input: any module after specialise. Output: the same functions, simplified. The author's names are
+kept, except for locals that nothing reads and for locals that merely rename an expression of the
+same length (a constant, a parameter, a uniform, or components of one).
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ from distal.passes.reachable import drop_unused
 
 
 def run(module: Module, context: Context) -> Module:
-    """Fold every function."""
+    """Fold every function, and remove what is unused."""
     functions = tuple(fold_function(f, context.precision) for f in module.functions)
     return drop_unused(replace(module, functions=functions))
 
 
 def fold_function(function: Function, precision: int) -> Function:
-    """One function, folded until nothing is left to gain."""
+    """Fold one function repeatedly until nothing changes."""
     body = function.body
     while True:
         folded = _Folder(body, precision).block(body)
@@ -59,7 +59,7 @@ def fold_function(function: Function, precision: int) -> Function:
 
 
 def fold_expression(e: Expr, precision: int) -> Expr:
-    """An expression folded by itself; it must not read a Var."""
+    """Fold a single expression; it must not read a Var."""
     return _Folder((), precision).expr(e)
 
 
@@ -70,7 +70,7 @@ class _Folder:
         }
         self._known: dict[Expr, Expr] = {}
         self._rules = Rules(ConstantArithmetic(precision), self._known, self._mutable)
-        # Rewritten nodes. A trivial local's Read stands here too, as what it forwards to.
+        # Rewritten nodes -> results; also the Read of a trivial local -> its replacement.
         self._done: dict[Expr, Expr] = {}
 
     def expr(self, root: Expr) -> Expr:
@@ -92,7 +92,7 @@ class _Folder:
         return done[root]
 
     def target(self, target: Expr) -> Expr:
-        """An Assign's target keeps its form; only indices are folded."""
+        """Fold the indices in the target of an Assign; the rest of the target is kept."""
         if isinstance(target, Read):
             return target
         assert isinstance(target, Swizzle | Index | Field)
@@ -101,7 +101,7 @@ class _Folder:
         return rebuild(target, operands)
 
     def block(self, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-        """Fold a block; nothing is kept after what never goes on."""
+        """Fold a block and drop the statements that control never reaches."""
         result: list[Stmt] = []
         for stmt in body:
             for folded in self._statement(stmt):

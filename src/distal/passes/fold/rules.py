@@ -1,7 +1,7 @@
-"""Simplifying one expression whose operands are simple already.
+"""Simplify one expression whose operands are already simplified.
 
-Input: an expression. Output: an equal one, the same when no rule applies. Every rule is exact bit
-for bit, but for the sign of a zero in ``x + 0.0`` (it may be ignored).
+Input: an expression. Output: an equal expression; the same expression if no rule applies. Every
+rule gives exactly the same bits, except for the sign of a zero in ``x + 0.0`` (it may be ignored).
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Rules(Aggregates):
     """The rules for one function (see ``Constants`` for its arguments)."""
 
     def simplify(self, e: Expr) -> Expr:
-        """Apply the rules at the top of ``e``."""
+        """Apply the rules to the root node of ``e``."""
         try:
             folded = self.folded(e)
         except NotFoldableError:
@@ -86,7 +86,7 @@ class Rules(Aggregates):
             case Builtin(name, args):
                 return self._builtin(e, name, args)
             case _:
-                # Leaves, Splat, MatMul, Call, textures: nothing to gain but by constants.
+                # Leaves, Splat, MatMul, Call, textures: only constant folding applies.
                 return e
 
     def _unary(self, e: Unary) -> Expr:
@@ -96,7 +96,7 @@ class Rules(Aggregates):
             ):
                 return value
             case UnaryOp.NOT, Compare(op, lhs, rhs, type):
-                # Of a NaN only == and != are each other's opposite.
+                # With a NaN, only == and != are opposites of each other.
                 equality = op in (CompareOp.EQ, CompareOp.NE)
                 if equality or kind_of(lhs.type) is not Kind.FLOAT:
                     return Compare(_INVERSE[op], lhs, rhs, type, span=e.span)
@@ -109,7 +109,7 @@ class Rules(Aggregates):
         if simpler is not e:
             return simpler
         if isinstance(lhs, Splat) and isinstance(rhs, Splat) and isinstance(e.type, Vector):
-            # One operation instead of one for each component.
+            # One operation on scalars instead of one for each component.
             inner = Binary(op, lhs.value, rhs.value, lhs.value.type, span=e.span)
             return Splat(self.simplify(inner), e.type, span=e.span)
         return e
@@ -156,7 +156,7 @@ class Rules(Aggregates):
         if divisor == -1.0:
             return self._negate(e.lhs)
         if divisor and abs(math.frexp(divisor)[0]) == 0.5:
-            # The reciprocal of a power of two is exact, unless it leaves the normal floats.
+            # The reciprocal of a power of two is exact, unless it is not a normal float.
             try:
                 reciprocal = self._math.round(1.0 / divisor)
             except NotFoldableError:
@@ -171,7 +171,7 @@ class Rules(Aggregates):
         return self.simplify(Unary(UnaryOp.NEGATE, e, e.type))
 
     def _integer(self, e: Binary, kind: Kind | None) -> Expr:
-        """Ints wrap, so that every rule of arithmetic modulo 2 ** 32 holds."""
+        """Simplify integer arithmetic. Ints wrap, so all rules modulo 2 ** 32 are valid."""
         op, lhs, rhs = e.op, e.lhs, e.rhs
         left, right = self.same(lhs), self.same(rhs)
         if kind is Kind.BOOL:
@@ -207,7 +207,7 @@ class Rules(Aggregates):
                 return e
 
     def _logical(self, e: Logical) -> Expr:
-        short = e.op is LogicalOp.OR  # the value that decides it
+        short = e.op is LogicalOp.OR  # the operand value that decides the result
         left, right = self.same(e.lhs), self.same(e.rhs)
         if left is not None:
             return Const(short, BOOL) if left == short else e.rhs
@@ -222,7 +222,7 @@ class Rules(Aggregates):
         picked = self.same(condition)
         if picked is not None:
             return yes if picked else no
-        if isinstance(condition, Unary):  # NOT: the only Unary of a bool
+        if isinstance(condition, Unary):  # NOT is the only Unary of a bool
             return self.simplify(Select(condition.operand, no, yes, e.type, span=e.span))
         if kind_of(e.type) is Kind.BOOL and condition.type is e.type:
             when_yes, when_no = self.same(yes), self.same(no)
@@ -265,7 +265,7 @@ class Rules(Aggregates):
                 return e
 
     def _is_idle(self, name: str, a: Expr, b: Expr) -> bool:
-        """True for a bound that ``a`` is seen to keep without it."""
+        """Return whether min or max with the bound ``b`` provably leaves ``a`` unchanged."""
         if kind_of(a.type) is not Kind.FLOAT or self.components(b) is None:
             return False
         (low, high), bound = interval(a, self._known), interval(b, {})
@@ -294,7 +294,7 @@ def _truth(e: Binary, left: Number | None, right: Number | None) -> Expr:
 
 
 def _power_of_two(e: Binary, divisor: int) -> Expr:
-    """A shift floors, and a mask is the floored remainder, of negative ints too."""
+    """Replace a division by a shift, a remainder by a mask; both are correct for negative ints."""
     if divisor & (divisor - 1):
         return e
     count = component_count(e.type)
