@@ -1,1 +1,1 @@
-"""Gradient: forward-mode derivatives of functions."""
+"""Gradient: forward-mode differentiation of functions."""

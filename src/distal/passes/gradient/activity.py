@@ -1,9 +1,9 @@
-"""Which values change when a function's arguments do.
+"""Activity analysis: find the values that change when a function's arguments change.
 
-Input: functions, callees known by name, and for each parameter of one of them the set of directions
-along which it changes. Output: the same for every local and for the result. A set of directions is
-an int with one bit for each. Values that are not floats never change, nor does a texture's texel;
-the flow of control is taken as it is.
+Input: functions, with callees known by name, and for each parameter of one of them the set of
+directions along which it changes. Output: these sets for every local and for the result. A set of
+directions is an int with one bit for each direction. Values that are not floats count as constant,
+and so do texels; control flow is assumed to be fixed.
 """
 
 from __future__ import annotations
@@ -55,21 +55,21 @@ from distal.ir.walk import nodes_in, root_of, statements_in
 
 @dataclass(frozen=True, slots=True)
 class FunctionActivity:
-    """The directions along which each local and the result change."""
+    """The directions along which each local and the result change, as bit sets."""
 
     locals: Mapping[str, int]
     result: int
 
 
 class Activity:
-    """The answers so far, for the functions of one module."""
+    """Computes and caches activities for the functions of one module."""
 
     def __init__(self, functions: Mapping[str, Function]) -> None:
         self._functions = functions
         self._known: dict[tuple[str, tuple[int, ...]], FunctionActivity] = {}
 
     def of(self, name: str, params: tuple[int, ...]) -> FunctionActivity:
-        """The activity of a function whose parameters change along these directions."""
+        """Return the activity of a function whose parameters change along these directions."""
         key = (name, params)
         found = self._known.get(key)
         if found is None:
@@ -77,7 +77,7 @@ class Activity:
         return found
 
     def _settled(self, function: Function, params: tuple[int, ...]) -> FunctionActivity:
-        """Go over the statements until nothing is added: each round adds a bit or is the last."""
+        """Visit the statements until nothing is added; each round adds a bit or is the last."""
         active = {p.name: mask for p, mask in zip(function.params, params, strict=True)}
         statements = list(statements_in(function.body))
         while True:
@@ -106,7 +106,16 @@ class Activity:
         return 0
 
     def expression(self, root: Expr, active: Mapping[str, int], memo: dict[Expr, int]) -> int:
-        """The directions along which an expression changes."""
+        """Return the directions along which an expression changes.
+
+        Args:
+            root: The expression.
+            active: The local -> the directions along which it changes.
+            memo: The results for nodes so far; extended.
+
+        Raises:
+            AssertionError: The expression contains a node that earlier passes remove.
+        """
         for e in nodes_in(root):
             if e not in memo:
                 memo[e] = self._node(e, active, memo) if has_floats(e.type) else 0

@@ -1,10 +1,10 @@
-"""A function's statements with the tangents of its values beside them.
+"""Add the computation of tangents to a function's statements.
 
-Input: the body of a function, the tangents of its parameters along each direction, and which of its
-locals change. Output: a body that computes the same values and, beside each that changes, its
-tangents: ``q`` has ``q_dx``, ``q_dy``, ``q_dz``. A call becomes a call of the callee's derivative
-function, which gives value and tangents at once. Conditions, indices and loop bounds stay as they
-are. How derivative functions are found and named is not known here.
+Input: the body of a function, the tangents of its parameters along each direction, and the locals
+that change. Output: a body that computes the same values and, for each value that changes, its
+tangents: ``q`` gets ``q_dx``, ``q_dy``, ``q_dz``. A call becomes a call of the callee's derivative
+function, which returns the value and the tangents together. Conditions, indices and loop bounds are
+kept. Does not depend on how derivative functions are found and named.
 """
 
 from __future__ import annotations
@@ -72,7 +72,8 @@ from distal.passes.gradient.activity import FunctionActivity
 from distal.passes.gradient.dual_rules import node_tangent
 from distal.passes.naming import FreshNames
 
-# What is deeper gets a name: rules use their arguments several times, and text must stay small.
+# Deeper expressions are bound to locals: rules use their arguments several times, and the text must
+# stay small.
 _DEEP_TANGENT = 8
 _DEEP_VALUE = 24
 _DEEP_ARGUMENT = 3
@@ -80,11 +81,11 @@ _DEEP_ARGUMENT = 3
 
 @dataclass(frozen=True, slots=True)
 class Version:
-    """A derivative function as a call sees it.
+    """A derivative function, as needed to call it.
 
     Attributes:
         function: Its name. It returns a tuple: the value, then a tangent for each direction.
-        directions: The directions along which the result changes, a bit each.
+        directions: The directions along which the result changes, one bit for each.
         passed: The tangents to pass after the arguments.
     """
 
@@ -110,12 +111,18 @@ class _Pair:
 
 
 def tangent_name(name: str, direction: int, count: int) -> str:
-    """What the tangent of a local is called."""
+    """Return the name for the tangent of a local.
+
+    Args:
+        name: The local.
+        direction: The index of the direction.
+        count: The number of directions.
+    """
     return f"{name}_d" if count == 1 else f"{name}_d{LETTERS[direction]}"
 
 
 class DualBody:
-    """One function's body on its way."""
+    """The body of one function during differentiation."""
 
     def __init__(
         self,
@@ -128,17 +135,17 @@ class DualBody:
         self._derive = derive
         self._names = names
         self._activity = activity
-        self._tangents = tangents  # of the locals bound so far
+        self._tangents = tangents  # the tangents of the locals bound so far
         self._count = count
         self._still: Lanes = (None,) * count
         self._returned: Returned = lambda value, _: value
-        self._memo: dict[Expr, _Pair] = {}  # of the statement at hand
-        self._vars: set[str] = set()  # the tangents that are Vars themselves
+        self._memo: dict[Expr, _Pair] = {}  # for the current statement
+        self._vars: set[str] = set()  # the tangents that are themselves Vars
         self._depths: dict[Expr, int] = {}
         self._span: Span | None = None
 
     def function_body(self, body: tuple[Stmt, ...], returned: Returned) -> tuple[Stmt, ...]:
-        """The whole body; ``returned`` makes what is returned of a value and its tangents."""
+        """Differentiate the body; ``returned`` combines a returned value with its tangents."""
         self._returned = returned
         return self._block(body)
 
@@ -178,7 +185,7 @@ class DualBody:
     def _let(self, name: str, value: Expr, out: list[Stmt]) -> None:
         pair = self._dual(value, out)
         out.append(Let(name, pair.value, span=self._span))
-        # Rules use the value too: they read it from its local.
+        # Rules also use the value: they read it from its local.
         known = {pair.value: Read(name, value.type)} if children(pair.value) else {}
         memo: dict[Expr, Expr] = {}
         bound: list[Tangent] = []
@@ -207,7 +214,7 @@ class DualBody:
     def _assign(self, target: Expr, value: Expr, out: list[Stmt]) -> None:
         pair = self._dual(value, out)
         root = root_of(target)
-        # Tangents first: they are computed from the values before the change, and each from
+        # Tangents first: they are computed from the values before the assignment, each from
         # tangents of its own direction only.
         for k in self._directions(root.name):
             local = self._tangents[root.name][k]
@@ -220,7 +227,7 @@ class DualBody:
     # Expressions.
 
     def _dual(self, e: Expr, out: list[Stmt]) -> _Pair:
-        """The value and tangents of an expression; ``out`` gets what must come before."""
+        """Return the value and tangents of an expression; append needed statements to ``out``."""
         found = self._memo.get(e)
         if found is None:
             found = self._memo[e] = self._settled(self._made(e, out), out)
@@ -273,7 +280,7 @@ class DualBody:
         return _Pair(value, tuple(node_tangent(value, d) for d in along))
 
     def _argument(self, e: Expr, out: list[Stmt]) -> _Pair:
-        """An operand that a rule uses more than once."""
+        """Return an operand that a rule uses more than once, bound to a local if it is deep."""
         pair = self._dual(e, out)
         if not pair.changes:
             return pair
@@ -303,7 +310,7 @@ class DualBody:
         return _Pair(Field(result, "item0", e.type), tuple(tangents))
 
     def _select(self, e: Select, out: list[Stmt]) -> _Pair:
-        """A choice; one whose branches need statements of their own becomes an If."""
+        """Differentiate a Select; if its branches need statements, it becomes an If."""
         before = dict(self._memo)
         then: list[Stmt] = []
         yes = self._dual(e.yes, then)
@@ -332,7 +339,7 @@ class DualBody:
 
         (yes_pair, then), (no_pair, otherwise) = yes, no
         if e.condition.type is not BOOL:
-            # A choice by component computes both sides.
+            # A Select with a bvec condition computes both sides.
             out.extend((*then, *otherwise))
             pairs = [_Pair(e.condition, self._still), yes_pair, no_pair]
             return self._combined(e, pairs)
@@ -345,7 +352,7 @@ class DualBody:
         out.append(If(e.condition, tuple(then), tuple(otherwise), span=self._span))
         return _Pair(value, tuple(tangents))
 
-    # Names for what is deep.
+    # Locals for deep expressions.
 
     def _settled(self, pair: _Pair, out: list[Stmt]) -> _Pair:
         if not pair.changes:
@@ -357,18 +364,18 @@ class DualBody:
         return tuple(None if t is None else self._named(t, deepest, "slope", out) for t in tangents)
 
     def _named(self, e: Expr, deepest: int, name: str, out: list[Stmt]) -> Expr:
-        """The expression, read from a local of its own unless it is shallow."""
+        """Bind the expression to a local unless it is shallow; return its replacement."""
         if is_constant(e) or (self._depth(e) <= deepest and not self._may_change(e)):
             return e
         if isinstance(e, Splat):
-            # A matrix is scaled by a Splat only: it must stay one.
+            # A matrix can be scaled by a Splat only, so the Splat must be kept.
             return rebuild(e, (self._named(e.value, deepest, name, out),))
         lanes = lanes_of(e)
         if lanes is None:
             local = Read(self._names.fresh(name), e.type)
             out.append(Let(local.name, e, span=self._span))
             return local
-        # Zeros stay visible: only the components that change get names.
+        # Only the components that change get names, so that zeros remain visible.
         whole = from_lanes(
             tuple(
                 None if part is None else self._named(part, deepest, f"{name}_{letter}", out)
@@ -380,7 +387,7 @@ class DualBody:
         return whole
 
     def _may_change(self, e: Expr) -> bool:
-        """True for a bare read of a Var: harmless in the statement at hand, not beyond it."""
+        """Return whether ``e`` is a read of a Var, which is valid in the current statement only."""
         return isinstance(e, Read) and e.name in self._vars
 
     def _depth(self, e: Expr) -> int:

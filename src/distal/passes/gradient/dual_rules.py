@@ -1,8 +1,8 @@
-"""The tangent of one node from the tangents of its operands.
+"""Differentiate one node, given the tangents of its operands.
 
-Input: an expression, its operands already rewritten, and along one direction the tangent of each
-operand (``children`` order). Output: its own tangent along that direction. Rules of built-ins are
-in their declarations.
+Input: an expression with rewritten operands and, along one direction, the tangent of each operand
+(in the order of ``children``). Output: the tangent of the expression along that direction. The
+rules of built-ins are in their declarations.
 """
 
 from __future__ import annotations
@@ -43,7 +43,11 @@ from distal.ir.tangents import (
 
 
 def node_tangent(e: Expr, d: Lanes) -> Tangent:
-    """The tangent of one node from its operands' along one direction."""
+    """Return the tangent of a node along one direction, from the tangents of its operands.
+
+    Raises:
+        AssertionError: The node has no derivative rule.
+    """
     match e:
         case Unary(_, _):
             return negative(d[0])

@@ -1,13 +1,14 @@
-"""Replace each ``Gradient`` by a call of a derivative function made from the function's own code.
+"""Replace each ``Gradient`` by a call of a derivative function generated from the function's code.
 
-Input: a module whose functions are all bound. Output: one without Gradient. The derivative is exact
-(forward mode): beside each value that depends on the point, the derivative function computes how it
-changes along each of the point's axes, all in one evaluation (``dual``). Functions are treated
-callees first, so that the gradient of a function that itself takes a gradient is the gradient of
-what this pass made of it.
+Input: a module whose functions have no unbound static parameters. Output: a module without
+Gradient. The derivative is exact (forward mode): for each value that depends on the point, the
+derivative function also computes its tangents along the point's axes, all in one evaluation
+(``dual``). Functions are processed callees first, so the gradient of a function that itself
+contains a Gradient is taken from the output of this pass for that function.
 
-A derivative function is made once for each way its arguments change: a parameter is still, changes
-by a constant (the seeds: most primitives are called with the point shifted), or by anything.
+A derivative function is generated once for each combination of the ways its arguments change: a
+parameter has a zero tangent, a constant tangent (the seeds: most primitives are called with the
+point shifted), or a tangent that is passed as an argument.
 """
 
 from __future__ import annotations
@@ -48,27 +49,27 @@ from distal.passes.naming import FreshNames, local_names
 
 
 class _Form(Enum):
-    """What a derivative function returns; the value is the suffix of its name."""
+    """The result of a derivative function; the value of a member is the suffix of its name."""
 
-    DUAL = "dual"  # a tuple: the value, then the tangents that are not still
+    DUAL = "dual"  # a tuple: the value, then the nonzero tangents
     GRADIENT = "gradient"  # the gradient at the point
     BOTH = "value_and_gradient"  # the tuple (value, gradient)
 
 
 class _Anything(Enum):
-    """The mark of a tangent that is passed as an argument."""
+    """Marks a tangent that is passed as an argument."""
 
     ANYTHING = "anything"
 
 
-# For each parameter and direction: None (still), a constant tangent, or ANYTHING; the latter for
-# each component where some are still.
+# For each parameter and direction: None (zero), a constant tangent, or ANYTHING (passed as an
+# argument); if some components are zero, a tuple with None or ANYTHING for each component.
 _Change: TypeAlias = Expr | _Anything | tuple[_Anything | None, ...] | None
 _Key: TypeAlias = tuple[str, _Form, tuple[tuple[_Change, ...], ...]]
 
 
 def run(module: Module, context: Context) -> Module:
-    """Replace every Gradient."""
+    """Replace every Gradient in the module."""
     if not any(isinstance(e, Gradient) for f in module.functions for e in expressions_in(f.body)):
         return module
     derived = _Derived(module)
@@ -97,11 +98,11 @@ class _DerivativeFunction:
     """A finished derivative function."""
 
     name: str
-    directions: int  # along which its result changes
+    directions: int  # the directions along which its result changes
 
 
 class _Derived:
-    """The functions so far, free of Gradient, and the derivative functions made of them."""
+    """The functions processed so far, without Gradient, and their derivative functions."""
 
     def __init__(self, module: Module) -> None:
         self.functions: dict[str, Function] = {}
@@ -110,11 +111,17 @@ class _Derived:
         self._made: dict[_Key, _DerivativeFunction] = {}
 
     def add(self, function: Function) -> None:
-        """Take in a function whose callees are here already."""
+        """Add a function whose callees were already added."""
         self.functions[function.name] = function
 
     def gradient(self, name: str, point: Type, *, with_value: bool) -> str:
-        """The function that gives the gradient of ``name`` along its first parameter."""
+        """Return the function that computes the gradient of ``name`` along its first parameter.
+
+        Args:
+            name: The function to differentiate.
+            point: The type of its first parameter.
+            with_value: Whether the function also returns the value.
+        """
         axes = seeds(point)
         still = (None,) * len(axes)
         others = self.functions[name].params[1:]
@@ -122,7 +129,7 @@ class _Derived:
         return self._version(name, form, (axes, *(still for _ in others))).name
 
     def dual(self, name: str, tangents: tuple[Lanes, ...]) -> Version:
-        """The derivative function for a call, its result's directions, and what to pass."""
+        """Return the derivative function for a call: name, directions and tangents to pass."""
         key = tuple(tuple(map(_change, along)) for along in tangents)
         made = self._version(name, _Form.DUAL, key)
         passed = [
@@ -179,7 +186,10 @@ def _change(tangent: Tangent) -> _Change:
 
 
 def _passed(tangent: Tangent, change: _Change) -> tuple[Expr, ...]:
-    """What a call passes of a tangent, after what the derivative function knows of it."""
+    """Return the parts of a tangent that a call passes.
+
+    The parts that are built into the derivative function (zero or constant) are left out.
+    """
     if tangent is None or not isinstance(change, _Anything | tuple):
         return ()
     if isinstance(change, tuple):
@@ -190,7 +200,7 @@ def _passed(tangent: Tangent, change: _Change) -> tuple[Expr, ...]:
 def _parameter_tangents(
     param: Param, along: tuple[_Change, ...], names: FreshNames, extra: list[Param]
 ) -> Lanes:
-    """A parameter's tangents; those that are passed become parameters in ``extra``."""
+    """Return a parameter's tangents; append a parameter to ``extra`` for each that is passed."""
     found: list[Tangent] = []
     for k, change in enumerate(along):
         wanted = tangent_name(param.name, k, len(along))
@@ -214,7 +224,7 @@ def _parameter(wanted: str, type: Type, names: FreshNames, extra: list[Param]) -
 
 
 def _returned(value_type: Type, form: _Form, directions: int, count: int) -> tuple[Type, Returned]:
-    """The result type of a derivative function, and how it is made at each return."""
+    """Return the result type of a derivative function, and how to build the result at a Return."""
     point = vector_of(Kind.FLOAT, count)
 
     def gradient(tangents: Lanes) -> Expr:
