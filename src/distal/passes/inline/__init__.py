@@ -1,1 +1,1 @@
-"""Inline: calls replaced by the callee's statements."""
+"""Inline: replace calls by the callee's statements."""

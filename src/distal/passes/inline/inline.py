@@ -1,14 +1,14 @@
-"""Inline: calls replaced by the callee's statements, where the target wants it.
+"""Inline: replace calls by the callee's statements, if the target requires it.
 
 Input: a module. Output: a module with fewer and longer functions; functions that nothing calls any
-more are dropped, on every target.
+more are removed, on every target.
 
-A call in a loop gains most: what does not change from round to round moves out of it, and a field
-is called from a few loops only. Elsewhere a big callee stays a function, so that code grows with
-the number of loops and not with the number of call sites (a field of N shapes, called from six
-places, would be compiled six times). Nothing that may be skipped is moved before the statement it
-stands in: in a branch of a Select, right of ``and`` and in a ``while``'s condition a cheap callee
-becomes an expression, and any other stays a call.
+A call in a loop gains most: loop-invariant values then move out of the loop, and a field is called
+from a few loops only. Elsewhere a large callee stays a function, so that the size of the code
+depends on the number of loops and not on the number of calls (otherwise a field of N shapes, called
+from six places, would be compiled six times). A call that may be skipped is never moved before its
+statement: in a branch of a Select, in the right operand of ``and`` and in a ``while``'s condition,
+a cheap callee becomes an expression, and any other stays a call.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ from distal.passes.inline.straighten import RESULT, Straight, straighten
 from distal.passes.naming import FreshNames, local_names
 from distal.passes.reachable import drop_unused
 
-SMALL: Final = 60  # inlined wherever called (a polynomial sine is about 30)
+SMALL: Final = 60  # inlined at every call (a polynomial sine has size 30)
 IN_LOOP: Final = 500  # inlined into loops; the raymarcher's whole scene is about 200
-ONCE: Final = 2000  # inlined where there is one call site only
-CALLER: Final = 6000  # a function does not grow beyond this
-CHEAP: Final = 60  # the cost of what may be computed in vain
+ONCE: Final = 2000  # inlined if there is only one call
+CALLER: Final = 6000  # the largest size of a function after inlining
+CHEAP: Final = 60  # the largest cost of an expression that may be computed but not used
 
 
 def run(module: Module, context: Context) -> Module:
@@ -78,7 +78,7 @@ def run(module: Module, context: Context) -> Module:
 
 
 def _call_sites(module: Module) -> Counter[str]:
-    """How many statements call each function."""
+    """Return the number of statements that call each function."""
     sites: Counter[str] = Counter()
     for function in module.functions:
         for stmt in statements_in(function.body):
@@ -95,7 +95,7 @@ class _Callee:
 
 
 class _Inliner:
-    """Inlining into one function."""
+    """Inlines calls into one function."""
 
     def __init__(
         self, function: Function, callees: Mapping[str, _Callee], sites: Mapping[str, int]
@@ -107,11 +107,11 @@ class _Inliner:
         self._size = size(function.body)
         self._reads = ReadNames()
         self._mutable = set(_assigned(function.body))
-        # Calls inlined already and their values, for each block around the current place.
+        # Inlined calls -> their values, for each block around the current place.
         self._available: list[dict[Expr, Expr]] = [{}]
 
     def function(self) -> Function:
-        """The function with calls inlined."""
+        """Return the function with calls inlined."""
         return replace(self._function, body=self._block(self._function.body, in_loop=False))
 
     def _block(self, body: tuple[Stmt, ...], *, in_loop: bool) -> tuple[Stmt, ...]:
@@ -125,7 +125,7 @@ class _Inliner:
     def _statement(self, stmt: Stmt, in_loop: bool) -> list[Stmt]:
         before: list[Stmt] = []
         loop = in_loop or isinstance(stmt, For | While)
-        # A while's condition is computed again each round: nothing of it stands before.
+        # A while's condition is computed in each iteration: none of it may move before the loop.
         eager = not isinstance(stmt, While)
         memo: dict[Expr, Expr] = {}
         changed = map_statement(
@@ -175,7 +175,7 @@ class _Inliner:
         return callee.size <= (IN_LOOP if in_loop else SMALL)
 
     def _insert(self, callee: _Callee, call: Call, before: list[Stmt]) -> Expr:
-        """Add the callee's statements to ``before`` under names free here; give its value."""
+        """Append the callee's statements to ``before``, with new names; return the call's value."""
         reads: dict[Expr, Expr] = {}
         for param, arg in zip(callee.function.params, call.args, strict=True):
             if is_plain(arg):
@@ -191,7 +191,7 @@ class _Inliner:
 
 
 class _Renaming:
-    """A callee's statements with its parameters replaced and its locals renamed."""
+    """Copies a callee's statements with its parameters replaced and its locals renamed."""
 
     def __init__(self, names: FreshNames, reads: dict[Expr, Expr]) -> None:
         self._names = names
@@ -200,7 +200,7 @@ class _Renaming:
         self._renamed: dict[str, str] = {}
 
     def expr(self, e: Expr) -> Expr:
-        """The expression in the caller's names."""
+        """Return the expression in the caller's names."""
         replaced = self._memo
         for n in nodes_in(e):
             if n in replaced:
@@ -212,7 +212,7 @@ class _Renaming:
         return replaced[e]
 
     def block(self, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-        """The statements in the caller's names."""
+        """Return the statements in the caller's names."""
         return tuple(self._statement(s) for s in body)
 
     def _statement(self, stmt: Stmt) -> Stmt:
@@ -236,7 +236,7 @@ class _Renaming:
 
 
 def _as_expression(callee: _Callee, call: Call) -> Expr:
-    """The value of a callee of Lets only, each Let put where it is read."""
+    """Return the value of a callee that consists of Lets, with each Let substituted."""
     reads: dict[Expr, Expr] = {
         Read(p.name, p.type): arg for p, arg in zip(callee.function.params, call.args, strict=True)
     }
@@ -253,7 +253,10 @@ def _assigned(body: tuple[Stmt, ...]) -> Iterator[str]:
 
 
 def always_computed(root: Expr) -> Iterator[Expr]:
-    """The nodes that are computed whenever ``root`` is: not what a Select or ``and`` may skip."""
+    """Yield the nodes that every evaluation of ``root`` computes.
+
+    Leaves out the operands that a Select or ``and`` may skip.
+    """
     seen: set[Expr] = set()
     stack = [root]
     while stack:

@@ -1,8 +1,8 @@
-"""Bodies that can replace a call.
+"""Convert a function's body to a form that can replace a call.
 
-Input: a function's body. Output: statements that compute the result, and the result as an
-expression over their locals, without a Return; or None where that would need flags (a return out of
-a loop, or one that only some ways through a branch reach).
+Input: a function's body. Output: statements that compute the result, without a Return, and the
+result as an expression over their locals; or None if this would need flags (a return inside a loop,
+or on only some paths through a branch).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from distal.ir.nodes import (
 from distal.ir.types import Array, Matrix, Scalar, Struct, Type, Vector
 from distal.passes.cost import Costs
 
-# Both values of a Select are computed on a vector machine; an If may be skipped.
+# A vector machine computes both values of a Select, but it can skip the branch of an If.
 PICK_COST: Final = 16
 
 RESULT: Final = "result"
@@ -38,19 +38,25 @@ RESULT: Final = "result"
 
 @dataclass(frozen=True, slots=True)
 class Straight:
-    """Statements and the value that a call of the function has after them."""
+    """Statements without a Return, and the function's result after them."""
 
     body: tuple[Stmt, ...]
     value: Expr
 
     @property
     def only_lets(self) -> bool:
-        """True when the whole is one expression with names for its parts."""
+        """Whether the statements only name parts of one expression."""
         return all(isinstance(s, Let) for s in self.body)
 
 
 def straighten(function: Function, result: str, costs: Costs) -> Straight | None:
-    """The function's body without Return; ``result`` is a name free in it."""
+    """Return the function's body without Return, or None if this would need flags.
+
+    Args:
+        function: The function.
+        result: A name that is not used in the function.
+        costs: Costs of expressions.
+    """
     body = function.body
     if not body:
         return None
@@ -68,7 +74,10 @@ def straighten(function: Function, result: str, costs: Costs) -> Straight | None
 
 
 def _ladder(body: tuple[Stmt, ...], result: Read, costs: Costs) -> list[Stmt] | None:
-    """Each Return becomes an assignment; what follows a branch that returned goes to the other."""
+    """Replace each Return by an assignment; None if this would need flags.
+
+    The statements after a branch that returns move into the other branch.
+    """
     done: list[Stmt] = []
     for i, stmt in enumerate(body):
         match stmt:
@@ -111,7 +120,7 @@ def _always_returns(body: tuple[Stmt, ...]) -> bool:
 def _pick(
     condition: Expr, yes: list[Stmt], no: list[Stmt], result: Read, costs: Costs
 ) -> Assign | None:
-    """A Select, where both ways do nothing but compute the result, and cheaply."""
+    """Return a Select if both branches only compute the result, at low cost; else None."""
     match yes, no:
         case [Assign(_, a)], [Assign(_, b)] if costs.of(a) + costs.of(b) <= PICK_COST:
             return Assign(result, Select(condition, a, b, result.type))
@@ -120,7 +129,11 @@ def _pick(
 
 
 def zero(type: Type) -> Expr:
-    """A value of a type, to start a Var with."""
+    """Return the zero value of a type, as the initial value of a Var.
+
+    Raises:
+        AssertionError: The type is not a value type.
+    """
     match type:
         case Scalar() | Vector():
             return build.number(0, type)
