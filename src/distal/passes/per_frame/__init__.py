@@ -1,1 +1,1 @@
-"""Frequency: work that is the same in every pixel, computed once per frame."""
+"""Frequency: move work that is the same in every pixel to once per frame."""

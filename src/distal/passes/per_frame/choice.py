@@ -1,8 +1,8 @@
-"""Which expressions of a function should be computed once a frame.
+"""Decide which expressions of a function should be computed once per frame.
 
-Input: a function, costs, and the forms of expressions where they stand. Output: yes or no for each,
-and the calls that are left to pixels. Asked twice, once to learn what calls pass on and once to
-rewrite, it answers the same.
+Input: a function, costs, and the forms of expressions at their places. Output: a decision for each
+expression, and the calls that pixels still make. The pass asks twice, first to collect the
+arguments of calls and then to rewrite; the decisions are the same both times.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from distal.passes.per_frame.values import LEAST_COST, is_carried, is_exploded
 
 
 class Picking:
-    """The choices in one function."""
+    """The decisions for one function."""
 
     def __init__(self, function: Function, costs: Costs) -> None:
         self._costs = costs
@@ -34,10 +34,10 @@ class Picking:
         self._read_once = {name for name in lets if reads[name] == 1}
 
     def picks(self, e: Expr, here: Here) -> bool:
-        """True when the expression as a whole shall be computed once a frame.
+        """Return whether the expression as a whole should be computed once per frame.
 
-        A local that is read in several places counts nothing here: it is computed once a frame
-        by itself, and a sum of it does not pay for another value.
+        A local that is read in several places does not count as cost: it is computed once per frame
+        itself, and a sum of such locals is not worth another per-frame value.
         """
         if isinstance(e, Splat | Construct) or not (is_carried(e.type) or is_exploded(e.type)):
             return False
@@ -58,7 +58,7 @@ class Picking:
         return False
 
     def calls(self, root: Expr, here: Here) -> Iterator[Call]:
-        """The calls in an expression that pixels will make."""
+        """Yield the calls in an expression that pixels will make."""
         seen: set[Expr] = set()
         stack = [root]
         while stack:

@@ -1,8 +1,8 @@
-"""The module put together after its per-frame work was taken out of the pixel code.
+"""Assemble the module after its per-frame work was removed from the pixel code.
 
-Input: the module before, its rewritten pixel functions and the per-frame values they read. Output:
-the module after, simplified: parameters that nothing reads any more are gone, values have their
-names, and what does not travel is computed where it is read.
+Input: the module before, its rewritten pixel functions and the per-frame values that they read.
+Output: the module after, simplified: parameters that nothing reads are removed, per-frame values
+have their final names, and values that are not transferred are computed where they are read.
 """
 
 from __future__ import annotations
@@ -33,7 +33,15 @@ def finished(
     limit: int | None,
     precision: int,
 ) -> Module:
-    """The module, with at most ``limit`` components of per-frame values for the pixels."""
+    """Return the finished module.
+
+    Args:
+        before: The module before the pass.
+        pixels: The rewritten functions that pixels run.
+        frame_values: The per-frame values.
+        limit: The largest number of components that the target can transfer; None: no limit.
+        precision: The bits of a float, 32 or 64.
+    """
     pixels = _without_unread_params(before.entry, pixels, precision)
     wanted = per_frame_reads_in(pixels)
     chosen = frame_values.chosen(wanted, limit)
@@ -55,7 +63,7 @@ def finished(
 def _without_unread_params(
     entry: str, functions: tuple[Function, ...], precision: int
 ) -> tuple[Function, ...]:
-    """Each function folded, without parameters that it does not read; calls accordingly."""
+    """Fold each function, and remove unread parameters and the arguments passed to them."""
     kept: dict[str, list[int]] = {}
     result: list[Function] = []
     memo: dict[Expr, Expr] = {}
@@ -83,9 +91,10 @@ def _without_unread_params(
 def _frame_functions(
     before: Module, pixels: tuple[Function, ...], values: Mapping[str, Expr]
 ) -> tuple[dict[str, str], list[Function]]:
-    """The functions that per-frame values call, and new names of those that pixels run changed.
+    """Return the functions that per-frame values call, and the new names of some of them.
 
-    A pixel function may have lost parameters, or read per-frame values that are not there yet.
+    A function that pixels run in changed form gets a new name: its pixel version may have fewer
+    parameters, or read per-frame values that are not computed yet.
     """
     needed = closure(before.functions, called_in(*values.values()))
     pixel = {f.name: f for f in pixels}
@@ -119,7 +128,10 @@ def _with_callees(e: Expr, renamed: Mapping[str, str]) -> Expr:
 
 
 def _needed(roots: set[str], values: Mapping[str, Expr], given: frozenset[str]) -> set[str]:
-    """The values among and below ``roots``, not looking below those that are given."""
+    """Return ``roots`` and the values that they depend on, except the given values.
+
+    The dependencies of given values are not followed.
+    """
     found: set[str] = set()
     stack = list(roots)
     while stack:
@@ -131,7 +143,7 @@ def _needed(roots: set[str], values: Mapping[str, Expr], given: frozenset[str]) 
 
 
 def _with_steps(function: Function, values: Mapping[str, Expr], chosen: set[str]) -> Function:
-    """The function with values that do not travel computed at its top."""
+    """Return the function with values that are not transferred computed at its start."""
     rest = per_frame_reads_in((function,)) - chosen
     if not rest:
         return function
@@ -148,7 +160,7 @@ def _with_steps(function: Function, values: Mapping[str, Expr], chosen: set[str]
 
 
 def _named(module: Module, hints: Mapping[str, str | None]) -> Module:
-    """The module with marks replaced by names, the author's where there are any and free."""
+    """Replace temporary names by final ones: the author's if there is one and it is free."""
     names = FreshNames(
         {*module_names(module), *(n for f in module.functions for n in local_names(f))}
     )

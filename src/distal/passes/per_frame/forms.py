@@ -1,9 +1,9 @@
-"""What a function's values are made of, where they are the same in every pixel of a frame.
+"""Find the form of each value that is the same in every pixel of a frame.
 
-Input: a function, and what is known of its parameters. Output: for each expression its *form*: the
-same value written over constants, uniforms and the parameters that are per frame at every call; or
-None for what differs from pixel to pixel. Locals are followed through straight code and branches;
-what a loop changes has no form.
+Input: a function, and the forms of its parameters. Output: the *form* of each expression: the same
+value as an expression over constants, uniforms and those parameters that are per frame at every
+call; None for a value that differs between pixels. Locals are tracked through straight code and
+branches; a local that a loop changes has no form.
 """
 
 from __future__ import annotations
@@ -56,10 +56,10 @@ Forms: TypeAlias = Mapping[str, Expr]
 
 
 def hoistable_calls(functions: tuple[Function, ...]) -> frozenset[str]:
-    """Functions that may run once a frame, whether or not a pixel needs them.
+    """Return the functions that may run once per frame, whether or not a pixel needs them.
 
-    Not those that hold a ``while``, which might not end where the scene never calls it, and not
-    those that read a resource: not every target's per-frame part can.
+    Excluded are functions with a ``while``, which might not terminate for arguments that the scene
+    never passes, and functions that read a resource, which not every target's per-frame part can.
     """
     found: set[str] = set()
     for function in functions:
@@ -75,18 +75,24 @@ def hoistable_calls(functions: tuple[Function, ...]) -> frozenset[str]:
 
 
 class Forming:
-    """The forms of expressions, while the locals that have one are known in ``env``."""
+    """Computes the forms of expressions, given the forms of locals in ``env``."""
 
     def __init__(self, precision: int, callable: frozenset[str]) -> None:
         self._rules = Rules(ConstantArithmetic(precision), {}, frozenset())
         self._callable = callable
 
     def simplified(self, e: Expr) -> Expr:
-        """The expression folded at its top."""
+        """Fold the root node of the expression."""
         return self._rules.simplify(e)
 
     def form(self, root: Expr, env: Forms, memo: dict[Expr, Expr | None]) -> Expr | None:
-        """The form of an expression."""
+        """Return the form of an expression, or None.
+
+        Args:
+            root: The expression.
+            env: The forms of the locals that have one.
+            memo: The forms of the nodes processed so far; extended.
+        """
         if root in memo:
             return memo[root]
         for e in nodes_in(root):
@@ -114,7 +120,7 @@ class Forming:
                 return self._rules.simplify(rebuild(e, tuple(operands)))
 
     def replaced(self, form: Expr, params: Forms) -> Expr:
-        """A callee's form with the arguments of a call put in; every Read is of a parameter."""
+        """Substitute a call's arguments in a callee's form; its Reads are all of parameters."""
         result = self.form(form, params, {})
         assert result is not None
         return result
@@ -122,18 +128,18 @@ class Forming:
 
 @dataclass(frozen=True, slots=True)
 class Here:
-    """Where an expression stands: the form of anything in it, and how often it is computed."""
+    """The place of an expression: the form of any part of it, and how often it is computed."""
 
     form: Callable[[Expr], Expr | None]
     rate: int
-    name: str | None  # of the Let whose value it is
+    name: str | None  # the name of the Let with this value, if any
 
 
 Visit: TypeAlias = Callable[[Expr, Here], Expr]
 
 
 class FlowWalk:
-    """Goes through a function in order and hands every expression to ``visit``, with its forms."""
+    """Traverses a function in order and calls ``visit`` for every expression, with its forms."""
 
     def __init__(self, function: Function, params: Forms, forming: Forming, visit: Visit) -> None:
         self._function = function
@@ -144,7 +150,7 @@ class FlowWalk:
         self._rate = 1
 
     def run(self) -> Function:
-        """The function with every expression replaced by what ``visit`` made of it."""
+        """Return the function with every expression replaced by the result of ``visit``."""
         return replace(self._function, body=self._block(self._function.body))
 
     def _expr(self, e: Expr, name: str | None = None) -> Expr:
@@ -197,7 +203,7 @@ class FlowWalk:
                 return stmt
 
     def _after(self, target: Expr, value: Expr | None) -> Expr | None:
-        """The form of the Var that an assignment changed."""
+        """Return the form of a Var after an assignment."""
         if isinstance(target, Read) or value is None:
             return value
         if not isinstance(target, Swizzle) or not isinstance(target.base, Read):
@@ -242,7 +248,7 @@ class FlowWalk:
 
 
 def _either(test: Expr | None, yes: Expr | None, no: Expr | None) -> Expr | None:
-    """The form of what a branch may have changed."""
+    """Return the form of a local that a branch may have changed."""
     if yes is None or no is None or yes is no:
         return yes if no is not None else None
     if test is None or not isinstance(yes.type, Scalar | Vector):

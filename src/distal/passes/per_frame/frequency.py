@@ -1,22 +1,22 @@
-"""Frequency: what is the same in every pixel is computed once a frame.
+"""Frequency: compute once per frame what is the same in every pixel.
 
-Input: a module without function values. Output: the same functions, reading values of
-``Module.frame`` where they computed something that only uniforms and constants decide.
+Input: a module without function values. Output: the same functions, which read values of
+``Module.frame`` in place of computations that depend on uniforms and constants only.
 
-It works across functions, and keeps them:
+The pass works across functions, and keeps them:
 
 - a parameter that is the same per-frame value at every call is replaced by that value;
-- in a function, work on parameters that are per frame at every call becomes a parameter itself,
-  computed by the callers, and so on up to the entry: ``turn(p, 0.8 * time)``, which takes a sine
-  and a cosine, becomes ``turn(p, c, s)`` when other calls turn by another angle;
+- in a function, work on parameters that are per frame at every call becomes a new parameter, which
+  the callers compute, and so on up to the entry: ``turn(p, 0.8 * time)``, which takes a sine and a
+  cosine, becomes ``turn(p, c, s)`` when other calls turn by another angle;
 - what then depends on uniforms and constants only becomes a value of ``Module.frame``. Values
-  that no function reads are steps of later values.
+  that no function reads are intermediate steps of later values.
 
-Work is taken out of branches too: once a frame it costs next to nothing, and nothing traps.
+Work is moved out of branches too: once per frame it costs next to nothing, and no operation traps.
 
-The vertex stage can pass 15 vectors of four. Where that is not enough, the values that save most
-for each component travel, and the others are computed at the top of each function that reads them.
-Nothing is dropped without a word: ``Module.frame`` says what travels.
+The vertex stage can pass 15 vectors of four components. If that is not enough, the values that save
+most work for each component are passed, and the others are computed at the start of each function
+that reads them. ``Module.frame`` lists the values that are passed.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from distal.passes.per_frame.values import (
     suggestion,
 )
 
-VERTEX_LIMIT: Final = 60  # components: WebGL 2 guarantees 15 vectors between the stages
+VERTEX_LIMIT: Final = 60  # components; WebGL 2 guarantees 15 vectors between the stages
 
 
 def run(module: Module, context: Context) -> Module:
-    """Move per-frame work into the per-frame part, where the target has one."""
+    """Move per-frame work into the per-frame part, if the target has one."""
     place = context.target.frame
     if place is FramePlace.NONE:
         return module
@@ -59,16 +59,16 @@ def run(module: Module, context: Context) -> Module:
 
 @dataclass(slots=True)
 class _Calls:
-    """What the calls of a function in pixel code pass on."""
+    """The arguments that the calls of a function in pixel code pass."""
 
-    # For each parameter its forms in the callers; None once a caller has none.
+    # The forms of each parameter's arguments in the callers; None if a caller's argument has none.
     args: list[list[Expr] | None]
-    rate: int = 0  # how often it runs for one pixel, roughly
+    rate: int = 0  # approximate number of calls for one pixel
     # Parameters added for work that the callers do: form over the parameters -> name.
     added: dict[Expr, str] = field(default_factory=dict)
 
     def forms(self, params: tuple[Param, ...]) -> dict[str, Expr]:
-        """The form of each parameter that is per frame at every call."""
+        """Return the form of each parameter that is per frame at every call."""
         found: dict[str, Expr] = {}
         for param, forms in zip(params, self.args, strict=True):
             if forms and _may_travel(param.type):
@@ -86,7 +86,7 @@ def _may_travel(type: Type) -> bool:
 
 
 class _Hoisting:
-    """The pass over one module: callers first to learn, callees first to rewrite."""
+    """Runs the pass on one module: callers first to collect, callees first to rewrite."""
 
     def __init__(self, module: Module, context: Context) -> None:
         self._module = module
@@ -98,7 +98,7 @@ class _Hoisting:
         self.calls: dict[str, _Calls] = {}
 
     def functions(self) -> tuple[Function, ...]:
-        """The functions that pixels run, rewritten."""
+        """Return the functions that pixels run, rewritten."""
         entry = self._module.function(self._module.entry)
         self.calls[entry.name] = _Calls([None] * len(entry.params), 1)
         for function in reversed(self._module.functions):
@@ -109,7 +109,7 @@ class _Hoisting:
         )
 
     def _learn(self, function: Function) -> None:
-        """See what the calls that stay in a function's pixel code pass on."""
+        """Record the arguments of the calls that stay in a function's pixel code."""
         picking = Picking(function, self.costs)
         heat = self.calls[function.name].rate
 
@@ -128,12 +128,12 @@ class _Hoisting:
         FlowWalk(function, self.forms_of(function), self.forming, visit).run()
 
     def forms_of(self, function: Function) -> dict[str, Expr]:
-        """The forms of a function's parameters."""
+        """Return the forms of a function's parameters."""
         return self.calls[function.name].forms(function.params)
 
 
 class _Rewriting:
-    """One function's pixel code, its per-frame work taken out."""
+    """Rewrites the pixel code of one function without its per-frame work."""
 
     def __init__(self, hoisting: _Hoisting, function: Function) -> None:
         self._hoisting = hoisting
@@ -145,7 +145,7 @@ class _Rewriting:
         self._memo: dict[Expr, Expr] = {}
 
     def function(self) -> Function:
-        """The function with the parameters that its work became."""
+        """Return the rewritten function with the parameters that were added for its work."""
         walk = FlowWalk(self._function, self._params, self._hoisting.forming, self._visit)
         rewritten = walk.run()
         added = tuple(Param(name, form.type) for form, name in self._calls.added.items())
@@ -181,18 +181,18 @@ class _Rewriting:
         return changed
 
     def _param(self, e: Read) -> Expr:
-        """A parameter that is one cheap per-frame value at every call is that value."""
+        """Replace a parameter by its value if that is per frame, cheap and equal at every call."""
         form = self._params.get(e.name)
         if form is None or form is e or not is_carried(e.type):
             return e
         if self._hoisting.keeps_constants and not _leaves(form, Uniform):
-            # A number that an author passes reads better as an argument.
+            # A number that the author passes is easier to read as an argument.
             return e
-        # Never a call: what it calls may stand after this function.
+        # The value is never a call, whose callee could come after this function.
         return self._carried(form, NameHint(e.name, 1), self._calls.rate)
 
     def _call(self, call: Call, args: tuple[Expr, ...], here: Here) -> Expr:
-        """A call that stays, with the work that its callee left to it."""
+        """Return a call that stays, with arguments for the parameters that its callee added."""
         callee = self._hoisting.calls[call.function]
         if not callee.added:
             return Call(call.function, args, call.type, span=call.span)
@@ -209,7 +209,7 @@ class _Rewriting:
         return Call(call.function, (*args, *work), call.type, span=call.span)
 
     def _carried(self, form: Expr, hint: NameHint, rate: int) -> Expr:
-        """A form as this function has it: from the frame, from its callers, or computed here."""
+        """Return an expression for a form: read from the frame, passed by callers, or computed."""
         if isinstance(form.type, Struct):
             parts = []
             for field_name, type in form.type.fields:

@@ -1,7 +1,7 @@
-"""The per-frame part while it is gathered: its values, and which of them the target can carry.
+"""Collect the values of the per-frame part, and choose those that the target can transfer.
 
-Input: forms (see ``forms``) that the pixel code wants computed once a frame. Output: the
-ordered list of the module's per-frame values, each written over earlier ones.
+Input: forms (see ``forms``) that should be computed once per frame. Output: the ordered list of the
+module's per-frame values, each expressed in terms of earlier ones.
 """
 
 from __future__ import annotations
@@ -17,36 +17,36 @@ from distal.passes.cost import Costs, node_cost
 from distal.passes.naming import FreshNames
 from distal.passes.share.split_deep import split_expression
 
-# The least cost of what is computed once a frame: a division, a square root, or four sums. A value
-# costs a register or a load in every pixel, so a product of two uniforms stays where it is.
+# The least cost of a per-frame value: a division, a square root, or four sums. A value costs a
+# register or a load in every pixel, so a product of two uniforms is not moved.
 LEAST_COST: Final = 4
 
-MARK: Final = "#"  # begins the names of values that have no final name yet
+MARK: Final = "#"  # first character of the temporary names of values
 
 
 def is_carried(type: Type) -> bool:
-    """True for types that a per-frame value may have."""
+    """Return whether a per-frame value may have the type."""
     return isinstance(type, Scalar | Vector | Matrix)
 
 
 def is_exploded(type: Type) -> bool:
-    """True for structs that are passed field by field."""
+    """Return whether the type is a struct that is passed field by field."""
     return isinstance(type, Struct) and all(is_carried(t) or is_exploded(t) for _, t in type.fields)
 
 
 class NameHint(NamedTuple):
-    """What a value should be called, and how good a name that is (see ``FrameValue.rank``)."""
+    """A suggested name for a value, and its quality (see ``FrameValue.rank``)."""
 
     name: str | None
     rank: int = 0
 
     def part(self, field: str) -> NameHint:
-        """The hint for a field of the value."""
+        """Return the hint for a field of the value."""
         return NameHint(f"{self.name}_{field}" if self.name else field, self.rank)
 
 
 def suggestion(form: Expr) -> NameHint:
-    """``cos_angle`` for a built-in or a function of one named thing."""
+    """Suggest a name such as ``cos_angle`` for a built-in or function of one named value."""
     if isinstance(form, Builtin | Call):
         leaves = {n.name for n in nodes_in(form) if isinstance(n, Read | Uniform)}
         if len(leaves) == 1:
@@ -57,14 +57,15 @@ def suggestion(form: Expr) -> NameHint:
 
 @dataclass(slots=True)
 class FrameValue:
-    """A value computed once a frame.
+    """A value computed once per frame.
 
     Attributes:
-        form: What it is.
-        name: What code that reads it calls it until all names are known.
-        hint: What it should be called, if there is a good name for it.
-        rank: How good: 2 for the author's name of the value itself, 1 for that of a parameter.
-        weight: What it saves: its cost, times how often pixels would compute it.
+        form: The expression that computes it.
+        name: Its temporary name, until all names are known.
+        hint: The suggested final name, or None.
+        rank: The quality of the hint: 2 for the author's name of the value itself, 1 for the
+            author's name of a parameter.
+        weight: The work it saves: its cost, times how often pixels would compute it.
     """
 
     form: Expr
@@ -82,7 +83,13 @@ class FrameValues:
         self._values: dict[Expr, FrameValue] = {}
 
     def read(self, form: Expr, hint: NameHint, rate: int) -> Expr:
-        """A read of the value of that form."""
+        """Return a read of the value with this form; add the value if it is new.
+
+        Args:
+            form: The form.
+            hint: A name for the value.
+            rate: How often one pixel would compute it.
+        """
         found = self._values.get(form)
         if found is None:
             found = self._values[form] = FrameValue(form, f"{MARK}{len(self._values)}")
@@ -92,7 +99,7 @@ class FrameValues:
         return PerFrame(found.name, form.type)
 
     def chosen(self, wanted: set[str], limit: int | None) -> set[str]:
-        """The wanted values within ``limit``: those that save most for each component."""
+        """Return the wanted values within ``limit`` components: those that save most for each."""
         values = [v for v in self._values.values() if v.name in wanted]
         if limit is None or sum(component_count(v.form.type) for v in values) <= limit:
             return {v.name for v in values}
@@ -106,13 +113,13 @@ class FrameValues:
         return found
 
     def entries(self, wanted: set[str]) -> list[tuple[str, str | None, Expr]]:
-        """Name, name hint and value of everything that the wanted values need, in order."""
+        """Return name, name hint and value of everything that the wanted values need, in order."""
         values = [v for v in self._values.values() if v.name in wanted]
         return _FrameEntries(values, self.costs).entries
 
 
 class _FrameEntries:
-    """Writes forms over each other, and over values that several of them share."""
+    """Writes forms in terms of each other, and of new values for the parts that they share."""
 
     def __init__(self, values: list[FrameValue], costs: Costs) -> None:
         self.entries: list[tuple[str, str | None, Expr]] = []
@@ -147,7 +154,7 @@ class _FrameEntries:
         self._done[e] = value
 
     def _cut(self, value: Expr) -> Expr:
-        """Values too deep for a shader compiler are written in several steps."""
+        """Split a value that is too deep for a shader compiler into several values."""
         before: list[Stmt] = []
         value = split_expression(value, self._deep, before, Return(value))
         steps: dict[Expr, Expr] = {}
