@@ -1,1 +1,1 @@
-"""Share: common subexpressions computed once; deep expressions split."""
+"""Share: compute common subexpressions once, and split deep expressions."""

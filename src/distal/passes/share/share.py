@@ -1,13 +1,14 @@
-"""Share: what is computed more than once is computed once, into a Let.
+"""Share: bind a value that is computed more than once to a Let.
 
-Input: any module after inline. Output: the same values with common subexpressions bound, what does
-not change in a loop bound before it, and no expression deeper than a shader compiler takes.
+Input: any module after inline. Output: functions with the same values, in which common
+subexpressions are bound, loop-invariant values are bound before the loop, and no expression is
+deeper than shader compilers accept.
 
-A value is bound in the outermost block where it exists and where it would have been computed
-anyway: nothing moves out of a branch, out of a loop that may have no round, or before an exit that
-may skip it. What a Select or ``and`` may skip is bound only when it is cheap. Names of the author
-stay: a shared value that the author named keeps that name, others are called ``shared_0``,
-``shared_1`` ...
+A value is bound in the outermost block where its operands exist and where every execution would
+compute it anyway: nothing moves out of a branch, out of a loop that may have no iteration, or
+before an exit that may skip it. An operand that a Select or ``and`` may skip is bound only when it
+is cheap. The author's names are kept: a shared value that the author named keeps that name, others
+are called ``shared_0``, ``shared_1`` ...
 """
 
 from __future__ import annotations
@@ -50,14 +51,14 @@ from distal.passes.regions import (
 from distal.passes.share.split_deep import split_deep
 from distal.passes.versions import Versions, plain
 
-WORTH_A_NAME: Final = 3  # the least cost: a sum is as short as the name for it
+WORTH_A_NAME: Final = 3  # the least cost; a sum is as short as a name for it
 WORTH_LEAVING_A_LOOP: Final = 4
-CHEAP: Final = 40  # the most that may be computed in vain
-MOST_ROUNDS: Final = 3  # a Let that left a loop may let others leave
+CHEAP: Final = 40  # the largest cost of a value that may be computed but not used
+MOST_ROUNDS: Final = 3  # a Let that left a loop may allow others to leave in the next round
 
 
 def run(module: Module, context: Context) -> Module:
-    """Share within every function."""
+    """Share values within every function."""
     costs = function_costs(module.functions)
     taken = set(module_names(module))
     functions = tuple(share_function(f, costs, taken) for f in module.functions)
@@ -65,7 +66,13 @@ def run(module: Module, context: Context) -> Module:
 
 
 def share_function(function: Function, calls: Mapping[str, int], taken: set[str]) -> Function:
-    """One function; ``taken`` holds names that new Lets must not hide."""
+    """Share values within one function.
+
+    Args:
+        function: The function.
+        calls: The cost of each function.
+        taken: The names of the module, which new Lets must not hide.
+    """
     names = FreshNames(taken | set(local_names(function)))
     for _ in range(MOST_ROUNDS):
         sharing = _Sharing(function, calls)
@@ -77,7 +84,7 @@ def share_function(function: Function, calls: Mapping[str, int], taken: set[str]
 
 @dataclass(eq=False, slots=True)
 class _EarlyLet:
-    """A value computed before a statement; ``let`` is the author's own, moved there."""
+    """A value bound before a statement; ``let`` is the author's Let if it is moved there."""
 
     value: Expr
     region: Region
@@ -91,7 +98,7 @@ class _Sharing:
         self._function = function
         self._versions = Versions(function)
         self._costs = Costs(calls)
-        # Where each node is computed, as its users so far say; every node, operands first.
+        # The sites of each node, from its users processed so far.
         self._sites: dict[Expr, dict[UseSite, int]] = {}
         self._heights: dict[Expr, int] = {}
         self._homes: dict[Expr, Region] = {}
@@ -102,10 +109,10 @@ class _Sharing:
         self.left_a_loop = False
 
     def function(self, names: FreshNames) -> Function:
-        """The function with shared values bound."""
+        """Return the function with shared values bound."""
         root = self._versions.root
         self._collect(root)
-        # Users before operands: an operand of a shared value is used where that is bound.
+        # Users before operands: an operand of a shared value is used where that value is bound.
         for e in sorted(self._heights, key=self._heights.__getitem__, reverse=True):
             sites = self._sites.get(e)
             if sites and children(e):
@@ -115,7 +122,7 @@ class _Sharing:
         body = self._block(root)
         return self._function if body == self._function.body else replace(self._function, body=body)
 
-    # Where every expression is computed
+    # Find the places where every expression is computed.
 
     def _collect(self, region: Region) -> None:
         for position, stmt in enumerate(region.body):
@@ -131,7 +138,7 @@ class _Sharing:
                 self._collect(below)
 
     def _learn(self, root: Expr) -> None:
-        """Heights, and the innermost region that something in the expression belongs to."""
+        """Record each node's height, and the innermost region that creates one of its locals."""
         heights, homes, top = self._heights, self._homes, self._versions.root
         for e in nodes_in(root):
             if e in heights:
@@ -150,7 +157,7 @@ class _Sharing:
         sites[site] = min(2, sites.get(site, 0) + uses)
 
     def _hand_down(self, e: Expr, sites: UseSites) -> None:
-        """The operands are computed where ``e`` is: where it is bound, or where it is used."""
+        """Add to the operands of ``e`` the sites where ``e`` is bound, or else where it is used."""
         bound: set[_EarlyLet] = set()
         for site, uses in sites.items():
             binding = self._replaced.get((e, site))
@@ -162,10 +169,13 @@ class _Sharing:
             for operand, lazy in _operands(e):
                 self._use(operand, site._replace(lazy=site.lazy or lazy), uses)
 
-    # Where a value is bound
+    # Decide where a value is bound.
 
     def _place(self, e: Expr, region: Region, sites: UseSites) -> None:
-        """Bind ``e`` in ``region`` if that pays and costs nothing in vain, else further inside."""
+        """Bind ``e`` in ``region`` if this saves work and never computes an unused value.
+
+        Otherwise try the inner regions that use ``e``. A cheap value may be computed but not used.
+        """
         once = sum(sites.values())
         if once < 2 and not any(in_loop(region, s) for s in sites):
             return
@@ -197,7 +207,7 @@ class _Sharing:
             self._replaced[e, site] = binding
         self._before.setdefault((region, position), []).append(binding)
 
-    # The new body
+    # Write the new body.
 
     def _name(self, region: Region, names: FreshNames) -> None:
         """Name the bindings in the order of their positions."""
@@ -237,7 +247,7 @@ class _Sharing:
         return map_statement(stmt, expr, lambda _: self._block(next(blocks)))
 
     def _rewritten(self, root: Expr, site: UseSite, is_bound_here: bool = False) -> Expr:
-        """The expression with bound values read; without recursion, sums are deep."""
+        """Replace bound values by reads, without recursion: sums may be deep."""
         done: dict[tuple[Expr, bool], Expr] = {}
         stack: list[tuple[Expr, bool]] = [(root, site.lazy)]
         while stack:
@@ -260,7 +270,7 @@ class _Sharing:
 
 
 def _computed(stmt: Stmt) -> tuple[Expr, ...]:
-    """What a statement computes: its expressions, of an Assign's target only the indices."""
+    """Return the expressions that a statement computes; of an Assign's target, only the indices."""
     if not isinstance(stmt, Assign):
         return expressions(stmt)
     found: list[Expr] = []
@@ -273,7 +283,7 @@ def _computed(stmt: Stmt) -> tuple[Expr, ...]:
 
 
 def _operands(e: Expr) -> list[tuple[Expr, bool]]:
-    """The operands, each with whether it may be skipped."""
+    """Return the operands, each with whether its computation may be skipped."""
     match e:
         case Select(condition, yes, no):
             return [(condition, False), (yes, True), (no, True)]
@@ -284,7 +294,7 @@ def _operands(e: Expr) -> list[tuple[Expr, bool]]:
 
 
 def _may_be_bound(e: Expr, costs: Costs) -> bool:
-    """A part of a value is as good as a name for it; what is put together may get one."""
+    """Return whether a Let may hold ``e``. A part of a value may not: it is as short as a name."""
     if is_static(e.type):
         return False
     return isinstance(e, Compose | Construct) or node_cost(e, costs.calls) > 0

@@ -1,8 +1,8 @@
-"""Expressions cut into Lets before they are too deep or too long for a shader compiler.
+"""Split expressions into Lets before they become too deep or too long for a shader compiler.
 
-Input: the body of a function. Output: the same with no expression nested deeper than about
-``DEEPEST``, and none whose text would be longer than about ``LONGEST`` nodes when its shared parts
-are written out. (naga's recursive parser dies on thousands of nested parentheses.)
+Input: the body of a function. Output: the same body with no expression nested deeper than about
+``DEEPEST``, and none whose text, with shared parts written out, would be longer than about
+``LONGEST`` nodes. (naga's recursive parser crashes on thousands of nested parentheses.)
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ LONGEST: Final = 1000
 
 
 def split_deep(body: tuple[Stmt, ...], names: FreshNames) -> tuple[Stmt, ...]:
-    """Cut every statement's expressions."""
+    """Split the expressions of every statement."""
     result: list[Stmt] = []
     for stmt in body:
         before: list[Stmt] = []
@@ -30,7 +30,7 @@ def split_deep(body: tuple[Stmt, ...], names: FreshNames) -> tuple[Stmt, ...]:
 
         changed = map_statement(stmt, cut, lambda block: split_deep(block, names))
         if before and isinstance(changed, While):
-            # The condition is computed again each round: it moves into the loop with its parts.
+            # The condition is computed in each iteration, so it moves into the loop with its parts.
             stop = If(build.negation(changed.condition), (Break(),), (), span=stmt.span)
             rounds = (*before, stop, *changed.body)
             before, changed = [], While(build.boolean(True), rounds, span=stmt.span)
@@ -40,9 +40,19 @@ def split_deep(body: tuple[Stmt, ...], names: FreshNames) -> tuple[Stmt, ...]:
 
 
 def split_expression(root: Expr, names: FreshNames, before: list[Stmt], stmt: Stmt) -> Expr:
-    """The expression over Lets that are added to ``before``."""
+    """Split an expression into Lets.
+
+    Args:
+        root: The expression.
+        names: The taken names.
+        before: Gets the Lets, to insert before the statement.
+        stmt: The statement that contains the expression.
+
+    Returns:
+        The expression, which reads the Lets.
+    """
     done: dict[Expr, Expr] = {}
-    # Depth and length of what replaces a node, its shared parts written out.
+    # Depth and length of the replacement of a node, with its shared parts written out.
     depths: dict[Expr, int] = {}
     lengths: dict[Expr, int] = {}
     for e in nodes_in(root):
@@ -62,12 +72,12 @@ def split_expression(root: Expr, names: FreshNames, before: list[Stmt], stmt: St
 def _may_be_bound(e: Expr, stmt: Stmt) -> bool:
     if is_static(e.type) or not children(e):
         return False
-    # A part of what an Assign changes must stay a part of it.
+    # A part of an Assign's target must not be replaced by a local.
     return not (isinstance(stmt, Assign) and e in target_parts(stmt.target))
 
 
 def target_parts(target: Expr) -> set[Expr]:
-    """A target and the targets it is a part of."""
+    """Return a target and all targets that it is a part of."""
     parts = {target}
     while not isinstance(target, Read):
         target = children(target)[0]
