@@ -1,1 +1,1 @@
-"""Specialise: functions bound to the functions, textures and constants they are passed."""
+"""Specialise: bind function, texture and constant arguments to the functions that take them."""

@@ -1,14 +1,14 @@
 """Bind every function, texture and buffer that is passed to a function.
 
-Input: functions with parameters of static types, ``Apply`` of function values. Output: functions of
-plain values only. Each function with static parameters is cloned once for each combination of what
-is bound to them; the captures of a bound function become further parameters of the clone; ``Apply``
-becomes ``Call``. A constant that steers a function (``steering``) is bound too. Functions that
-nothing reaches are dropped. The function of a ``Gradient`` stays a FunctionRef to a specialised
-function, for the gradient pass.
+Input: functions with parameters of static types, and ``Apply`` of function values. Output:
+functions of plain values only. Each function with static parameters is cloned once for each
+combination of values bound to them; the captures of a bound function become additional parameters
+of the clone; ``Apply`` becomes ``Call``. A constant argument that controls loops or branches
+(``steering``) is bound too. Functions that cannot be reached are removed. The function of a
+``Gradient`` becomes a FunctionRef to a specialised function, for the gradient pass.
 
-What is bound is itself an expression: a FunctionRef whose captures are reads of the clone's further
-parameters, or again bound values; or a Resource.
+A bound value is itself an expression: a Resource, or a FunctionRef whose captures are reads of the
+clone's additional parameters or again bound values.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from distal.passes.context import Context
 from distal.passes.naming import FreshNames, local_names
 from distal.passes.specialise.steering import SteeringParameters
 
-# A function inside itself this often through function values never ends in practice.
+# A function nested in itself this often through function values would never end.
 _DEEPEST: Final = 64
 _LONGEST_NAME: Final = 60
 
@@ -52,7 +52,7 @@ _CHOSEN_HINT: Final = "call both functions and choose between their results"
 
 @dataclass(frozen=True)
 class _BoundShape:
-    """What is bound, without the run-time values it captures: the key of a clone."""
+    """A bound value without the run-time values it captures: part of the key of a clone."""
 
     name: str
     captures: tuple[_BoundShape | Type, ...]
@@ -62,7 +62,12 @@ _Bound: TypeAlias = _BoundShape | Const | None  # None: a run-time parameter
 
 
 def run(module: Module, context: Context) -> Module:
-    """Specialise everything the entry reaches."""
+    """Specialise every function that the entry reaches.
+
+    Raises:
+        CompileError: The entry has a static parameter, the code is recursive, or a static value is
+            selected at run time.
+    """
     entry = module.function(module.entry)
     for param in entry.params:
         if is_static(param.type):
@@ -78,22 +83,31 @@ def run(module: Module, context: Context) -> Module:
 
 
 class _SpecialisedFunctions:
-    """The specialised functions made so far."""
+    """The specialised functions created so far."""
 
     def __init__(self, module: Module) -> None:
         self._functions = {f.name: f for f in module.functions}
         self._names = FreshNames(self._functions)
         self.steering = SteeringParameters(self._functions)
         self._by_key: dict[tuple[str, tuple[_Bound, ...]], str] = {}
-        self._open: list[str] = []  # the functions whose clones are being made
+        self._open: list[str] = []  # the functions whose clones are being created
         self.made: dict[str, Function] = {}
 
     def parameters(self, name: str) -> tuple[Param, ...]:
-        """The parameters of a function as the author wrote it."""
+        """Return the parameters of a function as the author wrote it."""
         return self._functions[name].params
 
     def instance(self, name: str, bindings: tuple[_Bound, ...], span: Span | None) -> str:
-        """The name of the clone with these bindings, made now unless it is there."""
+        """Return the name of the clone with these bindings; create it if it does not exist.
+
+        Args:
+            name: The function.
+            bindings: For each parameter the bound value; None: a run-time parameter.
+            span: The place of the call, for errors.
+
+        Raises:
+            CompileError: The function calls itself.
+        """
         key = (name, bindings)
         found = self._by_key.get(key)
         if found is not None:
@@ -146,7 +160,7 @@ def _shape(bound: Expr) -> _BoundShape:
 
 
 def _runtime_parts(bound: Expr) -> Iterator[Expr]:
-    """The run-time values a bound value captures, in the order of the clone's parameters."""
+    """Yield the run-time values that a bound value captures, in the order of the parameters."""
     if isinstance(bound, FunctionRef):
         for capture in bound.captures:
             if is_static(capture.type):
@@ -156,7 +170,7 @@ def _runtime_parts(bound: Expr) -> Iterator[Expr]:
 
 
 class _Clone:
-    """One function with its static parameters bound."""
+    """Creates a clone of one function with its static parameters bound."""
 
     def __init__(
         self, clones: _SpecialisedFunctions, original: Function, bindings: tuple[_Bound, ...]
@@ -180,7 +194,7 @@ class _Clone:
         self._params = (*params, *extra)
 
     def _open_binding(self, param: Param, shape: _BoundShape, extra: list[Param]) -> Expr:
-        """The bound value as an expression over the clone's further parameters."""
+        """Return the bound value as an expression over the clone's additional parameters."""
         if not isinstance(param.type, FunctionType):
             return Resource(shape.name, param.type)
         taken = self._clones.parameters(shape.name)
@@ -212,7 +226,7 @@ class _Clone:
         return tuple(written)
 
     def _kept(self, bound: Expr, stmt: Let, written: list[Stmt]) -> Expr:
-        """A named function value keeps what it captured when it was named."""
+        """Bind captured values that may change later to Lets, to keep their current values."""
         if not isinstance(bound, FunctionRef):
             return bound
         captures: list[Expr] = []
@@ -242,7 +256,7 @@ class _Clone:
             case Apply(function, args, type):
                 bound = self._static(function)
                 assert isinstance(bound, FunctionRef)
-                # The captures are rewritten already: bound values and the clone's own reads.
+                # The captures are already rewritten: bound values and reads of the clone.
                 given = (*(self._expression(a) for a in args), *bound.captures)
                 return self._bound_call(bound.name, given, type, e.span)
             case Gradient(function, point, with_value, type):
@@ -256,7 +270,11 @@ class _Clone:
                 return rebuild(e, tuple(self._expression(c) for c in children(e)))
 
     def _static(self, e: Expr) -> Expr:
-        """What a static expression is bound to."""
+        """Return the value that a static expression is bound to.
+
+        Raises:
+            CompileError: The value is selected at run time.
+        """
         match e:
             case Read(name) if name in self._bound:
                 return self._bound[name]
@@ -273,7 +291,7 @@ class _Clone:
         return self._bound_call(name, [self._expression(a) for a in args], type, span)
 
     def _bound_call(self, name: str, args: Sequence[Expr], type: Type, span: Span | None) -> Expr:
-        """A call of the clone for the static ones of these rewritten arguments."""
+        """Return a call of the clone for the static arguments; ``args`` are already rewritten."""
         steering = self._clones.steering.of(name)
         bindings: tuple[_Bound, ...] = tuple(
             _binding(a, steers=i in steering) for i, a in enumerate(args)
@@ -284,7 +302,7 @@ class _Clone:
         return Call(new, (*plain, *captured), type, span=span)
 
     def _reference(self, bound: FunctionRef) -> FunctionRef:
-        """A reference to the clone for the static captures of a bound function."""
+        """Return a reference to the clone for the static captures of a bound function."""
         free = len(self._clones.parameters(bound.name)) - len(bound.captures)
         inner = tuple(_shape(c) if is_static(c.type) else None for c in bound.captures)
         name = self._clones.instance(bound.name, (*(None,) * free, *inner), self._span)

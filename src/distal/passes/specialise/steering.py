@@ -1,9 +1,9 @@
-"""Which parameters of a function steer it: how often a loop runs, which branch is taken.
+"""Find the parameters that control a function's loops and branches (steering parameters).
 
-Input: functions. Output: the positions of int and bool parameters that a loop's bounds or a
-condition depend on, directly or through what the function calls. Such a parameter gets a version of
-the function for each constant it is called with: loops then have constant bounds (GLSL ES 1.00
-knows no others) and branches that are never taken disappear.
+Input: functions. Output: the positions of the int and bool parameters on which a loop bound or a
+condition depends, directly or through a called function. The function is specialised for each
+constant passed to such a parameter: loops then have constant bounds (GLSL ES 1.00 allows no other)
+and branches that are never taken disappear.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from distal.ir.walk import expressions_in, nodes_in, statements_in
 
 
 class SteeringParameters:
-    """The steering parameters of a module's functions, found on demand."""
+    """The steering parameters of a module's functions, computed on demand."""
 
     def __init__(self, functions: Mapping[str, Function]) -> None:
         self._functions = functions
         self._found: dict[str, frozenset[int]] = {}
 
     def of(self, name: str) -> frozenset[int]:
-        """The positions of a function's steering parameters."""
+        """Return the positions of a function's steering parameters."""
         found = self._found.get(name)
         if found is None:
-            self._found[name] = frozenset()  # what calls itself is refused elsewhere
+            self._found[name] = frozenset()  # recursion is reported elsewhere
             found = self._found[name] = self._find(self._functions[name])
         return found
 
@@ -46,7 +46,7 @@ class SteeringParameters:
         return frozenset(candidates[name] for name in steering)
 
     def _roots(self, body: tuple[Stmt, ...]) -> Iterator[Expr]:
-        """What decides how the function goes on."""
+        """Yield the expressions that control the execution of the function."""
         for stmt in statements_in(body):
             match stmt:
                 case If(condition) | While(condition):
@@ -62,7 +62,7 @@ class SteeringParameters:
 
 
 def _read(e: Expr, sources: Mapping[str, set[str]]) -> set[str]:
-    """The parameters that an expression depends on."""
+    """Return the parameters that an expression depends on."""
     found: set[str] = set()
     for node in nodes_in(e):
         if isinstance(node, Read):
