@@ -1,1 +1,1 @@
-"""Tables: large arrays of constants stored in buffers."""
+"""Tables: store large arrays of constants in buffers."""

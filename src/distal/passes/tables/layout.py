@@ -1,9 +1,9 @@
-"""Tables of literals laid out in buffers, and places in them.
+"""Lay out tables of literals in buffers, and represent locations in tables.
 
-Input: tables, as trees of literals; indices and fields that pick a part. Output: reads of buffers,
-and the buffers' declarations with their values. A table takes slots of three sorts: floats, vec4
-(float vectors, and the columns of matrices), ints (ints, uints, bools). Knows no functions and no
-statements.
+Input: tables, as trees of literals; indices and fields that select a part. Output: reads of
+buffers, and the buffers' declarations with their values. There is one buffer for each of three
+element types: float, vec4 (for float vectors and the columns of matrices), int (for ints, uints and
+bools). Does not depend on functions and statements.
 """
 
 from __future__ import annotations
@@ -53,7 +53,11 @@ _SORTS: Final[dict[Type, str]] = {
 
 
 def numbers_in(type: Type) -> int:
-    """How many numbers a value of a type holds."""
+    """Return the number of scalars in a value of a type.
+
+    Raises:
+        AssertionError: The type is not a value type.
+    """
     match type:
         case Scalar() | Vector() | Matrix():
             return component_count(type)
@@ -66,7 +70,7 @@ def numbers_in(type: Type) -> int:
 
 
 def holds_table(type: Type, largest: int) -> bool:
-    """Whether a value of the type is, or has in it, an array of more numbers than ``largest``."""
+    """Return whether a value of the type is or contains an array of over ``largest`` scalars."""
     match type:
         case Array():
             return numbers_in(type) > largest
@@ -78,7 +82,7 @@ def holds_table(type: Type, largest: int) -> bool:
 
 @cache
 def _slots(type: Type, sort: Type) -> int:
-    """How many slots of a sort a value takes."""
+    """Return the number of slots with element type ``sort`` that a value needs."""
     match type:
         case Scalar(kind):
             return int(sort is (FLOAT if kind is Kind.FLOAT else INT))
@@ -97,7 +101,7 @@ def _slots(type: Type, sort: Type) -> int:
 
 
 def is_large_literal(e: Expr, largest: int) -> bool:
-    """Whether it is a large table, or a struct with one, of literals that 32 bits hold."""
+    """Return whether ``e`` is or contains a large table, with only literals that fit 32 bits."""
     if not isinstance(e, Construct) or not holds_table(e.type, largest):
         return False
     for part in nodes_in(*e.parts):
@@ -119,8 +123,8 @@ class Location:
     Attributes:
         table: The whole table's literals.
         type: The part's type.
-        start: For each sort, how many slots lie before the first such part.
-        steps: The type of the element that each computed index counts.
+        start: For each buffer, the number of slots before the part when all computed indices are 0.
+        steps: For each computed index, the type of the element that it counts.
         indices: The computed indices.
     """
 
@@ -132,15 +136,15 @@ class Location:
 
     @property
     def operands(self) -> tuple[Expr, ...]:
-        """What is computed when the program runs."""
+        """The expressions that are computed at run time."""
         return self.indices
 
     def with_operands(self, operands: Sequence[Expr]) -> Location:
-        """The same place by other indices."""
+        """Return the same location with other indices."""
         return replace(self, indices=tuple(operands))
 
     def element(self, index: Expr) -> Location:
-        """The element of that index, which is in range."""
+        """Return the location of the element with this index, which must be in range."""
         assert isinstance(self.type, Array)
         inner = self.type.element
         if isinstance(index, Const):
@@ -149,7 +153,11 @@ class Location:
         return replace(self, type=inner, steps=(*self.steps, inner), indices=(*self.indices, index))
 
     def field(self, name: str) -> Location:
-        """The field of that name."""
+        """Return the location of a field.
+
+        Raises:
+            AssertionError: There is no such field.
+        """
         assert isinstance(self.type, Struct)
         found, start = self, self.start
         for field_name, type in self.type.fields:
@@ -167,7 +175,7 @@ class Location:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of two places, chosen when the program runs."""
+    """One of two locations, selected at run time."""
 
     condition: Expr
     yes: TablePlace
@@ -175,26 +183,26 @@ class Choice:
 
     @property
     def type(self) -> Type:
-        """The type of both."""
+        """The type of both locations."""
         return self.yes.type
 
     @property
     def operands(self) -> tuple[Expr, ...]:
-        """What is computed when the program runs."""
+        """The expressions that are computed at run time."""
         return (self.condition, *self.yes.operands, *self.no.operands)
 
     def with_operands(self, operands: Sequence[Expr]) -> Choice:
-        """The same choice by other operands."""
+        """Return the same choice with other operands."""
         middle = 1 + len(self.yes.operands)
         yes = self.yes.with_operands(operands[1:middle])
         return Choice(operands[0], yes, self.no.with_operands(operands[middle:]))
 
     def element(self, index: Expr) -> Choice:
-        """The element of that index, which is in range."""
+        """Return the location of the element with this index, which must be in range."""
         return Choice(self.condition, self.yes.element(index), self.no.element(index))
 
     def field(self, name: str) -> Choice:
-        """The field of that name."""
+        """Return the location of a field."""
         return Choice(self.condition, self.yes.field(name), self.no.field(name))
 
 
@@ -202,13 +210,13 @@ TablePlace: TypeAlias = Location | Choice
 
 
 def whole(table: Expr) -> Location:
-    """The place of a whole table."""
+    """Return the location of a whole table."""
     return Location(table, table.type, (0,) * len(_SORTS))
 
 
 @dataclass
 class Tables:
-    """The buffers, as they grow by the tables that are read."""
+    """The buffers; tables are added when they are first read."""
 
     names: FreshNames
     _values: dict[Type, list[Any]] = field(default_factory=lambda: {sort: [] for sort in _SORTS})
@@ -216,14 +224,18 @@ class Tables:
     _spelled: dict[Type, str] = field(default_factory=dict)
 
     def declarations(self) -> Iterator[ResourceDeclaration]:
-        """The buffers that are read."""
+        """Yield the declarations of the buffers that are read."""
         for sort, values in self._values.items():
             if values:
                 name, type = self._name(sort), Buffer(sort)
                 yield ResourceDeclaration(name, type, None, "clamp", values=tuple(values))
 
     def value(self, place: TablePlace) -> Expr:
-        """The value at a place: reads of the buffers, or all of a table as it was written."""
+        """Return the value at a location: reads of the buffers, or the literals of a whole table.
+
+        Raises:
+            AssertionError: The type is not a value type.
+        """
         if isinstance(place, Choice):
             return select(place.condition, self.value(place.yes), self.value(place.no))
         if place.type is place.table.type and not place.indices:
@@ -259,7 +271,7 @@ class Tables:
         return cast(value, kind)
 
     def _slot(self, place: Location, sort: Type, further: int) -> Expr:
-        """One slot of a sort, counted from the first of a place."""
+        """Return a read of the slot that is ``further`` slots after the start of a location."""
         position = list(_SORTS).index(sort)
         start = self._start(place.table)[position] + place.start[position] + further
         at: Expr | None = None
@@ -279,7 +291,7 @@ class Tables:
         return self._spelled[sort]
 
     def _start(self, table: Expr) -> tuple[int, ...]:
-        """Where a table starts in each buffer; its values are put there the first time."""
+        """Return where a table starts in each buffer; the first call stores its values."""
         if table not in self._starts:
             self._starts[table] = tuple(len(self._values[sort]) for sort in _SORTS)
             self._store(table)
@@ -311,5 +323,5 @@ def _numbers(e: Expr) -> tuple[Any, ...]:
 
 
 def _signed(value: bool | int) -> int:
-    """The int of the same bits."""
+    """Return the int with the same 32 bits."""
     return (int(value) + 2**31) % 2**32 - 2**31

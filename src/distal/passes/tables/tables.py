@@ -1,9 +1,9 @@
-"""Large tables of literals as buffers, for targets whose drivers take long over arrays.
+"""Move large tables of literals to buffers, for targets whose drivers compile arrays slowly.
 
-Input: functions that index arrays of literals by computed numbers. Output: the same reads out of at
-most three buffers (``tables.layout``), which are in ``Module.resources`` with their values. A table
-that a function is given, or a part of one, is bound to a clone of the function. Where a table is
-read as a whole its literals stay. Decision 19 has the figures.
+Input: functions that index arrays of literals by computed numbers. Output: the same reads from at
+most three buffers (``tables.layout``), which are in ``Module.resources`` with their values. If a
+table, or a part of one, is passed to a function, it is bound to a clone of the function. Where a
+table is read as a whole, its literals are kept. Decision 19 has the measurements.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ _NONE: Final[dict[Type, Const]] = {INT: Const(0, INT), BOOL: Const(False, BOOL)}
 
 
 def run(module: Module, context: Context) -> Module:
-    """Move every large table that is indexed into a buffer, where the target wants it."""
+    """Move every large table that is indexed to a buffer, if the target requires it."""
     largest = context.target.largest_table
     if largest is None or not _has_table(module, largest):
         return module
@@ -81,18 +81,18 @@ def _has_table(module: Module, largest: int) -> bool:
 
 
 def _shape(place: TablePlace) -> TablePlace:
-    """A place without what is computed when the program runs: part of the key of a clone."""
+    """Return a location without its expressions computed at run time: part of a clone's key."""
     return place.with_operands([_NONE[o.type] for o in place.operands])
 
 
 class _TableFunctions:
-    """The rewritten functions made so far, callees first.
+    """The rewritten functions created so far, callees first.
 
     Attributes:
         tables: The buffers.
         made: The functions by name.
-        largest: How many numbers an array may have that stays.
-        per_frame: The tables, and parts of them, among the per-frame values.
+        largest: The largest number of scalars in an array that is not moved.
+        per_frame: The per-frame values that are tables or parts of tables -> their locations.
     """
 
     def __init__(self, module: Module, tables: Tables, names: FreshNames, largest: int) -> None:
@@ -105,7 +105,7 @@ class _TableFunctions:
         self._by_key: dict[tuple[str, tuple[TablePlace | None, ...]], str] = {}
 
     def instance(self, name: str, shapes: tuple[TablePlace | None, ...]) -> str:
-        """The name of a function with tables bound to some parameters, made now if need be."""
+        """Return the name of a function with tables bound to some parameters; create it once."""
         key = name, shapes
         if key not in self._by_key:
             bound = any(shape is not None for shape in shapes)
@@ -115,7 +115,7 @@ class _TableFunctions:
         return self._by_key[key]
 
     def returned(self, name: str) -> Expr | None:
-        """The table that a function returns, if it does nothing else."""
+        """Return the table that a function returns if it does nothing else, or None."""
         match self._functions[name].body:
             case (Return(value),) if is_large_literal(value, self.largest):
                 return value
@@ -124,7 +124,7 @@ class _TableFunctions:
 
 
 class _TableRewriter:
-    """One function, or expressions outside all functions."""
+    """Rewrites one function, or expressions outside all functions."""
 
     def __init__(self, clones: _TableFunctions, function: Function | None = None) -> None:
         self._clones = clones
@@ -136,7 +136,7 @@ class _TableRewriter:
         self._memo: dict[Expr, Expr] = {}
 
     def function(self, name: str, shapes: Sequence[TablePlace | None]) -> Function:
-        """The function with reads of buffers, and tables bound to its parameters."""
+        """Return the function with reads of buffers, and tables bound to its parameters."""
         function = self._original
         assert function is not None
         params: list[Param] = []
@@ -154,7 +154,7 @@ class _TableRewriter:
         return replace(function, name=name, params=tuple(params), body=body)
 
     def frame(self, values: Iterable[tuple[str, Expr]]) -> tuple[tuple[str, Expr], ...]:
-        """The per-frame values with reads of buffers."""
+        """Return the per-frame values with reads of buffers."""
         written = []
         for name, value in values:
             place = self._place(value)
@@ -163,7 +163,7 @@ class _TableRewriter:
             written.append((name, self.expression(value)))
         return tuple(written)
 
-    # Statements
+    # Statements.
 
     def _block(self, body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
         written: list[Stmt] = []
@@ -182,7 +182,7 @@ class _TableRewriter:
         return tuple(written)
 
     def _kept(self, place: TablePlace, stmt: Let, written: list[Stmt]) -> TablePlace:
-        """The place as it is when it gets its name: variables may change after that."""
+        """Bind operands of the location that may change later to Lets; return the new location."""
         operands: list[Expr] = []
         for operand in place.operands:
             if not is_unchanging(operand, self._variables):
@@ -192,10 +192,10 @@ class _TableRewriter:
             operands.append(operand)
         return place.with_operands(operands)
 
-    # Expressions
+    # Expressions.
 
     def expression(self, e: Expr) -> Expr:
-        """The expression with reads of buffers."""
+        """Return the expression with reads of buffers."""
         done = self._memo.get(e)
         if done is None:
             done = self._memo[e] = self._rewritten(e)
@@ -219,7 +219,7 @@ class _TableRewriter:
         return is_large_literal(e, self._clones.largest)
 
     def _place(self, e: Expr) -> TablePlace | None:
-        """The place of a table that an expression is; None for anything else."""
+        """Return the location if the expression is a table or a part of one, else None."""
         match e:
             case Construct():
                 return whole(e) if self._is_table(e) else None
