@@ -101,7 +101,7 @@ class _Outlining:
         position = 0
         for run in self._runs(body):
             position += len(run.body)
-            # A short run stays: a function of its own would not help.
+            # A short run stays: moving it to a separate function would not help.
             if run.weight < PIECE // 2:
                 result.extend(run.body)
             else:

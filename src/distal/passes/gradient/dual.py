@@ -214,8 +214,8 @@ class DualBody:
     def _assign(self, target: Expr, value: Expr, out: list[Stmt]) -> None:
         pair = self._dual(value, out)
         root = root_of(target)
-        # Tangents first: they are computed from the values before the assignment, each from
-        # tangents of its own direction only.
+        # Tangents first: they are computed from the values before the assignment. The tangent for a
+        # direction depends only on tangents for the same direction.
         for k in self._directions(root.name):
             local = self._tangents[root.name][k]
             assert local is not None
