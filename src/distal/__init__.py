@@ -1,7 +1,7 @@
 """distal: 3D scenes written as ordinary Python, compiled to every target.
 
-The names here are loaded when first used, so that ``import distal`` is quick and the compile path
-needs the standard library only.
+Each name is imported when it is first used. So ``import distal`` is fast, and compiling needs only
+the standard library.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _MODULE_OF = {
     **{name: module for module, names in DECLARED_NAMES.items() for name in names.split()},
 }
 
-# ``from distal import *`` leaves Python's own ``compile`` alone.
+# ``compile`` is left out, so that ``from distal import *`` does not hide Python's ``compile``.
 __all__ = ["__version__", *(name for name in _MODULE_OF if name != "compile")]
 
 

@@ -1,9 +1,9 @@
-"""Source spans, and the errors a scene author sees.
+"""Source spans, and the errors that a scene author sees.
 
-Input: a message, a place in the author's source and, when known, a hint. Output: an exception whose
-text shows the author's line with a caret. This is the only module that draws a caret; everything
-above reports by making a ``Diagnostic`` and raising ``CompileError``. Here too is how texts that
-others wrote (of a file, a driver, a package) become safe to show.
+Input: a message, a place in the author's source and, if known, a hint. Output: an exception whose
+text shows the author's line with a caret. This is the only module that prints carets; other modules
+report a mistake by raising ``CompileError`` with a ``Diagnostic``. The module also makes external
+texts (from a file, a driver or a package) safe to print.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-LONGEST_SHOWN: Final = 200  # characters of a text from outside
-LONGEST_MESSAGE: Final = 1000  # characters of a whole line that may hold several
+LONGEST_SHOWN: Final = 200  # characters of an external text
+LONGEST_MESSAGE: Final = 1000  # characters of a line that may contain several external texts
 
 # Control, format (bidirectional overrides, zero width), surrogates, line and paragraph separators.
 _UNSAFE_CATEGORIES: Final = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
-# Letters and marks that show nothing (Unicode's Default_Ignorable_Code_Point of other categories).
+# Invisible letters and marks (Unicode's Default_Ignorable_Code_Point of other categories).
 _INVISIBLE: Final = frozenset(
     map(
         chr,
@@ -34,11 +34,11 @@ _INVISIBLE: Final = frozenset(
 
 
 def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
-    """A text from outside, on one line: control characters escaped, cut where it is long.
+    """Return an external text on one line: control characters escaped, long texts cut.
 
     Args:
-        text: Anything; shown as ``str`` gives it.
-        limit: Characters at most.
+        text: Any object; converted by ``str``.
+        limit: Maximum number of characters.
     """
     whole = str(text)
     safe = "".join(map(_escaped, whole[: limit + 1]))
@@ -46,7 +46,7 @@ def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
 
 
 def printable_lines(text: object) -> str:
-    """A message that may quote text from outside: line ends and tabs stay."""
+    """Escape control characters in a message with external text; keep newlines and tabs."""
     return "".join(c if c in "\n\t" else _escaped(c) for c in str(text))
 
 
@@ -63,12 +63,12 @@ class Span:
     """A range of the author's source.
 
     Attributes:
-        file: The name the author knows the file by.
+        file: The file name as the author knows it.
         line: First line, counted from 1.
         col: First column, counted from 0 in characters.
         end_col: One past the last column on the first line.
         text: The whole first line, without its newline.
-        end_line: Last line of the range; equal to ``line`` for most.
+        end_line: Last line of the range; usually equal to ``line``.
     """
 
     file: str
@@ -81,7 +81,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One mistake: what is wrong (no full stop), where, and what to write instead if known."""
+    """One mistake: the message (no full stop), its place and, if known, a hint how to fix it."""
 
     message: str
     span: Span | None
@@ -91,7 +91,7 @@ class Diagnostic:
         return self.text("error")
 
     def text(self, kind: str) -> str:
-        """The text, with its severity in front: "error", "warning", "note"."""
+        """Return the text with its severity ("error", "warning" or "note") in front."""
         lines = [f"{kind}: {self.message}"]
         if self.span is not None:
             lines += excerpt(self.span)
@@ -102,10 +102,10 @@ class Diagnostic:
 
 
 def excerpt(span: Span) -> list[str]:
-    """The place in the author's file, and the line with carets below."""
+    """Return the place in the author's file, and the line with carets below."""
     number = _line_number(span)
     gutter = " " * len(number)
-    # Tabs stay tabs under a tab, so that the caret is where the editor shows the mistake.
+    # Tabs are kept, so that the caret is in the same column as in the editor.
     lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
     carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
     return [
@@ -121,7 +121,7 @@ def _line_number(span: Span) -> str:
 
 
 class CompileError(Exception):
-    """One or more mistakes in the author's scene code, all of them shown.
+    """One or more mistakes in the author's scene code; the message shows all of them.
 
     Attributes:
         diagnostics: At least one, in the order of the source.
@@ -134,19 +134,19 @@ class CompileError(Exception):
 
     @classmethod
     def at(cls, message: str, span: Span | None, hint: str | None = None) -> CompileError:
-        """Make an error of a single mistake.
+        """Return an error for a single mistake.
 
         Args:
             message: What is wrong.
-            span: Where; None where no place is known.
+            span: Where it is; None if the place is not known.
             hint: What to write instead.
         """
         return cls([Diagnostic(message, span, hint)])
 
 
 class LoadError(Exception):
-    """A scene file that cannot be found, read or run, or holds nothing to compile."""
+    """A scene file that cannot be found, read or run, or that defines no scene code."""
 
 
 class DeviceError(Exception):
-    """A device that is missing, was lost or cannot do the work: why, and how to fix it."""
+    """A device is missing, was lost or cannot do the work; the message says how to fix it."""

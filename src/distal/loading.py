@@ -1,7 +1,7 @@
-"""Finding scenes: a file's path, or the name of a gallery example, to the object to compile.
+"""Load a scene from a file or from the gallery of examples.
 
-Input: ``FILE[:NAME]``. Output: a ``Func``, an ``Image``, a shape or a scene. A file
-is run once from a snapshot of its text, so that a later edit never mixes in.
+Input: ``FILE[:NAME]`` or ``example:NAME``. Output: a ``Func``, an ``Image``, a shape or a scene.
+The text of a file is read once and run once, so a later edit of the file has no effect.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.packages import explained
 
-# What a file may define for us.
+# The objects that a scene file may define.
 SceneCode: TypeAlias = Func | Composed
 
 EXAMPLE_PREFIX: Final = "example:"
@@ -36,10 +36,10 @@ class LoadedFrom:
     """Where an object was loaded from.
 
     Attributes:
-        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` as it was given: no folder is added.
-        files: The file, and the modules beside it that it imported.
-        neighbours: The places of these modules beside the file, with slashes.
-        digest: What ``digest_of`` gives for them.
+        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` exactly as the caller wrote it.
+        files: The file, and the modules in its folder that it imported.
+        neighbours: The paths of these modules relative to the folder of the file, with slashes.
+        digest: The result of ``digest_of`` for them.
     """
 
     source: str
@@ -52,19 +52,19 @@ _loaded: WeakKeyDictionary[Any, LoadedFrom] = WeakKeyDictionary()
 
 
 def loaded_from(obj: object) -> LoadedFrom | None:
-    """Where ``load`` found an object; None of what was made in another way."""
+    """Return where ``load`` found an object; None for an object that ``load`` did not make."""
     return _loaded.get(obj)
 
 
 def copy_loaded_from(origin: object, made: object) -> None:
-    """Record that an object shows what another does, so that it comes from the same file."""
+    """Record that ``made`` was derived from ``origin``, so that it has the same source file."""
     known = loaded_from(origin)
     if known is not None:
         _loaded[made] = known
 
 
 def gallery() -> dict[str, Path]:
-    """The examples that come with the package, by name, in the order of their names."""
+    """Return the paths of the examples in the package by name, sorted by name."""
     installed = Path(__file__).parent / "gallery"
     checkout = Path(__file__).parents[2] / "examples"
     folder = installed if installed.is_dir() else checkout
@@ -75,10 +75,11 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     """Load a scene from a file.
 
     Args:
-        path: A Python file, or ``example:NAME`` for one of the gallery.
-        name: Which of its functions, scenes or shapes. Without it: the only scene or ``@image``
-            defined in the file, else the one called ``scene`` or ``picture``; in a file without
-            these the only shape, else the one called ``shape``.
+        path: A Python file, or ``example:NAME`` for an example of the gallery.
+        name: The name of a function, scene or shape in the file. None selects the only scene or
+            ``@image`` of the file; if there are several, the one called ``scene`` or
+            ``picture``. In a file without these, None selects the only shape, or else the one
+            called ``shape``.
 
     Raises:
         LoadError: There is no such file or name, or the file fails when run.
@@ -98,24 +99,25 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
 
 
 def split_source(text: str) -> tuple[str, str | None]:
-    """FILE[:NAME] or example:NAME[:NAME] as the path that ``load`` takes, and the name."""
+    """Split FILE[:NAME] or example:NAME[:NAME] into the path for ``load`` and the name."""
     prefix = EXAMPLE_PREFIX if text.startswith(EXAMPLE_PREFIX) else ""
     rest = text.removeprefix(prefix)
     file, colon, name = rest.rpartition(":")
-    # A colon may belong to the file's own name, or to a drive (C:\scene.py).
+    # The colon may be part of the file's name or of a drive (C:\scene.py).
     if not colon or not name.isidentifier() or (not prefix and Path(rest).exists()):
         file, name = rest, ""
     return prefix + file, name or None
 
 
 def digest_of(path: str | Path, neighbours: Iterable[str] = ()) -> str:
-    """SHA-256 of the text of a file and of modules beside it, without running them.
+    """Return the SHA-256 of the text of a file and of modules in its folder, without running them.
 
-    A file alone has the hash of its text with the line ends of Unix; its name is no part of it.
+    The digest of a single file is the hash of its text with Unix line ends; the name of the file is
+    not included.
 
     Args:
         path: As for ``load``.
-        neighbours: The places of the modules beside it, with slashes.
+        neighbours: The paths of the modules relative to the folder of the file, with slashes.
 
     Raises:
         LoadError: There is no such file.
@@ -137,13 +139,13 @@ def _find(path: str) -> Path:
             raise LoadError(f"{file} is a folder, not a scene file")
         if not file.exists():
             raise LoadError(f"there is no file {file}")
-    except OSError as error:  # a folder on the way that cannot be entered, a name too long
+    except OSError as error:  # a parent folder without permission, or a name that is too long
         raise LoadError(f"cannot read {file}: {error.strerror}") from None
     return file
 
 
 def _run(file: Path, text: str) -> tuple[types.ModuleType, list[Path]]:
-    """Run a file: its module, and the modules beside it that it imported."""
+    """Run a file; return its module and the files of the modules in its folder that it imported."""
     name = "distal_scene_" + "".join(c if c.isalnum() else "_" for c in file.stem)
     module = types.ModuleType(name)
     module.__file__ = str(file)
@@ -157,12 +159,12 @@ def _run(file: Path, text: str) -> tuple[types.ModuleType, list[Path]]:
         raise LoadError(f"{file} is too deeply nested for Python itself") from None
     except ValueError as error:  # a NUL byte
         raise LoadError(f"{file} is not Python source: {error}") from None
-    # Decorators look their module up; neighbours of the file can be imported, as in a script.
+    # Decorators look up their module. Modules in the file's folder can be imported, as in a script.
     sys.modules[name] = module
     folder = str(file.resolve().parent)
     known = set(sys.modules)
     sys.path.insert(0, folder)
-    importlib.invalidate_caches()  # a neighbour may be younger than what Python saw of the folder
+    importlib.invalidate_caches()  # a module may be newer than Python's cached list of the folder
     try:
         exec(code, module.__dict__)
     except CompileError:
@@ -186,10 +188,10 @@ def _digest(text: str, folder: Path, neighbours: Iterable[str]) -> str:
 
 
 def _neighbour(folder: Path, place: str) -> bytes:
-    """The text of a module beside a file; of none, what no text is equal to."""
+    """Return the text of a module; if it cannot be read, a byte that differs from every text."""
     try:
         file = (folder / place).resolve()
-        if not file.is_relative_to(folder) or not file.is_file():  # no device, nothing elsewhere
+        if not file.is_relative_to(folder) or not file.is_file():  # not a device, not elsewhere
             return b"\0"
         return file.read_bytes().replace(b"\r\n", b"\n")
     except (OSError, ValueError):
@@ -197,10 +199,11 @@ def _neighbour(folder: Path, place: str) -> bytes:
 
 
 def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:
-    """Let the next scene import its own neighbours, and edited ones again; their files, sorted.
+    """Remove the modules of a folder from ``sys.modules``; return their files, sorted.
 
-    Python keeps imported modules by name alone: the ``shapes`` of one folder would serve the scenes
-    of another. What the scene imported stays alive in its globals.
+    Python caches modules by name only, so ``shapes`` of one folder would also be imported by scenes
+    of another folder. Removing them also makes the next load read edited modules again. The modules
+    stay alive in the globals of the scene that imported them.
     """
     tops = {name.partition(".")[0] for name in set(sys.modules) - known}
     near = {top for top in tops if _is_directly_in(sys.modules.get(top), folder)}
@@ -214,7 +217,7 @@ def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:
 
 
 def _is_directly_in(module: types.ModuleType | None, folder: Path) -> bool:
-    """Whether a module's file, or a package's folder, is directly in a folder."""
+    """Return whether the file of a module, or the folder of a package, is directly in a folder."""
     places = list(getattr(module, "__path__", ())) or [getattr(module, "__file__", None)]
     return any(place is not None and Path(place).parent == folder for place in places)
 
@@ -239,7 +242,7 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
 
 
 def _failure(file: Path, error: Exception) -> str:
-    """Say where in the author's files an exception came from, in a line or two."""
+    """Describe the error and the line of the author's files where it was raised."""
     name, line = str(file), None
     folder = file.resolve().parent
     trace = error.__traceback__
@@ -248,7 +251,7 @@ def _failure(file: Path, error: Exception) -> str:
         if code_file == str(file) or Path(code_file).parent == folder:
             name, line = code_file, trace.tb_lineno
         trace = trace.tb_next
-    if name != str(file):  # a neighbour: named as the author names the scene beside it
+    if name != str(file):  # a module in the same folder: show its path in the form of the scene's
         linecache.checkcache(name)
         shown = str(file.parent / Path(name).name)
     else:

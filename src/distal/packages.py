@@ -1,9 +1,9 @@
-"""Packages of others: which there are, and how one that is missing or broken is reported.
+"""List the third-party packages and report those that are missing or broken.
 
-Input: an import, or an error that one raised. Output: the module, or a
-``PackageError`` of one line with the command that repairs it. An installation can fail in any way:
-a native library that is missing, a build for another processor, half an upgrade. Imports nothing
-but the standard library.
+Input: the name of a module, or an error that an import raised. Output: the module, or a
+``PackageError`` whose message is one line with the command that repairs the installation. An
+installation can be broken in many ways: a missing native library, a build for another processor,
+an incomplete upgrade. Imports only the standard library.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from distal.diagnostics import printable
 
 
 class PackageError(ImportError):
-    """A package of others that is missing or cannot be loaded: why, and what repairs it.
+    """A third-party package is missing or cannot be loaded; the message has the reason and the fix.
 
     Attributes:
-        is_missing: Whether it is not installed at all.
+        is_missing: Whether the package is not installed.
     """
 
     def __init__(self, message: str, *, is_missing: bool = False) -> None:
@@ -33,13 +33,13 @@ class PackageError(ImportError):
 
 @dataclass(frozen=True, slots=True)
 class Package:
-    """A package of the registry.
+    """A third-party package that distal uses.
 
     Attributes:
-        name: What pip calls it.
-        extra: The extra of distal that brings it, "" for the core.
-        purpose: What needs it.
-        module: What Python calls it, where that is another name.
+        name: Its name for pip.
+        extra: The extra of distal that installs it; "" if distal itself installs it.
+        purpose: What it is needed for.
+        module: Its name in Python, if different from ``name``.
     """
 
     name: str
@@ -49,12 +49,12 @@ class Package:
 
     @property
     def imported_as(self) -> str:
-        """The name of its module."""
+        """The name of its Python module."""
         return self.module or self.name
 
     @property
     def remedy(self) -> str:
-        """The command that installs it."""
+        """The command that installs the package."""
         return f"pip install 'distal[{self.extra}]'" if self.extra else f"pip install {self.name}"
 
 
@@ -73,16 +73,16 @@ PACKAGES: Final = (
     Package("fonttools", "text", "letters of fonts", "fontTools"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}
-# What loaders and libraries say where memory is short; the error's class does not.
+# Texts of errors that loaders and libraries raise when memory runs out; the class varies.
 _NO_MEMORY: Final = ("failed to map segment", "cannot allocate memory", "out of memory")
 
 
 def imported(module: str) -> Any:
-    """A module of a package of the table.
+    """Import a module of a package in ``PACKAGES``.
 
     Raises:
         PackageError: It is missing or cannot be loaded.
-        MemoryError: There is not the memory to load it.
+        MemoryError: There is not enough memory to load it.
     """
     with loading(module.partition(".")[0]):
         return importlib.import_module(module)
@@ -90,11 +90,11 @@ def imported(module: str) -> Any:
 
 @contextmanager
 def loading(module: str) -> Iterator[None]:
-    """Report whatever is raised while a package gets ready as that package's fault.
+    """Convert every error raised in the block into a report about a package.
 
     Raises:
         PackageError: It is missing or cannot be loaded.
-        MemoryError: There is not the memory to load it.
+        MemoryError: There is not enough memory to load it.
     """
     try:
         yield
@@ -105,9 +105,10 @@ def loading(module: str) -> Iterator[None]:
 
 
 def explained(error: BaseException) -> PackageError | MemoryError | None:
-    """What an error says of a package; None if it is no package's fault.
+    """Return the report for an error that a package caused; None for other errors.
 
-    That is one which arose while a package was imported, or from a module that lacks a part.
+    A package caused an error that was raised while it was imported, or because one of its modules
+    lacks an attribute.
     """
     if isinstance(error, PackageError):
         return error
@@ -124,7 +125,7 @@ def explained(error: BaseException) -> PackageError | MemoryError | None:
 
 
 def raised_in(error: BaseException, module: str) -> bool:
-    """Whether an error arose in the code of a package, not in ours."""
+    """Return whether an error was raised in the code of a package, not in distal."""
     at = error.__traceback__
     if at is None:
         return False
@@ -138,13 +139,13 @@ def _missing(error: BaseException) -> Package | None:
 
 
 def _of_file(name: str) -> Package | None:
-    """The package that a file belongs to, by the folder that is nearest to it."""
+    """Return the package that a file belongs to, by the nearest parent folder with a known name."""
     known = (_BY_MODULE.get(part) for part in reversed(PurePath(name).parts[:-1]))
     return next(filter(None, known), None)
 
 
 def _importing(at: TracebackType | None) -> Package | None:
-    """The package whose modules were being run; of several the innermost."""
+    """Return the package that was being imported; if there are several, the innermost."""
     found = None
     while at is not None:
         if at.tb_frame.f_code.co_name == "<module>":
@@ -170,7 +171,7 @@ def _reported(error: Exception, package: Package) -> PackageError | MemoryError:
 
 
 def _causes(error: BaseException | None) -> Iterator[BaseException]:
-    """The error, and those it arose from."""
+    """Yield the error and the errors that caused it."""
     seen: set[int] = set()
     while error is not None and id(error) not in seen:
         seen.add(id(error))

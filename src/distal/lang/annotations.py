@@ -21,7 +21,7 @@ _numbers: list[Any] = [
 
 @dataclass(frozen=True, slots=True)
 class ArrayAnnotation:
-    """``array[element, length]`` as written; not checked here."""
+    """``array[element, length]`` as the author wrote it, not checked."""
 
     element: Any
     length: Any
@@ -31,7 +31,7 @@ class array:  # noqa: N801
     """A fixed array: ``array[float, 4]`` is four floats."""
 
     def __class_getitem__(cls, item: Any) -> ArrayAnnotation:
-        """Name the type of an array."""
+        """Return the annotation for an array type."""
         if not isinstance(item, tuple) or len(item) != 2:
             raise TypeError("write array[float, 4]: the element type and the length")
         return ArrayAnnotation(*item)
@@ -40,11 +40,11 @@ class array:  # noqa: N801
         raise TypeError("write [a, b, c] for an array's values; array[float, 3] is its type")
 
 
-# A function of a point in the plane, and of one in space: what most functions as parameters are.
+# Functions of a point in 2D and in 3D: the most common types of function parameters.
 Field2: Any = Callable[[_vec2], float]
 Field3: Any = Callable[[_vec3], float]
 
-# A function with these is compiled for each type it is called with.
+# A function annotated with one of these is compiled once for each type that it is called with.
 Floats = TypeVar("Floats", float, _vec2, _vec3, _vec4)  # type: ignore[valid-type]
 Numbers = TypeVar("Numbers", *_numbers)  # type: ignore[misc]
 Vectors = TypeVar("Vectors", _vec2, _vec3, _vec4)  # type: ignore[valid-type]

@@ -1,7 +1,7 @@
-"""Values that a caller chose for parameters, checked.
+"""Check the values that a caller gives for parameters.
 
-Input: parameters, and values by name from Python. Output: plain values by the parameters' names.
-``distal.cli.arguments`` reads texts of a command line.
+Input: parameters, and Python values by name. Output: plain values by the names of the parameters.
+The texts of a command line are parsed in ``distal.cli.arguments``.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from distal.lang.parameters import Parameter
 def checked_values(
     parameters: Iterable[Parameter], chosen: Mapping[str, Any] | None
 ) -> dict[str, Value]:
-    """The chosen values, checked; parameters that were not chosen are left out.
+    """Return the given values, checked, by parameter name; other parameters are left out.
 
     Args:
-        parameters: All that there are.
-        chosen: Values by a parameter's name or label; None: nothing is chosen.
+        parameters: All parameters of the scene.
+        chosen: Values by the name or label of a parameter; None is the same as an empty mapping.
 
     Raises:
-        TypeError: These are no values by name, or a value is of another kind.
-        ValueError: There is no such parameter, or a value lies outside its range.
+        TypeError: ``chosen`` is not a mapping, or a value has the wrong type.
+        ValueError: There is no such parameter, or a value is out of its range.
     """
     if chosen is None:
         return {}

@@ -1,7 +1,7 @@
-"""Objects that are functions of scene code without a ``def``: shapes, scenes, their views.
+"""Objects that build their own IR function: shapes, scenes and views of them.
 
-Input: an object. Output: a function of the IR, which the object builds itself when it is compiled.
-The compiler, the executor and scene code take such an object wherever they take a ``Func``.
+Input: an object. Output: a function of the IR, built when the object is compiled. The compiler,
+the executor and scene code accept such an object wherever they accept a ``Func``.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 
 class Composed(Immutable, ABC):
-    """A function of the IR that an object builds itself. It never changes once it is made.
+    """An object that builds its own IR function. It is immutable.
 
     Attributes:
         name: Its name in messages.
-        kind: Whether it is run over points, or as a picture.
-        signature: Its parameters, by name and type.
+        kind: Whether the function is evaluated at points or as a picture.
+        signature: Names and types of its parameters.
         result: The type of its result.
-        display: For a picture whose pixels are linear light: the function ``(vec4) -> vec4`` that
-            encodes them for display; None where they are encoded already.
+        display: For a picture with linear light: the function ``(vec4) -> vec4`` that encodes
+            its pixels for display. None if the pixels are already encoded.
     """
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
@@ -40,22 +40,24 @@ class Composed(Immutable, ABC):
 
     @abstractmethod
     def compose(self, assembly: Any) -> str:
-        """Add the function to a program; its name there. ``assembly`` is the front end's.
+        """Add the function to a program and return its name there.
+
+        ``assembly`` is the front end's object that collects the functions of a program.
 
         Raises:
-            CompileError: The object says what scene code cannot say.
+            CompileError: The object cannot be expressed in scene code.
         """
 
     def text(self) -> Composed:
-        """What an emitted text shows: for a picture, display values."""
+        """Return the object to emit as text: for a picture, one with display values."""
         return self
 
     def functions(self) -> Iterable[Func]:
-        """The author's own functions within, for whoever must know whether they changed."""
+        """Return the author's functions that the object contains, to detect changes of them."""
         return ()
 
     def parameters(self) -> list[Parameter]:
-        """The parameters (sliders and the like) that it reads."""
+        """Return the parameters (sliders and so on) that the object reads."""
         return executor().parameters(self)
 
     def __repr__(self) -> str:

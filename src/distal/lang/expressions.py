@@ -1,9 +1,9 @@
-"""Values that are known only when a picture is made, written with Python's own operators.
+"""Values that are known only when a picture is rendered, written with Python's operators.
 
 Input: parameters, the time, numbers, vectors, and operators or built-ins between them
-(``0.5 + 0.1 * np.cos(time)``). Output: an ``Expression`` that holds the node of the IR.
-Operators mean what they mean in scene code; the rules themselves are the front end's, reached
-through ``runtime_access``. NumPy's functions find their way here by themselves: it is not imported.
+(``0.5 + 0.1 * np.cos(time)``). Output: an ``Expression`` that holds a node of the IR. Operators
+have the same meaning as in scene code; the front end implements their rules and is called through
+``runtime_access``. NumPy itself calls ``__array_ufunc__``, so NumPy is not imported here.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"}}
 
-# NumPy's functions by what they are in scene code: an operator, or an intrinsic.
+# NumPy's functions and their equivalent in scene code: an operator or an intrinsic.
 UFUNCS: Final[Mapping[str, str]] = {
     **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/"},
     **{"floor_divide": "//", "remainder": "%", "power": "**", "float_power": "**"},
@@ -38,16 +38,16 @@ _COMPARING: Final = frozenset(
 
 
 class Symbolic(Immutable):
-    """What expressions and parameters share: the operators of scene code."""
+    """Base class of expressions and parameters: has the operators of scene code."""
 
     __slots__ = ()
 
     def as_expression(self) -> Expression:
-        """The value as an expression."""
+        """Return the value as an expression."""
         raise NotImplementedError
 
     def __getattr__(self, name: str) -> Expression:
-        """Components of a vector: ``.x``, ``.xz``, ``.rgb``."""
+        """Return components of a vector: ``.x``, ``.xz``, ``.rgb``."""
         lanes = "".join(_LANES.get(c, "?") for c in name)
         if 1 <= len(lanes) <= 4 and "?" not in lanes:
             held = self.as_expression()
@@ -58,13 +58,13 @@ class Symbolic(Immutable):
         raise AttributeError(f"'{self.__class__.__name__}' has no attribute '{name}'")
 
     def __iter__(self) -> Iterator[Expression]:
-        """The components of a vector, so that it can be unpacked."""
+        """Iterate over the components of a vector, so that it can be unpacked."""
         type = self.as_expression().node.type
         if not isinstance(type, Vector):
             raise TypeError(f"a {type} has no components to go through")
         return (getattr(self, lane) for lane in "xyzw"[: type.size])
 
-    # One value for the whole picture has no truth and no number yet.
+    # The value is known only at render time, so it has no truth value and cannot become a number.
 
     def __bool__(self) -> bool:
         _unknown("whether it is true", "decide in a @func, with if or select")
@@ -161,7 +161,7 @@ class Symbolic(Immutable):
         return _operated("trunc", self)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        """What ``np.cos(time)`` and ``np.float64(2) * time`` mean."""
+        """Apply a NumPy function: ``np.cos(time)``, ``np.float64(2) * time``."""
         name: str = ufunc.__name__
         if name in _COMPARING:
             _compared(name)
@@ -182,11 +182,11 @@ class Symbolic(Immutable):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Expression(Symbolic):
-    """A value that depends on parameters and on time. It never changes once it is made.
+    """A value that depends on parameters and on time. It is immutable.
 
     Attributes:
-        node: Its node in the IR; the parameters and the time are uniforms in it.
-        parameters: The parameters it reads, by first use.
+        node: Its node in the IR, in which the parameters and the time are uniforms.
+        parameters: The parameters that it reads, in order of first use.
     """
 
     node: Expr
@@ -198,24 +198,24 @@ class Expression(Symbolic):
         return self.node.type
 
     def as_expression(self) -> Expression:
-        """Itself."""
+        """Return itself."""
         return self
 
     def value(self, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
-        """Its value: a number, a vector or a matrix.
+        """Return its value for given parameters and time: a number, a vector or a matrix.
 
         Args:
             params: Values of parameters by name or label; the others have their defaults.
             time: Seconds.
 
         Raises:
-            ValueError: A parameter is unknown, or its value outside its range.
-            TypeError: A value is of another kind.
+            ValueError: There is no such parameter, or a value is out of its range.
+            TypeError: A value has the wrong type.
         """
         return executor().value(self, params or {}, time)
 
     def __eq__(self, other: object) -> Any:
-        """Whether it is the same expression; a number's equality is not known yet."""
+        """Return whether it is the same expression; comparing with a number is an error."""
         if isinstance(other, Symbolic):
             held = other.as_expression()
             return self.node is held.node and self.parameters == held.parameters
@@ -237,22 +237,22 @@ class Expression(Symbolic):
 
 
 def uniform_of(parameter: Parameter) -> Expression:
-    """The value of a parameter as an expression."""
+    """Return the value of a parameter as an expression."""
     return Expression(Uniform(parameter.name, parameter.type), (parameter,))
 
 
 def is_symbolic(value: object) -> bool:
-    """Whether a value, or a part of a tuple or list, is an expression or a parameter."""
+    """Return whether a value, or an item of a tuple or list, is an expression or a parameter."""
     if isinstance(value, tuple | list):
         return any(map(is_symbolic, value))
     return isinstance(value, Symbolic)
 
 
 def composed_value(operation: str, operands: tuple[Any, ...]) -> Expression:
-    """A built-in, or a type called like a function, of operands with an expression among them.
+    """Apply a built-in or a type's constructor to operands, at least one of them symbolic.
 
     Raises:
-        TypeError: It does not take them.
+        TypeError: The operation does not accept these operands.
     """
     result = python_expressions.combine(operation, operands)
     if result is None:

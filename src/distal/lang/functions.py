@@ -1,7 +1,7 @@
-"""``@func`` and ``@image``: a Python function recorded as scene code.
+"""``@func`` and ``@image``: record a Python function as scene code.
 
-Input: the function as Python made it. Output: an object that keeps it together
-with its source text. Nothing is parsed or checked; that happens when it is compiled or called.
+Input: a Python function. Output: an object that holds the function and its source text. The source
+is parsed and checked later, when the function is compiled or called.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Overload:
-    """One Python function behind a ``Func``.
+    """One Python function of a ``Func``.
 
     Attributes:
-        python: The function itself, for its defaults, its globals and its closure.
-        source: Its text.
-        enclosing: The locals of the function it was defined in, as they were: a type that only
-            an annotation names is in no closure.
+        python: The function, for its defaults, its globals and its closure.
+        source: Its source text.
+        enclosing: A copy of the locals of the function that it was defined in: a type that is
+            used only in an annotation is not in the closure.
     """
 
     python: FunctionType
@@ -39,10 +39,10 @@ class Overload:
 
 
 class Func:
-    """A function of scene code: callable from scene code, and from Python through the executor.
+    """A function of scene code, callable from scene code and, through the executor, from Python.
 
     Attributes:
-        overloads: One entry, or several that differ in their parameters' types.
+        overloads: One or more functions that differ in the types of their parameters.
     """
 
     def __init__(self, overload: Overload) -> None:
@@ -56,12 +56,12 @@ class Func:
 
     @property
     def name(self) -> str:
-        """The function's own name."""
+        """The name of the function."""
         return self.__name__
 
     @property
     def python_function(self) -> FunctionType:
-        """The Python function that was decorated (the first of several overloads)."""
+        """The Python function that was decorated; the first one if there are overloads."""
         return self.overloads[0].python
 
     def overload(self, function: Callable[..., Any]) -> Func:
@@ -70,15 +70,15 @@ class Func:
         return self
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """Compute with numbers, vectors, or arrays of points (n, 3)."""
+        """Evaluate the function for numbers, vectors, or arrays of points (n, 3)."""
         return executor().call(self, args, kwargs)
 
     def parameters(self) -> list[Parameter]:
-        """The parameters (sliders and the like) that this and what it calls read."""
+        """Return the parameters (sliders and so on) that this and the functions it calls read."""
         return executor().parameters(self)
 
     def __reduce__(self) -> str:
-        """Pickled by its name, as every function is, and so copied as itself."""
+        """Pickle by name, as for every Python function; therefore a copy is the same object."""
         return self.__qualname__
 
     def __repr__(self) -> str:
@@ -86,7 +86,7 @@ class Func:
 
 
 class Image(Func, Presentable):
-    """A picture: a function from a Frame to the color of its pixel."""
+    """A picture: a function from a Frame to the color of one pixel."""
 
     def render(
         self,
@@ -101,7 +101,7 @@ class Image(Func, Presentable):
         index: int = 0,
         seed: int = 0,
     ) -> Picture:
-        """Compute the picture.
+        """Render the picture.
 
         Args:
             size: Width and height in pixels.
@@ -110,8 +110,8 @@ class Image(Func, Presentable):
             device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
                 "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
             threads: How many CPU threads to use; None for all that the process may use.
-            progress: Called with the finished share, from 0 to 1.
-            cancel: An event, or a function without arguments, that ends the work early.
+            progress: Called with the finished fraction, from 0 to 1.
+            cancel: An event, or a function without arguments, that stops the rendering early.
             mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
             index: ``frame.index``, the frame's number; wraps at 32 bits.
             seed: ``frame.seed``, where random numbers start; wraps at 32 bits.

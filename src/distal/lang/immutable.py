@@ -1,7 +1,7 @@
-"""Objects that stay as they were made: copies are themselves, and they stay in their process.
+"""A base class for immutable objects, such as shapes, materials and lights.
 
-Input: nothing. Output: a base class for shapes, materials, lights and their like.
-Their functions and types are known by identity, so another process could do nothing with them.
+A copy is the same object. Pickling is refused: the functions and types of such an object are
+compared by identity, so it would be useless in another process.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any, NoReturn, Self
 
 
 class Immutable:
-    """What does not change, and so need not be copied."""
+    """Base class of immutable objects; copying returns the same object."""
 
     __slots__ = ()
 

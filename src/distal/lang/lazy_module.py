@@ -1,7 +1,7 @@
-"""A module that is imported when one of its names is first read.
+"""Import a module when one of its names is first read.
 
-Input: a module's full name. Output: an object with the module's attributes. A type checker sees the
-real module, imported under ``TYPE_CHECKING`` by the same name.
+Input: the full name of a module. Output: an object with the module's attributes. Code that uses it
+also imports the real module by the same name under ``TYPE_CHECKING``, for the type checker.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 
 class LazyModule:
-    """Represents a module that is too heavy, or too high in the layers, to be imported at once."""
+    """A module that is imported later, because it is slow to import or in a higher package."""
 
     __slots__ = ("_name",)
 

@@ -1,6 +1,7 @@
-"""What a name of the language is, as a Python object.
+"""The Python objects of the names that scene code can call: built-ins and special forms.
 
-The front end finds these objects behind the author's names; nothing is decided by spelling.
+The front end looks up the objects behind the author's names, so that a local name or an alias has
+the right meaning.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from distal.lang.values import MatrixValue, VectorValue
 
 @dataclass(frozen=True, slots=True)
 class LangFunction:
-    """A built-in, with its intrinsic. Called from Python it computes through the executor."""
+    """A built-in function and its intrinsic. A call from Python is evaluated by the executor."""
 
     row: Intrinsic
 
@@ -30,9 +31,10 @@ class LangFunction:
         return self.row.doc
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """The value for numbers, vectors or arrays; of expressions, an expression.
+        """Return the value for numbers, vectors or arrays; for expressions, an expression.
 
-        ``round(x, 2)``, ``max(numbers, key=…)`` and the like in a scene's module mean Python's own.
+        Calls that only Python's own function accepts, such as ``round(x, 2)`` or
+        ``max(numbers, key=…)``, use that function.
         """
         if any(map(is_symbolic, args)):
             if kwargs:
@@ -52,7 +54,7 @@ class LangFunction:
 
 
 def _means_python(args: tuple[Any, ...]) -> bool:
-    """Whether a call of a name that Python has too is none of the language's: no vectors in it."""
+    """Return whether a call of a name that is also a Python built-in means the Python built-in."""
     if any(isinstance(arg, VectorValue) for arg in args):
         return False
     return len(args) == 1 or not any(hasattr(arg, "dtype") for arg in args)
@@ -64,12 +66,12 @@ def _is_constant(value: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class LangForm:
-    """A call with rules of its own, such as ``select`` or ``gradient``; scene code only.
+    """A call with special rules, such as ``select`` or ``gradient``; for scene code only.
 
     Attributes:
-        name: How an author writes it.
+        name: Its name in scene code.
         signature: Its arguments, as text.
-        doc: What it does, in a sentence.
+        doc: One sentence about what it does.
     """
 
     name: str
@@ -81,15 +83,15 @@ class LangForm:
         return self.name
 
     def __call__(self, *args: Any) -> Any:
-        """Refuse: there is nothing to compute outside scene code."""
+        """Raise ``TypeError``: a form cannot be evaluated outside scene code."""
         raise TypeError(f"{self.name} works in scene code only: call it in a @func")
 
 
 class SelectForm(LangForm):
-    """``select``: of plain numbers it is known without a device."""
+    """``select``, which can be evaluated in Python for plain numbers."""
 
     def __call__(self, *args: Any) -> Any:
-        """One of two numbers; refused of anything else, as every form is outside scene code."""
+        """Return one of two numbers; raise ``TypeError`` for other operands."""
         if len(args) == 3 and isinstance(args[0], bool):
             condition, *values = args
             if all(isinstance(v, int | float) for v in values):

@@ -1,6 +1,6 @@
-"""Numbers as people read them, by JavaScript's rules: a page and a window show the same text.
+"""Format numbers by JavaScript's rules, so that a page and a window show the same text.
 
-Input: a finite number. Output: the number rounded in decimal digits, or its text.
+Input: a finite number. Output: the number rounded to decimal digits, or its text.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
 SHOWN_DIGITS: Final = 6
-_LARGE: Final = 1e21  # JavaScript writes no digits from here on
+_LARGE: Final = 1e21  # from here on, JavaScript's toFixed rounds no digits
 
 
 def fixed(value: float, digits: int) -> float:
-    """The number with so many digits after the point; halves go away from 0: ``toFixed``."""
+    """Round to a number of digits after the point, halves away from 0, like ``toFixed``."""
     if abs(value) >= _LARGE:
         return value
     exact = Context(prec=400, rounding=ROUND_HALF_UP)
@@ -22,12 +22,12 @@ def fixed(value: float, digits: int) -> float:
 
 
 def precise(value: float, digits: int) -> float:
-    """The number with so many digits in all; halves go away from 0: ``toPrecision``."""
+    """Round to a number of significant digits, halves away from 0, like ``toPrecision``."""
     return float(Context(prec=digits, rounding=ROUND_HALF_UP).create_decimal(value))
 
 
 def shown(value: float) -> str:
-    """The text of a number: six digits at most, without zeros at the end."""
+    """Return the text of a number: at most six digits, without trailing zeros."""
     if not math.isfinite(value):
         return f"{value:g}"
     number = Decimal(repr(precise(float(value), SHOWN_DIGITS))).normalize()

@@ -1,8 +1,8 @@
-"""Reading and checking the values of parameters.
+"""Parse and check values of parameters.
 
-Input: whatever an author, a caller or a command line gave, and the label to name in a
-message. Output: plain finite Python numbers that 32 bits hold, or a ``TypeError`` (another
-kind of thing) or ``ValueError`` (the right kind, out of reach). Knows no ``Parameter``.
+Input: a value from an author, a caller or a command line, and the label for messages. Output: plain
+finite Python numbers that fit in 32 bits. Errors are a ``TypeError`` (wrong type) or a
+``ValueError`` (right type, but out of range). Does not depend on ``Parameter``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from distal.lang.values import VectorValue
 
 Value: TypeAlias = "float | int | bool | tuple[float, ...]"
 
-LARGEST_FLOAT: Final = 3.4028234663852886e38  # of 32 bits: what every target computes in
+LARGEST_FLOAT: Final = 3.4028234663852886e38  # the largest 32-bit float; targets compute in 32 bits
 INT_RANGE: Final = range(-(2**31), 2**31)
 
 TOGGLE_WORDS: Final = {
@@ -29,7 +29,17 @@ TOGGLE_WORDS: Final = {
 
 
 def read_number(label: str, text: str, read: Callable[[str], object], expected: str) -> object:
-    """The number in a text; ``expected`` says in words what it should be."""
+    """Parse the number in a text.
+
+    Args:
+        label: The label for messages.
+        text: The text.
+        read: Parses the text; raises ``ValueError`` if that fails.
+        expected: A description of valid texts, for the message.
+
+    Raises:
+        ValueError: The text cannot be parsed.
+    """
     try:
         return read(text)
     except ValueError:
@@ -37,7 +47,7 @@ def read_number(label: str, text: str, read: Callable[[str], object], expected: 
 
 
 def as_float(label: str, value: object) -> float:
-    """A finite float of 32 bits; a bool is no number here."""
+    """Convert a number to a finite 32-bit float; refuse a bool."""
     value = _plain(value)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"'{label}' takes a number, not {_kind_of(value)}")
@@ -51,12 +61,12 @@ def as_float(label: str, value: object) -> float:
 
 
 def as_int(label: str, value: object) -> int:
-    """A whole number of 32 bits; a bool or a float is none."""
+    """Convert a whole number to a 32-bit int; refuse a bool or a float."""
     value = _plain(value)
     if isinstance(value, bool):
         raise TypeError(f"'{label}' takes a whole number, not {_kind_of(value)}")
     try:
-        number = operator.index(value)  # type: ignore[arg-type]  # asking is the check
+        number = operator.index(value)  # type: ignore[arg-type]  # or TypeError
     except TypeError:
         raise TypeError(f"'{label}' takes a whole number, not {_kind_of(value)}") from None
     if number not in INT_RANGE:
@@ -65,7 +75,7 @@ def as_int(label: str, value: object) -> int:
 
 
 def as_bool(label: str, value: object) -> bool:
-    """A truth value; a number is refused."""
+    """Return a bool; refuse a number."""
     value = _plain(value)
     if not isinstance(value, bool):
         raise TypeError(f"'{label}' takes True or False, not {_kind_of(value)}")
@@ -73,7 +83,7 @@ def as_bool(label: str, value: object) -> bool:
 
 
 def as_option(label: str, options: tuple[str, ...], value: object) -> int:
-    """The number of an option, given by its name or its number."""
+    """Return the index of an option given by its name or index."""
     if isinstance(value, str):
         if value not in options:
             raise ValueError(f"'{label}' takes one of {', '.join(options)}, not '{value:.40}'")
@@ -85,7 +95,7 @@ def as_option(label: str, options: tuple[str, ...], value: object) -> int:
 
 
 def as_color(label: str, value: object) -> tuple[float, ...]:
-    """Linear red, green, blue, given so or as "#rrggbb" in sRGB."""
+    """Return linear red, green and blue of a color, given linear or as "#rrggbb" in sRGB."""
     if isinstance(value, str):
         return _decode_hex(label, value)
     numbers = as_point(label, value, (3,))
@@ -95,7 +105,7 @@ def as_color(label: str, value: object) -> tuple[float, ...]:
 
 
 def _decode_hex(label: str, text: str) -> tuple[float, ...]:
-    # Imported when needed: it is scene code, and imports what imports this module.
+    # Imported here to avoid a cycle: that module is scene code and imports users of this module.
     srgb = importlib.import_module("distal.lang.srgb")
     linear: tuple[float, ...] | None = srgb.linear_of(text)
     if linear is None:
@@ -104,7 +114,7 @@ def _decode_hex(label: str, text: str) -> tuple[float, ...]:
 
 
 def as_point(label: str, value: object, sizes: tuple[int, ...]) -> tuple[float, ...]:
-    """A tuple of finite floats with one of the given sizes."""
+    """Return a tuple of finite floats whose length is one of ``sizes``."""
     value = _plain(value)
     expected = " or ".join(map(str, sizes))
     if isinstance(value, str) or not isinstance(value, Sequence):
@@ -115,14 +125,14 @@ def as_point(label: str, value: object, sizes: tuple[int, ...]) -> tuple[float, 
 
 
 def read_coordinates(label: str, text: str) -> tuple[object, ...]:
-    """The numbers between a text's commas."""
+    """Parse numbers separated by commas."""
     return tuple(
         read_number(label, c.strip(), float, "numbers between commas") for c in text.split(",")
     )
 
 
 def joined(value: Value) -> str:
-    """Coordinates as a person types them."""
+    """Return coordinates as text, separated by commas."""
     assert isinstance(value, tuple)
     return ",".join(map(shown, value))
 
@@ -130,7 +140,7 @@ def joined(value: Value) -> str:
 def _plain(value: object) -> object:
     if isinstance(value, VectorValue):
         return tuple(value)
-    # NumPy's scalars and arrays know their plain form; this module need not know NumPy.
+    # ``tolist`` converts NumPy's scalars and arrays without importing NumPy.
     convert: Callable[[], object] | None = getattr(value, "tolist", None)
     return convert() if callable(convert) else value
 

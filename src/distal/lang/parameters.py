@@ -1,10 +1,9 @@
-"""Parameters: the numbers of a scene that change without a new compilation.
+"""Parameters: values of a scene that can change without a new compilation.
 
-Input: the author's definitions (``slider("Softness", 0.3)``) and, later, values from a
-caller or a command line. Output: frozen ``Parameter`` rows and plain Python values, each
-checked against kind and range; a mistake is a ``ValueError`` or ``TypeError`` that names the
-label. The module does not know how a parameter reaches a target: each one is a uniform of its
-``name``.
+Input: the author's definitions (``slider("Softness", 0.3)``) and later the values from a caller or
+a command line. Output: frozen ``Parameter`` objects and plain Python values whose type and range
+have been checked. A mistake raises a ``ValueError`` or ``TypeError`` that names the label. In a
+compiled program each parameter is a uniform called ``name``; this module does not handle that.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from distal.lang.parameter_values import (
 
 
 class ParameterKind(Enum):
-    """The kind of control; the value is the word in the interface."""
+    """The kind of control; the value is its name in JSON interfaces."""
 
     SLIDER = "slider"
     INTEGER = "integer"
@@ -47,18 +46,18 @@ class ParameterKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Parameter(Symbolic):
-    """One adjustable value of a scene. Operators and built-ins of it make an ``Expression``.
+    """One adjustable value of a scene. Operators and built-ins applied to it return expressions.
 
     Attributes:
-        name: Identifier made from the label: the uniform's name and what ``--set`` takes.
-        label: What a person reads.
+        name: Identifier made from the label: the name of the uniform and the name for ``--set``.
+        label: The name shown to a person.
         kind: The kind of control.
-        default: float, int, bool, the option's number for a choice, a tuple of linear red, green,
+        default: float, int, bool, the option's index for a choice, a tuple of linear red, green,
             blue for a color, or a tuple of 2 or 3 coordinates for a point.
         low: Smallest value of a slider or integer, else None.
         high: Largest value of a slider or integer, else None.
         step: Distance between positions of a slider or integer; None for a continuous slider.
-        log: Whether the slider's positions are spread by ratio instead of by difference.
+        log: Whether equal steps of the slider multiply the value instead of adding to it.
         group: The heading that it is listed under, or "".
         help: One sentence about its effect, or "".
         options: Names of a choice's options, else empty.
@@ -77,12 +76,12 @@ class Parameter(Symbolic):
     options: tuple[str, ...] = ()
 
     def as_expression(self) -> Expression:
-        """Its value as an expression."""
+        """Return its value as an expression."""
         return uniform_of(self)
 
     @property
     def interface(self) -> tuple[tuple[str, object], ...]:
-        """What a JSON interface says of it besides its name, type and default, in order."""
+        """Its entries in a JSON interface, in order, besides its name, type and default."""
         return (
             ("label", self.label),
             ("kind", self.kind.value),
@@ -97,7 +96,7 @@ class Parameter(Symbolic):
 
     @property
     def type(self) -> Type:
-        """The type that scene code sees."""
+        """The type of its value in scene code."""
         match self.kind:
             case ParameterKind.SLIDER:
                 return FLOAT
@@ -113,14 +112,14 @@ class Parameter(Symbolic):
                 assert_never(self.kind)
 
     def check(self, value: object) -> Value:
-        """The value as plain Python numbers.
+        """Return the value as plain Python numbers.
 
-        Takes what the kind means (a choice by name or number, a color as "#hex" or linear
-        numbers), also as NumPy scalars and arrays.
+        Accepts every form of the kind (a choice by name or index, a color as "#hex" or linear
+        numbers), and also NumPy scalars and arrays.
 
         Raises:
-            TypeError: The value is of another kind.
-            ValueError: The value lies outside the range.
+            TypeError: The value has the wrong type.
+            ValueError: The value is out of range.
         """
         match self.kind:
             case ParameterKind.SLIDER:
@@ -139,10 +138,10 @@ class Parameter(Symbolic):
                 assert_never(self.kind)
 
     def parse(self, text: str) -> Value:
-        """The value of a text, as ``--set`` gives it.
+        """Parse the text of a value, as given to ``--set``.
 
         Raises:
-            ValueError: The text is no value of this kind and range.
+            ValueError: The text is not a value of this kind, or the value is out of range.
         """
         text = text.strip()
         try:
@@ -161,7 +160,7 @@ class Parameter(Symbolic):
                     raise ValueError(f"'{self.label}' takes true or false, not '{text:.40}'")
                 return TOGGLE_WORDS[text.lower()]
             case ParameterKind.CHOICE:
-                # An option may itself be called "2": names come first.
+                # An option may be called "2", so option names are tried first.
                 is_number = text.isascii() and text.isdigit() and text not in self.options
                 return int(text) if is_number else text
             case ParameterKind.COLOR:
@@ -179,7 +178,7 @@ class Parameter(Symbolic):
         return value
 
     def describe(self) -> str:
-        """Which values it takes, in a few words: "a number from 0 to 1 (default 0.3)"."""
+        """Describe the valid values in a few words: "a number from 0 to 1 (default 0.3)"."""
         match self.kind:
             case ParameterKind.SLIDER:
                 assert self.low is not None and self.high is not None
@@ -213,21 +212,21 @@ def slider(
     group: str = "",
     help: str = "",
 ) -> Parameter:
-    """A float between ``low`` and ``high``, moved by a person.
+    """Declare a float between ``low`` and ``high`` that a person moves with a slider.
 
     Args:
-        label: What a person reads; its letters and digits make the name.
-        default: The first value.
+        label: The name shown to a person; its letters and digits form the parameter's name.
+        default: The initial value.
         low: Smallest value.
         high: Largest value.
         step: Distance between positions; None for a continuous slider.
-        log: Spread the positions by ratio; ``low`` must then be above 0.
-        group: The heading that it is listed under.
+        log: Make equal steps multiply the value; ``low`` must then be above 0.
+        group: The heading under which it is listed.
         help: One sentence about its effect.
 
     Raises:
-        TypeError: Something is not of its kind.
-        ValueError: The range is empty or the default lies outside.
+        TypeError: An argument has the wrong type.
+        ValueError: The range is empty or the default is out of range.
     """
     name = _name(label)
     low, high = as_float(label, low), as_float(label, high)
@@ -252,20 +251,20 @@ def integer(
     group: str = "",
     help: str = "",
 ) -> Parameter:
-    """A whole number between ``low`` and ``high``; scene code sees an int.
+    """Declare a whole number between ``low`` and ``high``; an int in scene code.
 
     Args:
-        label: What a person reads; its letters and digits make the name.
-        default: The first value.
+        label: The name shown to a person; its letters and digits form the parameter's name.
+        default: The initial value.
         low: Smallest value.
         high: Largest value.
         step: Distance between positions.
-        group: The heading that it is listed under.
+        group: The heading under which it is listed.
         help: One sentence about its effect.
 
     Raises:
-        TypeError: Something is not a whole number.
-        ValueError: The range is empty, the default lies outside, or 32 bits do not hold it.
+        TypeError: An argument is not a whole number.
+        ValueError: The range is empty, the default is out of range, or a value exceeds 32 bits.
     """
     name = _name(label)
     low, high, step = (as_int(label, n) for n in (low, high, step))
@@ -278,12 +277,12 @@ def integer(
 
 
 def toggle(label: str, default: bool = False, *, group: str = "", help: str = "") -> Parameter:
-    """A switch; scene code sees a bool.
+    """Declare an on/off switch; a bool in scene code.
 
     Args:
-        label: What a person reads; its letters and digits make the name.
-        default: The first value.
-        group: The heading that it is listed under.
+        label: The name shown to a person; its letters and digits form the parameter's name.
+        default: The initial value.
+        group: The heading under which it is listed.
         help: One sentence about its effect.
 
     Raises:
@@ -302,18 +301,18 @@ def choice(
     group: str = "",
     help: str = "",
 ) -> Parameter:
-    """One of several named options; scene code sees its number, counted from 0, as an int.
+    """Declare a choice between named options; in scene code an int, the index from 0.
 
     Args:
-        label: What a person reads; its letters and digits make the name.
+        label: The name shown to a person; its letters and digits form the parameter's name.
         options: The names of the options.
-        default: The first option, by name or by index from 0.
-        group: The heading that it is listed under.
+        default: The initial option, by name or by index from 0.
+        group: The heading under which it is listed.
         help: One sentence about its effect.
 
     Raises:
         TypeError: An option is not a text.
-        ValueError: There is no option, one is named twice, or the default is none of them.
+        ValueError: There are no options, a name is empty or repeated, or there is no such default.
     """
     name = _name(label)
     if isinstance(options, str):
@@ -341,17 +340,17 @@ def color(
     group: str = "",
     help: str = "",
 ) -> Parameter:
-    """A color; scene code sees linear red, green, blue as a vec3.
+    """Declare a color; in scene code a vec3 of linear red, green and blue.
 
     Args:
-        label: What a person reads.
-        default: "#rrggbb" in sRGB, decoded here, or three linear numbers from 0 to 1.
-        group: The heading that it is listed under.
+        label: The name shown to a person; its letters and digits form the parameter's name.
+        default: The initial color: "#rrggbb" in sRGB, or three linear numbers from 0 to 1.
+        group: The heading under which it is listed.
         help: One sentence about its effect.
 
     Raises:
         TypeError: The default is neither a text nor three numbers.
-        ValueError: The text is no color, or a number lies outside 0 to 1.
+        ValueError: The text is not a color, or a number is outside 0 to 1.
     """
     return _checked(
         Parameter(
@@ -372,31 +371,31 @@ def point(
     group: str = "",
     help: str = "",
 ) -> Parameter:
-    """A place; scene code sees a vec2 or a vec3, as the default has 2 or 3 coordinates.
+    """Declare a point; a vec2 or vec3 in scene code, depending on the length of the default.
 
     Args:
-        label: What a person reads; its letters and digits make the name.
-        default: The first place, 2 or 3 coordinates in scene units.
-        group: The heading that it is listed under.
+        label: The name shown to a person; its letters and digits form the parameter's name.
+        default: The initial point: 2 or 3 coordinates in scene units.
+        group: The heading under which it is listed.
         help: One sentence about its effect.
 
     Raises:
         TypeError: The default is not made of numbers.
-        ValueError: The default has not 2 or 3 coordinates, or one is not finite.
+        ValueError: The default does not have 2 or 3 coordinates, or one is not finite.
     """
     where = as_point(label, default, (2, 3))
     return Parameter(_name(label), label, ParameterKind.POINT, where, group=group, help=help)
 
 
 def _name(label: object) -> str:
-    """The identifier made of a label's letters and digits."""
+    """Return the identifier made from the letters and digits of a label."""
     if not isinstance(label, str):
         raise TypeError(f"a parameter's label is a text, not {type(label).__name__}")
     if not label.strip():
         raise ValueError("a parameter needs a label")
     if not label.isprintable():
         raise ValueError(f"a parameter's label is one line of printable text, not {label!r}")
-    # Accents fall off their letters, so that "Größe" is grosse and not gr_e.
+    # Accents are removed from their letters, so that "Größe" becomes grosse and not gr_e.
     letters = unicodedata.normalize("NFKD", label.casefold())
     letters = "".join(c for c in letters if not unicodedata.combining(c))
     name = re.sub(r"[^a-z0-9]+", "_", letters).strip("_")
@@ -406,7 +405,7 @@ def _name(label: object) -> str:
 
 
 def _checked(parameter: Parameter) -> Parameter:
-    """The parameter with its default as plain numbers within its range."""
+    """Return the parameter with its default checked and converted to plain numbers."""
     try:
         default = parameter.check(parameter.default)
     except ValueError as error:

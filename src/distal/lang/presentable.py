@@ -1,7 +1,7 @@
-"""What every picture can do besides being rendered: be shown, exported, written as a video.
+"""The methods of every picture besides rendering: show, export, and write as a video.
 
-The work is done in ``distal.notebook``, ``distal.export`` and ``distal.video``, imported when they
-are first needed.
+``distal.notebook``, ``distal.export`` and ``distal.video`` do the work; they are imported when
+first needed.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ class VideoOptions(TypedDict, total=False):
 
 
 class Presentable:
-    """Something that can be looked at: a scene, a shape, an image."""
+    """Base class of objects that can be viewed: scenes, shapes, images."""
 
     __slots__ = ()
 
     def show(self, **options: Unpack[ShowOptions]) -> LiveView:
-        """A live picture in a notebook, with a control for every parameter.
+        """Show a live picture in a notebook, with a control for every parameter.
 
         The widget's ``params``, ``time``, ``view`` and ``steering`` are bound both ways: controls
         change them, and setting them changes the picture. Needs the extra ``notebook``.
@@ -85,7 +85,7 @@ class Presentable:
                 ``view``, ``panel``.
 
         Raises:
-            CompileError: The scene code has mistakes, or says what WebGL cannot do.
+            CompileError: The scene code has mistakes, or uses something that WebGL lacks.
         """
         try:
             show = widget.show
@@ -100,19 +100,19 @@ class Presentable:
         target: str | None = None,
         **options: Unpack[ExportOptions],
     ) -> Exported:
-        """Write a web page or a shader's text; the suffix or ``target`` says which.
+        """Write a web page or the text of a shader, depending on the suffix or ``target``.
 
         A page is one file that needs no network: a live picture with controls.
 
         Args:
-            path: ``page.html``, or a text: ``.frag``, ``.glsl``, ``.wgsl``, ``.fs`` (ISF).
-            target: What is written, where the suffix does not say it: "html", or that of a text.
+            path: ``page.html``, or for a text: ``.frag``, ``.glsl``, ``.wgsl``, ``.fs`` (ISF).
+            target: The output format if the suffix does not determine it: "html" or a text target.
             options: For a page ``size``, ``time``, ``duration``, ``params``, ``title``, ``view``,
                 ``views``, ``embed``, ``panel``, ``poster``, and ``device``, which renders the
                 poster, as for ``render``; for a text ``params``, ``view``, ``time``.
 
         Raises:
-            CompileError: The scene code has mistakes, or says what the target cannot do.
+            CompileError: The scene code has mistakes, or uses something that the target lacks.
             SaveError: The suffix is unknown, or the file cannot be written.
         """
         return exports.export(self, path, target=target, **options)
@@ -120,9 +120,9 @@ class Presentable:
     def video(
         self, path: str | PathLike[str], *, duration: float, **options: Unpack[VideoOptions]
     ) -> FinishedSequence:
-        """Render a video or a sequence of pictures; the suffix says which.
+        """Render a video or a sequence of pictures, depending on the suffix.
 
-        A run that was broken off goes on where it ended. Needs the extra ``video`` for mp4 and
+        An interrupted run continues where it stopped. Needs the extra ``video`` for mp4 and
         webm.
 
         Args:

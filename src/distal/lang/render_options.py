@@ -1,8 +1,8 @@
-"""How a picture is rendered: each option with its default, its check and its meaning.
+"""The options of rendering a picture: their defaults and checks.
 
-Input: values from a caller. Output: a ``RenderOptions`` that is passed unchanged from
-``Image.render``, ``Scene.render``, videos, windows and the command line to the executor. Standard
-library only.
+Input: values from a caller. Output: a ``RenderOptions`` that ``Image.render``, ``Scene.render``,
+videos, windows and the command line pass unchanged to the executor. Imports only the standard
+library.
 """
 
 from __future__ import annotations
@@ -18,29 +18,29 @@ from distal.ir.limits import LARGEST_TIME
 
 LARGEST_SIDE_PX: Final = 16384
 
-# Called with the finished share, from 0 to 1.
+# Called with the finished fraction, from 0 to 1.
 Progress: TypeAlias = Callable[[float], Any]
-# Set, or returns True, when the work is to end.
+# Rendering stops when the event is set or the function returns True.
 Cancel: TypeAlias = Callable[[], bool] | threading.Event
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RenderOptions:
-    """The options of one rendering, checked when it is made.
+    """The options of one rendering, checked on construction.
 
     Attributes:
         size: Width and height in pixels.
         time: Seconds; ``frame.time`` of an ``@image``.
         params: Values of parameters by name; the others have their defaults.
-        device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
-            "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
+        device: The device to render on: "auto" (a hardware GPU, else the CPU), "cpu", "gpu",
+            "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
         threads: How many CPU threads to use; None for all that the process may use.
-        progress: Called with the finished share, from 0 to 1.
-        cancel: An event, or a function without arguments, that ends the work early.
+        progress: Called with the finished fraction, from 0 to 1.
+        cancel: An event, or a function without arguments, that stops the rendering early.
         mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
-        index: ``frame.index``, the frame's number; wraps at 32 bits.
-        seed: ``frame.seed``, where random numbers start; wraps at 32 bits.
-        freeze: Make constants of all numbers: slower to compile, a little faster to run.
+        index: ``frame.index``, the number of the frame; wraps at 32 bits.
+        seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
+        freeze: Compile all numbers as constants: slower to compile, a little faster to run.
         settings: Values of a scene's numbers by name, for this picture only.
 
     Raises:
@@ -73,7 +73,12 @@ class RenderOptions:
 
 
 def checked_size(size: Any) -> tuple[int, int]:
-    """Width and height in pixels."""
+    """Return width and height in pixels, checked.
+
+    Raises:
+        TypeError: ``size`` is not a pair of whole numbers.
+        ValueError: A side is out of range.
+    """
     try:
         width, height = map(operator.index, size)
     except (TypeError, ValueError):
@@ -84,7 +89,12 @@ def checked_size(size: Any) -> tuple[int, int]:
 
 
 def checked_time(seconds: Any) -> float:
-    """A time in seconds, within the range where floats of 32 bits are close enough together."""
+    """Return a time in seconds, checked to be in the range where 32-bit floats are precise enough.
+
+    Raises:
+        TypeError: It is not a number.
+        ValueError: It is not finite, or its magnitude is above ``LARGEST_TIME``.
+    """
     try:
         value = float(seconds)
     except (TypeError, ValueError):
@@ -102,7 +112,7 @@ def checked_time(seconds: Any) -> float:
 
 
 def _checked_mouse(mouse: Any) -> tuple[float, float, float, float]:
-    """The four numbers of ``frame.mouse``."""
+    """Return the four numbers of ``frame.mouse``, checked."""
     try:
         x, y, click_x, click_y = (float(part) for part in mouse)
     except (TypeError, ValueError):

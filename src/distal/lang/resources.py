@@ -1,7 +1,7 @@
-"""Textures and buffers: read-only data that scene code reads.
+"""Textures and buffers: read-only data for scene code.
 
-Declared in the author's module; in scene code the name is the resource. Only the shape of the data
-is looked at here. Loading a file, and checking what is in it, is done by what runs the program.
+They are declared in the author's module and used by name in scene code. This module checks only the
+shape of the data; files are loaded and their contents checked when the program runs.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ _WRAPS = ("repeat", "clamp")
 
 
 def _beside(file: str, data: Any) -> Any:
-    """The names of files with the folder of ``file``, where they are in it."""
-    if isinstance(data, list | tuple) and len(data) == 6:  # a cube's faces
+    """Return file names as paths in the folder of ``file``, where such files exist."""
+    if isinstance(data, list | tuple) and len(data) == 6:  # the faces of a cube map
         return [_beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
     if not isinstance(data, str | PathLike):
         return data
@@ -40,12 +40,13 @@ def _beside(file: str, data: Any) -> Any:
 
 
 class TextureValue:
-    """What the three kinds of texture share.
+    """Base class of the three kinds of texture.
 
     Attributes:
-        data: A file's name or path, an array, or nested lists of numbers. A relative name is looked
-            for beside the file that declares the texture, then in the working folder.
-        wrap: What lies outside: "repeat" or "clamp" (the edge goes on).
+        data: The name or path of a file, an array, or nested lists of numbers. A relative name is
+            looked up in the folder of the file that declares the texture, then in the working
+            folder.
+        wrap: How to sample outside of the texture: "repeat", or "clamp" to repeat the edge texels.
     """
 
     __distal_type__: ClassVar[Type]
@@ -78,13 +79,13 @@ class Texture3D(TextureValue):
 
 @dataclass(frozen=True, slots=True)
 class BufferAnnotation:
-    """``Buffer[element]`` as written; not checked here."""
+    """``Buffer[element]`` as the author wrote it, not checked."""
 
     element: Any
 
 
 class Buffer:
-    """A run of numbers or vectors, read by index.
+    """A sequence of numbers or vectors, read by index.
 
     Attributes:
         data: Floats, ints, vectors or tuples of 2 to 4 floats; or an array (n,) or (n, 2 to 4).
@@ -96,7 +97,7 @@ class Buffer:
         self.element = _element(data)
 
     def __class_getitem__(cls, item: Any) -> BufferAnnotation:
-        """Name the type of a buffer parameter."""
+        """Return the annotation for a buffer parameter."""
         return BufferAnnotation(item)
 
 

@@ -1,8 +1,8 @@
 """Access from ``lang`` to the parts of distal that compile and run scene code.
 
-``lang`` only records functions. The modules named here lie in higher layers: each is imported when
-it is first used, so that importing scene code loads none of them. Types are those of the real
-modules.
+``lang`` only records functions. The modules named here are in higher layers: each is imported when
+first used, so that importing scene code imports none of them. For type checkers the names are the
+real modules.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ else:
 
 @cache
 def executor() -> PythonExecutor:
-    """The executor of this process, made when first needed."""
+    """Return the executor of this process, created on the first call."""
     return runtime_executor.PythonExecutor()
 
 

@@ -1,8 +1,8 @@
-"""The text of a decorated function, captured when it is decorated.
+"""Capture the source text of a decorated function when it is decorated.
 
-Input: a Python function. Output: where it was written and the lines of the whole
-file as they are now, so that a later edit never mixes in. Nothing is parsed here: decorating must
-cost next to nothing. The lines of a file are one shared list, however many functions it has.
+Input: a Python function. Output: its file, its line, and all lines of the file as they are now, so
+that a later edit has no effect. Nothing is parsed here, so decorating is cheap. All functions of a
+file share one list of lines.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from types import FunctionType
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a function was written.
+    """The source text of a function and its place.
 
     Attributes:
-        file: The file's name as Python knows it; a notebook cell has one too.
-        lines: All lines of the file, newlines included; empty when there is no text.
+        file: The name of the file in Python; a notebook cell has one too.
+        lines: All lines of the file with their newlines; empty if the text is not available.
         first_line: The line of the first decorator, or of ``def``; counted from 1.
     """
 
@@ -29,9 +29,9 @@ class Source:
 
 
 def capture(function: FunctionType) -> Source:
-    """Take the text of the file that ``function`` was just loaded from."""
+    """Return the text of the file that ``function`` was just loaded from."""
     code = function.__code__
-    # A file edited and loaded again in one process must not give its old lines.
+    # If a file was edited and loaded again, linecache must not return the old lines.
     linecache.checkcache(code.co_filename)
     lines = linecache.getlines(code.co_filename, function.__globals__)
     return Source(code.co_filename, lines, code.co_firstlineno)

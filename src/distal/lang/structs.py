@@ -1,7 +1,7 @@
-"""``@struct``: a class with annotated fields becomes a value type of scene code.
+"""``@struct``: make a class with annotated fields a value type of scene code.
 
-From Python it is an ordinary dataclass. Its annotations are resolved when scene code first uses
-it, so a field may name a struct that is defined further down.
+In Python it is an ordinary dataclass. Its annotations are evaluated when scene code first uses
+the struct, so the type of a field can be defined later in the file.
 """
 
 from __future__ import annotations
@@ -17,14 +17,18 @@ C = TypeVar("C", bound=type)
 
 @dataclass(frozen=True, slots=True)
 class StructNames:
-    """Where the names in a struct's annotations are looked up."""
+    """The namespaces in which the annotations of a struct are looked up."""
 
     module: Mapping[str, Any]
     enclosing: Mapping[str, Any]
 
 
 def struct(cls: C) -> C:
-    """Make a class with annotated fields (defaults allowed) a struct of scene code."""
+    """Make a class with annotated fields (defaults allowed) a struct of scene code.
+
+    Raises:
+        TypeError: ``cls`` is not a class.
+    """
     if not isinstance(cls, type):
         raise TypeError("@struct stands above a class with annotated fields")
     made = _dataclass(cls)
@@ -38,15 +42,16 @@ def _annotations(cls: type) -> dict[str, Any]:
     try:
         return dict(cls.__annotations__)
     except NameError:
-        # From Python 3.14 on they are evaluated now, and one names what is defined further down.
+        # Since Python 3.14 annotations are evaluated here; one names a type that is defined later.
         lazy: Any = importlib.import_module("annotationlib")
         return dict(lazy.get_annotations(cls, format=lazy.Format.STRING))
 
 
 def _dataclass(cls: C) -> C:
-    """A dataclass whose annotations are left alone.
+    """Make a dataclass without evaluating the annotations of the class.
 
-    As texts they would be looked up in the class's module, which a file run by itself has not.
+    ``dataclass`` looks up annotations given as text in the module of the class; a file that is run
+    directly has no such module.
     """
     annotations = _annotations(cls)
     cls.__annotations__ = dict.fromkeys(annotations, Any)

@@ -1,8 +1,8 @@
-"""Vectors and matrices as plain Python values, and the names of their types.
+"""Vectors and matrices as plain Python values.
 
-A scene module may compute constants with them (``SKY = vec3(0.4, 0.6, 0.9) * 0.5``); in scene code
-the same classes are the types. Python's own floats carry the components: rounding to the target's
-precision happens when a constant is captured. No third-party package is needed.
+A scene module can compute constants with them (``SKY = vec3(0.4, 0.6, 0.9) * 0.5``); in scene code
+the same classes are the types. Components are Python floats, and are rounded to the precision of
+the target when a constant is captured. Imports no third-party package.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class uint(int):  # noqa: N801
     __distal_type__: ClassVar[Type] = UINT
 
     def __new__(cls, value: Any = 0) -> uint:
-        """Take the low 32 bits."""
+        """Keep the low 32 bits of ``value``."""
         return super().__new__(cls, int(value) & 0xFFFFFFFF)
 
 
@@ -42,7 +42,7 @@ def _is_number(value: object) -> bool:
 
 
 class VectorValue:
-    """What vec2 to bvec4 share; a value: it never changes."""
+    """Base class of vec2 to bvec4; immutable."""
 
     __slots__ = ("_components",)
 
@@ -50,7 +50,7 @@ class VectorValue:
     _components: tuple[Any, ...]
 
     def __new__(cls, *parts: Any) -> Any:
-        """An expression, where one of the parts is one."""
+        """Return an expression if one of the parts is symbolic."""
         if any(map(is_symbolic, parts)):
             return composed_value(str(cls.__distal_type__), parts)
         return super().__new__(cls)
@@ -166,7 +166,7 @@ _add_operators()
 
 
 class MatrixValue:
-    """What mat2 to mat4 share: columns of floats; a value."""
+    """Base class of mat2 to mat4: columns of floats; immutable."""
 
     __slots__ = ("columns",)
 
@@ -174,7 +174,7 @@ class MatrixValue:
     columns: tuple[VectorValue, ...]
 
     def __new__(cls, *parts: Any) -> Any:
-        """An expression, where one of the parts is one."""
+        """Return an expression if one of the parts is symbolic."""
         if any(map(is_symbolic, parts)):
             return composed_value(str(cls.__distal_type__), parts)
         return super().__new__(cls)
@@ -233,7 +233,7 @@ class MatrixValue:
 
 
 class Frame:
-    """What an image receives: coord, resolution, time, mouse, index and seed."""
+    """The argument of an image: coord, resolution, time, mouse, index and seed."""
 
     __distal_type__: ClassVar[Type] = FRAME
 

@@ -1,1 +1,1 @@
-"""How a field becomes a picture: cameras, marchers, lights, materials, views; all scene code."""
+"""Rendering in scene code: cameras, ray marching, lights, materials, views."""

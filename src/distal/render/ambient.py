@@ -1,7 +1,7 @@
-"""Light from all around, as surfaces see it.
+"""Ambient light: light from all directions.
 
-Input: a unit normal and the numbers of the surroundings. Output: what a white
-diffuse surface shows, unoccluded. Lights with a position or direction are in ``lights``.
+Input: a unit normal and the numbers of the light. Output: the light that a white diffuse surface
+shows without occlusion. Lights with a position or direction are in ``lights``.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ GROUND = vec3(0.25, 0.22, 0.2)
 @light("AmbientLight")
 @func
 def ambient_light(n: vec3, intensity: float = 0.1, color: vec3 = WHITE) -> vec3:
-    """The same light from everywhere.
+    """The same light from every direction.
 
     Args:
         n: Unit normal; has no effect.
-        intensity: How bright; a white matte surface shows this much.
+        intensity: Brightness; a white matte surface shows this value.
         color: Its colour.
     """
     return color * intensity
@@ -45,14 +45,14 @@ def hemisphere_light(
     intensity: float = 0.5,
     up: vec3 = UP,
 ) -> vec3:
-    """Light of one colour from the upper half of space, of another from the lower.
+    """Light of one colour from the upper half of space and of another from the lower half.
 
     Args:
         n: Unit normal.
         sky: Colour of the upper half.
         ground: Colour of the lower half.
         intensity: A factor on both.
-        up: Where the upper half is, of any length.
+        up: Direction of the upper half, of any length.
     """
     share = 0.5 + 0.5 * dot(n, normalize(up))
     return (ground + (sky - ground) * share) * intensity
@@ -60,10 +60,11 @@ def hemisphere_light(
 
 @func
 def climbing_share(height: float) -> float:
-    """What a light as bright as its own height above the horizon gives, by the normal's height.
+    """Return the diffuse light of a source whose radiance is its height above the horizon.
 
-    Two cosines, both cut off at 0, multiplied over the ball: 2/3 ((pi - a) cos a + sin a), with a
-    the angle between them, over pi.
+    ``height`` is the y component of the normal. The integral over the sphere of the product of two
+    cosines, both clamped at 0, is 2/3 ((pi - a) cos a + sin a), divided by pi; a is the angle
+    between them.
 
     Source: Arvo, "Analytic Methods for Simulated Light Transport" (1995), double-axis moments.
     """
@@ -80,7 +81,7 @@ def sky_ambient(
     ground: vec3 = GROUND,
     intensity: float = 1.0,
 ) -> vec3:
-    """The diffuse light of ``sky.sky`` without its sun, exactly."""
+    """Return the exact diffuse light of ``sky.sky`` without its sun."""
     upper = 0.5 + 0.5 * n.y
     gradient = (zenith - horizon) * climbing_share(n.y)
     return (ground * (1.0 - upper) + horizon * upper + gradient) * intensity
@@ -88,11 +89,11 @@ def sky_ambient(
 
 @func
 def environment_ambient(n: vec3, harmonics: Buffer[vec3], intensity: float = 1.0) -> vec3:
-    """The diffuse light of a picture of the surroundings, from its nine spherical harmonics.
+    """Return the diffuse light of an environment map, from its nine spherical harmonics.
 
     Args:
         n: Unit normal.
-        harmonics: Nine coefficients as ``environment.harmonics`` makes them.
+        harmonics: Nine coefficients, computed by ``environment.harmonics``.
         intensity: Brightness.
 
     Source: Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps"

@@ -1,7 +1,7 @@
-"""The light along a ray: of one surface, of a chain of mirrors, or of a tree of mirrors and glass.
+"""The light along a ray: at one surface, in a chain of mirrors, or in a tree of mirrors and glass.
 
 Input: a ray, the functions of a scene and its numbers. Output: linear light and alpha. A scene
-takes the cheapest of the three renderers that shows all its materials. The last one follows both
+uses the cheapest of the three renderers that supports all its materials. The last one follows both
 the mirrored and the refracted ray, with an explicit stack.
 """
 
@@ -20,10 +20,10 @@ from distal.render.normals import EXACT
 from distal.render.shade import Look, direct_light
 from distal.render.trace import first_surface, ray_offset, surface_point
 
-# Alpha of a ray that begins inside a solid and does not leave it.
+# Alpha of a ray that starts inside a solid and does not leave it.
 ALL_INSIDE = -1.0
 STACK = 12
-DIMMEST = 0.004  # rays that would add less than one step of a display are not followed
+DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display are not followed
 
 
 @func
@@ -45,29 +45,29 @@ def seen_plain(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """Direct light on the first surface.
+    """Return the direct light at the first surface.
 
     Args:
         ray: Ray.
         field: Signed distance.
         surface: The material at a point.
-        lights: The light of a number, from 0, as a point receives it.
-        ambient: Light from all around on a white surface, by its normal.
-        background: Light from a direction in which there is no surface.
+        lights: The light with a given index, from 0, at a point.
+        ambient: Light from all directions on a white surface, by its normal.
+        background: Light from a direction without a surface.
         bounds: Box around the surface.
-        numbers: The numbers of the march.
+        numbers: The parameters of the march.
         look: Ambient occlusion and fog.
-        steps: The largest number of steps of a ray.
+        steps: Maximum number of steps of a ray.
         light_count: How many lights there are.
-        shadow_steps: The largest number of steps of a shadow ray; 0 for no shadows.
-        normals: How normals are found; a constant of ``normals``.
+        shadow_steps: Maximum number of steps of a shadow ray; 0 for no shadows.
+        normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
-        hybrid: Whether to march as over terrain and water; a constant.
-        stride: How the hybrid march steps.
+        hybrid: Whether to use the march for terrain and water; a constant.
+        stride: The steps of that march.
 
     Returns:
-        Linear light; alpha is 1 on a surface, 0 where there is none, ``ALL_INSIDE`` where the ray
-        does not leave a solid.
+        Linear light; alpha is 1 on a surface, 0 if there is none, ``ALL_INSIDE`` if the ray does
+        not leave a solid.
     """
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
@@ -99,7 +99,7 @@ def seen_mirrored(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """As ``seen_plain``, and what mirrors show: one ray continues, ``bounces`` times at most."""
+    """As ``seen_plain``, with mirrors: one ray continues, at most ``bounces`` times."""
     color = vec3(0.0)
     throughput = vec3(1.0)
     alpha = 0.0
@@ -109,7 +109,7 @@ def seen_mirrored(
         here = Ray(origin, direction)
         hit = first_surface(field, here, bounds, numbers, steps, hybrid, stride)
         if hit.side < 0.0 and alpha > 0.0:
-            break  # mirrored into a crevice: the surface in front hides the rest
+            break  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
             color += throughput * background(direction)
             if hit.side < 0.0:
@@ -125,7 +125,8 @@ def seen_mirrored(
         throughput = throughput * point.shares.mirrored * ((1.0 - point.surface.roughness) * clear)
         if brightest(throughput) < DIMMEST:
             break
-        # Mirrored rays begin lower than shadow rays: grazing ones would meet another wave.
+        # Mirrored rays start nearer to the surface than shadow rays: a grazing ray that starts
+        # higher would hit another wave.
         origin = point.p + ray_offset(numbers, hit.t, False) * point.n
         direction = reflect(direction, point.n)
     return vec4(color, alpha)
@@ -149,12 +150,12 @@ def seen_refracted(
     normals: int = EXACT,
     normal_step: float = 1e-3,
 ) -> vec4:
-    """As ``seen_mirrored``, and what glass shows: the mirrored and the refracted ray continue."""
+    """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue."""
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
     depths = [0] * STACK
-    insides = [True] * STACK  # whether a ray may begin inside; the one from the camera may
+    insides = [True] * STACK  # whether a ray may start inside a solid; the camera's ray may
     waiting = 1
     color = vec3(0.0)
     alpha = 0.0
@@ -168,7 +169,7 @@ def seen_refracted(
         here = Ray(origins[waiting], direction)
         hit = first_surface(field, here, bounds, numbers, steps, False, STRIDE)
         if hit.side < 0.0 and not insides[waiting]:
-            continue  # mirrored into a crevice: the surface in front hides the rest
+            continue  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
             color += throughput * background(direction)
             if hit.side < 0.0 and depth == 0:
@@ -187,7 +188,7 @@ def seen_refracted(
         if depth >= bounces:
             continue
         eta = point.surface.ior if point.inside else 1.0 / point.surface.ior
-        # Beyond the critical angle there is no refracted ray, and its share is 0.
+        # Beyond the critical angle there is no refracted ray, and its throughput is 0.
         bent = refract(direction, point.n, eta)
         mirror_share = throughput * point.shares.mirrored * (1.0 - point.surface.roughness)
         through_share = throughput * point.shares.transmitted

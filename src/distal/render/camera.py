@@ -1,7 +1,7 @@
-"""Cameras: the ray that a place in the picture looks along.
+"""Cameras: the ray through a place in the picture.
 
-Input: ``uv``, -1 to 1 from the bottom to the top of the picture and by the same unit from
-left to right, and the numbers of a camera. Output: a ``Ray``. Right-handed, y up; a camera
+Input: ``uv``, where y is -1 to 1 from the bottom to the top of the picture and x has the same unit
+from left to right, and the numbers of a camera. Output: a ``Ray``. Right-handed, y up; a camera
 that is not turned looks along -z. ``mirror`` swaps left and right, as in left-handed systems.
 """
 
@@ -37,7 +37,7 @@ START = vec3(0.0, 0.0, 5.0)
 AHEAD = vec3(0.0, 0.0, -1.0)
 HALF_TURN = math.pi
 OPENING = 40.0 * (math.pi / 180.0)
-# Two directions closer than this (the sine between them) span no plane in 32 bits.
+# If the sine of the angle between two directions is smaller, they span no plane in 32 bits.
 PARALLEL = 1e-5
 IN_DEGREES = ExtraParameter(
     "fov_deg", None, "Number | None", "The same in degrees.", keyword_only=True
@@ -54,7 +54,7 @@ class Ray:
 
 @struct
 class Basis:
-    """Three unit vectors at right angles: where right, up and ahead are for a camera."""
+    """Three orthogonal unit vectors: right, up and ahead of a camera."""
 
     right: vec3
     up: vec3
@@ -63,13 +63,13 @@ class Basis:
 
 @func
 def mirrored(uv: vec2, mirror: bool) -> vec2:
-    """The place in the picture, left and right swapped if ``mirror`` is true."""
+    """Swap left and right of a place in the picture if ``mirror`` is true."""
     return select(mirror, vec2(-uv.x, uv.y), uv)
 
 
 @func
 def basis_ahead(ahead: vec3, up: vec3) -> Basis:
-    """The basis that looks ``ahead`` with ``up`` upright in the picture."""
+    """Return the basis that looks along ``ahead``, with ``up`` upright in the picture."""
     unit = normalize(ahead)
     right = normalize(cross(unit, up))
     return Basis(right, cross(right, unit), unit)
@@ -77,7 +77,7 @@ def basis_ahead(ahead: vec3, up: vec3) -> Basis:
 
 @func
 def basis_turned(yaw: float, pitch: float, roll: float) -> Basis:
-    """The basis looking along -z, rolled, then pitched up, then turned left by ``yaw``."""
+    """Return a basis looking along -z, rolled, then pitched up, then turned left by ``yaw``."""
     ahead = vec3(-sin(yaw) * cos(pitch), sin(pitch), -cos(yaw) * cos(pitch))
     level = vec3(cos(yaw), 0.0, -sin(yaw))
     upright = cross(level, ahead)
@@ -87,7 +87,14 @@ def basis_turned(yaw: float, pitch: float, roll: float) -> Basis:
 
 @func
 def through_screen(uv: vec2, position: vec3, basis: Basis, focal: float) -> Ray:
-    """Perspective: through a screen of half height 1 at distance ``focal``."""
+    """Return the perspective ray through a screen of half height 1 at distance ``focal``.
+
+    Args:
+        uv: Place in the picture.
+        position: Position of the camera.
+        basis: Its directions.
+        focal: Distance of the screen.
+    """
     direction = basis.right * uv.x + basis.up * uv.y + basis.ahead * focal
     return Ray(position, normalize(direction))
 
@@ -95,7 +102,7 @@ def through_screen(uv: vec2, position: vec3, basis: Basis, focal: float) -> Ray:
 def _has_a_view(
     position: tuple[float, ...], target: tuple[float, ...], up: tuple[float, ...]
 ) -> str | None:
-    """Why a view has no direction, or its picture no up."""
+    """Return why the camera's directions are not defined; None if they are."""
     ahead = [t - p for t, p in zip(target, position, strict=True)]
     length = math.hypot(*ahead)
     if length == 0.0:
@@ -119,16 +126,16 @@ def look_at(
     fov: float = OPENING,
     mirror: bool = False,
 ) -> Ray:
-    """A camera that looks from one place at another, with perspective.
+    """A perspective camera at one point that looks at another.
 
     Args:
         uv: Place in the picture.
-        position: Where it is.
-        target: What it looks at.
-        up: Which way is up in the picture.
+        position: Position of the camera.
+        target: The point that it looks at.
+        up: The direction that is up in the picture.
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Swap left and right, as in left-handed systems.
     """
     focal = 1.0 / tan(0.5 * fov)
     return through_screen(mirrored(uv, mirror), position, basis_ahead(target - position, up), focal)
@@ -145,16 +152,16 @@ def turned(
     screen_distance: float = 1.0,
     mirror: bool = False,
 ) -> Ray:
-    """Perspective, turned by angles, the picture a screen of a physical size.
+    """A perspective camera turned by angles, whose screen has a physical size.
 
     Args:
         uv: Place in the picture.
-        position: Where the eye is.
-        yaw: Turn to the left about the upright axis.
-        pitch: Turn upwards.
-        roll: Turn of the camera about its view, counterclockwise as it sees it.
+        position: Position of the eye.
+        yaw: Turn to the left about the upright axis, in radians.
+        pitch: Turn upwards, in radians.
+        roll: Turn about the viewing direction, counterclockwise as the camera sees it, in radians.
         screen_height: Height of the screen.
-        screen_distance: From the eye to the screen.
+        screen_distance: Distance from the eye to the screen.
         mirror: Swap left and right.
     """
     focal = 2.0 * screen_distance / screen_height
@@ -172,17 +179,17 @@ def orbit(
     fov: float = OPENING,
     mirror: bool = False,
 ) -> Ray:
-    """A camera on a sphere around what it looks at.
+    """A camera on a sphere around its target.
 
     Args:
         uv: Place in the picture.
         distance: From the target.
         azimuth: Around the y axis, in radians; 0 is on the side of +z, pi/2 on that of +x.
         elevation: Up, in radians; pi/2 is straight above.
-        target: What it looks at.
+        target: The point that it looks at.
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Swap left and right, as in left-handed systems.
     """
     basis = basis_turned(azimuth, -elevation, 0.0)
     focal = 1.0 / tan(0.5 * fov)
@@ -199,15 +206,15 @@ def orthographic(
     height: float = 4.0,
     mirror: bool = False,
 ) -> Ray:
-    """A camera without perspective: what is far is as large as what is near.
+    """A camera without perspective: far objects appear as large as near ones.
 
     Args:
         uv: Place in the picture.
-        position: The middle of the picture; what lies behind it is not seen.
-        target: What it looks at.
-        up: Which way is up in the picture.
-        height: What the picture shows from bottom to top, in scene units.
-        mirror: Left and right swapped, as left-handed systems see it.
+        position: The point in the middle of the picture; what lies behind it is not seen.
+        target: The point that it looks at.
+        up: The direction that is up in the picture.
+        height: Height of the visible area, in scene units.
+        mirror: Swap left and right, as in left-handed systems.
     """
     basis = basis_ahead(target - position, up)
     place = mirrored(uv, mirror) * (0.5 * height)
@@ -224,18 +231,19 @@ def fisheye(
     fov: float = HALF_TURN,
     mirror: bool = False,
 ) -> Ray:
-    """A camera that sees half of the world around, or more, in a circle.
+    """A camera that sees half of its surroundings, or more, in a circle.
 
-    The angle from the view grows evenly from the middle of the picture (equidistant).
+    The angle from the viewing direction is proportional to the distance from the middle of the
+    picture (equidistant).
 
     Args:
         uv: Place in the picture.
-        position: Where it is.
-        target: What it looks at.
-        up: Which way is up in the picture.
+        position: Position of the camera.
+        target: The point that it looks at.
+        up: The direction that is up in the picture.
         fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
             (default: 180 degrees).
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Swap left and right, as in left-handed systems.
     """
     basis = basis_ahead(target - position, up)
     place = mirrored(uv, mirror)
@@ -254,16 +262,16 @@ def panorama(
     up: vec3 = UP,
     mirror: bool = False,
 ) -> Ray:
-    """A camera that sees all around: longitude to the right, latitude up (equirectangular).
+    """A camera that sees all directions: longitude to the right, latitude up (equirectangular).
 
     A picture twice as wide as high shows everything.
 
     Args:
         uv: Place in the picture.
-        position: Where it is.
-        target: What is in the middle of the picture.
-        up: Which way is up in the picture.
-        mirror: Left and right swapped, as left-handed systems see it.
+        position: Position of the camera.
+        target: The point in the middle of the picture.
+        up: The direction that is up in the picture.
+        mirror: Swap left and right, as in left-handed systems.
     """
     basis = basis_ahead(target - position, up)
     angles = mirrored(uv, mirror) * (0.5 * PI)
@@ -273,7 +281,7 @@ def panorama(
 
 @func
 def equirectangular(direction: vec3) -> vec2:
-    """Where a unit direction lies on a panorama, (0, 0) to (1, 1); -z is in the middle."""
+    """Return the place of a unit direction on a panorama, (0, 0) to (1, 1); -z is in the middle."""
     across = atan2(direction.x, -direction.z) / (2.0 * PI) + 0.5
     level = length(direction.xz)
     return vec2(across, atan2(direction.y, level) / PI + 0.5)
@@ -281,5 +289,5 @@ def equirectangular(direction: vec3) -> vec2:
 
 @func
 def pixel_angle(fov: float, height: float) -> float:
-    """How wide one of ``height`` pixels is, at distance 1 in the middle of the picture."""
+    """Return the width of one of ``height`` pixels, at distance 1 in the middle of the picture."""
     return 2.0 * abs(tan(0.5 * fov)) / height

@@ -1,8 +1,8 @@
-"""Declares scene functions as the lights, cameras, materials, patterns and backgrounds of the API.
+"""Declare scene functions as the lights, cameras, materials, patterns and backgrounds of the API.
 
-Input: ``@func`` functions; what their parameters must be. Output: a ``Declaration`` for each, kept
-by its family in the order of declaration. Does not depend on the object model, which makes the
-public classes and functions from the declarations.
+Input: ``@func`` functions and the limits of their parameters. Output: a ``Declaration`` for each,
+stored in its family in the order of declaration. Does not depend on the object model, which makes
+the public classes and functions from the declarations.
 
 The public object has the parameters of its scene function, in their order and with their defaults,
 except those that the scene passes for each ray or point (``Family.site``). The scene function's
@@ -31,8 +31,8 @@ class ExtraParameter:
         default: Its default.
         annotation: Its type, in terms of ``scene.objects.argument_types``.
         doc: Its line in the docstring.
-        keyword_only: Whether it is passed by name only, after the function's own parameters; else
-            it comes before them.
+        keyword_only: Whether it is passed by name only, after the function's own parameters;
+            otherwise it is positional and comes before them.
     """
 
     name: str
@@ -44,20 +44,21 @@ class ExtraParameter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Declaration:
-    """A public class or function, made from a scene function.
+    """A public class or function, defined by a scene function.
 
     Attributes:
         name: The public name: "PointLight".
         function: The scene function.
-        family: The family it belongs to.
-        limits: What each number must be; a number not named is any finite one.
-        requires: Returns why numbers do not go together, or None.
+        family: Its family.
+        limits: The allowed range of each number; a number that is not listed can be any finite
+            one.
+        requires: Returns why arguments are not valid together, or None.
         extras: Parameters besides those of the function.
-        widest: Of a camera: ``fov`` is below this angle, or at most this if it is a full turn.
-        reflects: Of a material: whether rays may bounce off it.
-        refracts: Of a material: whether rays may go into it.
-        sample: Of a background that is a light too: ``(p, …) -> LightSample``.
-        ambient: Of a background that is a light too: ``(n, …) -> vec3``.
+        widest: For a camera: ``fov`` is below this angle, or at most this if it is a full turn.
+        reflects: For a material: whether reflected rays may start from it.
+        refracts: For a material: whether refracted rays may enter it.
+        sample: For a background that is also a light: ``(p, …) -> LightSample``.
+        ambient: For a background that is also a light: ``(n, …) -> vec3``.
     """
 
     name: str
@@ -74,14 +75,14 @@ class Declaration:
 
 
 class Family:
-    """Objects of one kind.
+    """The declarations of one kind of object, and their common rules.
 
     Attributes:
         site: The parameters that the scene passes, not the author.
-        limits: What a number of this name must be.
-        colors: Parameters that take "#rrggbb"; ``color`` and ``…_color`` always do.
+        limits: The allowed range of a number, by its name.
+        colors: Parameters that accept "#rrggbb"; ``color`` and ``…_color`` always do.
         keyword_only: Parameters that are passed by name only.
-        optional: Parameters that may be None, for their default.
+        optional: Parameters that may be None, which selects the default.
         varies: Whether arguments may be patterns.
         members: The declarations by name.
     """
@@ -107,11 +108,11 @@ class Family:
     def declare(
         self, name: str, *, limits: Mapping[str, Limit] | None = None, **declared: Any
     ) -> Callable[[F], F]:
-        """Declare the ``@func`` below; see ``Declaration``.
+        """Return a decorator that declares a ``@func``; see ``Declaration``.
 
         Args:
             name: The public name.
-            limits: Instead of the family's limits.
+            limits: Replaces the family's limits.
             declared: The other attributes of the ``Declaration``.
         """
 
@@ -124,8 +125,8 @@ class Family:
         return keep
 
 
-# What a function of a place on a surface may use: the point and the normal in the painted shape's
-# own space, and the index of the repetition that the point lies in.
+# The inputs of a function of a place on a surface: the point and the normal in the coordinates of
+# the painted shape, and the index of the repetition that contains the point.
 PLACE_NAMES: Final = frozenset(("p", "n", "cell"))
 
 LIGHTS: Final = Family(

@@ -1,8 +1,8 @@
-"""A picture of the surroundings: as background, and as diffuse light.
+"""Environment maps: a picture of the surroundings as background and as diffuse light.
 
-Input: an equirectangular picture (-z in its middle, up at its top) in linear light.
-Output: the light from a direction; and nine spherical harmonics of it, which
-``ambient.environment_ambient`` reads. The harmonics are computed once, in Python.
+Input: an equirectangular picture (-z in its middle, up at its top) in linear light. Output: the
+light from a direction; and its nine spherical harmonics, which ``ambient.environment_ambient``
+reads. The harmonics are computed once, in Python.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from typing import Any, Final
 from distal.lang import Texture2D, clamp, cos, func, sample, sin, vec2, vec3
 from distal.render.camera import equirectangular
 
-# What a diffuse surface leaves of each band of the light around it (Ramamoorthi and Hanrahan 2001),
-# over pi, since a white surface shows 1/pi of what falls on it.
+# The factor of each band of harmonics for a diffuse surface (Ramamoorthi and Hanrahan 2001),
+# divided by pi, because a white surface shows 1/pi of the incident light.
 _BANDS: Final = (1.0, 2.0 / 3.0, 1.0 / 4.0)
-# Squares of the harmonics' factors: once for measuring the light, once for showing it.
+# Squares of the harmonics' factors: one for projecting the light, one for evaluating it.
 _FACTORS: Final = tuple(
     factor / (4.0 * math.pi)
     for factor in (1.0, 3.0, 3.0, 3.0, 15.0, 15.0, 5.0 / 4.0, 15.0, 15.0 / 4.0)
@@ -25,7 +25,7 @@ _FACTORS: Final = tuple(
 
 @func
 def turned_by(direction: vec3, turn: float) -> vec3:
-    """A direction turned about the upright axis."""
+    """Rotate a direction about the upright axis."""
     c = cos(turn)
     s = sin(turn)
     return vec3(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z)
@@ -35,22 +35,22 @@ def turned_by(direction: vec3, turn: float) -> vec3:
 def environment(
     direction: vec3, image: Texture2D, intensity: float = 1.0, turn: float = 0.0
 ) -> vec3:
-    """The light that a picture of the surroundings sends from a direction.
+    """The light of a picture of the surroundings, by direction.
 
     Args:
         direction: Unit direction.
         image: Equirectangular picture; linear light.
         intensity: Brightness.
-        turn: The surroundings turned to the left about the upright axis.
+        turn: Turns the surroundings to the left about the upright axis, in radians.
     """
     place = equirectangular(turned_by(direction, turn))
-    # Off the poles by half a texel of a picture 1024 high: the opposite row would mix in.
+    # Half a texel (of 1024 rows) away from the poles; closer, the opposite row would be blended in.
     held = clamp(place.y, 0.0005, 0.9995)
     return sample(image, vec2(place.x, held)).rgb * intensity
 
 
 def harmonics(texels: Any) -> list[tuple[float, float, float]]:
-    """Nine coefficients of a picture's diffuse light, for ``ambient.environment_ambient``.
+    """Return nine coefficients of a picture's diffuse light, for ``ambient.environment_ambient``.
 
     Args:
         texels: Array (height, width, 3 or more) of linear light, top row first.
@@ -67,7 +67,7 @@ def harmonics(texels: Any) -> list[tuple[float, float, float]]:
         [math.sin(2.0 * angle) for angle in around],
         [math.cos(2.0 * angle) for angle in around],
     ]
-    # Each row's light against each wave around the upright axis: (height, wave, color).
+    # The sum of each row's light times each wave around the upright axis: (height, wave, color).
     rows = (texels[..., :3].swapaxes(1, 2) @ _columns(waves)).swapaxes(1, 2).tolist()
     sums = [[0.0, 0.0, 0.0] for _ in range(9)]
     for row, moments in enumerate(rows):
@@ -88,7 +88,7 @@ def _columns(rows: list[list[float]]) -> list[list[float]]:
 
 
 def _row_weights(y: float, r: float) -> tuple[tuple[tuple[int, float], ...], ...]:
-    """The nine polynomials of (x, y, z) = (r sin a, y, -r cos a), as weights of the five waves.
+    """Return the nine polynomials of (x, y, z) = (r sin a, y, -r cos a), as weights of five waves.
 
     The waves are 1, sin a, cos a, sin 2a, cos 2a.
     """

@@ -1,4 +1,4 @@
-"""Samples within a pixel: their places, and their filtered mean.
+"""Samples in a pixel: their offsets, and their filtered mean.
 
 Input: a pixel, a camera, and the light along a ray. Output: linear light and straight alpha.
 """
@@ -13,18 +13,18 @@ from distal.render.camera import Ray
 
 @func
 def tent(u: float) -> float:
-    """A number from 0 to 1 as an offset within -1 to 1, nearer ones more often."""
+    """Map a uniform number from 0 to 1 to an offset from -1 to 1 with a tent distribution."""
     x = 2.0 * u - 1.0
     return sign(x) * (1.0 - sqrt(max(1.0 - abs(x), 0.0)))
 
 
 @func
 def sample_offset(index: int, count: int) -> vec2:
-    """Where in a pixel a sample lies, in pixels from its middle.
+    """Return the offset of a sample from the middle of a pixel, in pixels.
 
     The first coordinate is stratified, the second follows the golden ratio, so that any count
-    covers the square evenly (the R2-like rank-1 lattice); a tent filter two pixels wide draws
-    samples to the middle. One sample lies in the middle.
+    covers the square evenly (the R2-like rank-1 lattice). The offsets have the distribution of a
+    tent filter that is two pixels wide. A single sample is in the middle.
     """
     if count <= 1:
         return vec2(0.0, 0.0)
@@ -42,10 +42,10 @@ def exposed(
     samples: int,
     transparent: bool,
 ) -> vec4:
-    """The linear light of a pixel: the mean of its samples.
+    """Return the linear light of a pixel: the mean of its samples.
 
-    Alpha is straight: colors are the mean of what is there. Opaque unless ``transparent``, but for
-    rays that begin inside a solid and find no way out.
+    Alpha is straight: the color is the mean over the samples that have one. Alpha is 1 unless
+    ``transparent``, except for rays that start inside a solid and do not leave it.
     """
     total = vec4(0.0)
     for i in range(max(samples, 1)):

@@ -1,14 +1,14 @@
-"""The hybrid march for terrain and water: long steps over it, then a search between two of them.
+"""The hybrid march for terrain and water: long steps above it, then a search between two steps.
 
-Input: a field that is a height over ground, roughly (positive above), a ray, the height
-that all of it stays below. Output: a ``Hit``. Sphere tracing nearly stops where a ray
-skims a surface; this one takes long steps and finds the crossing between the last two.
+Input: a field that is roughly the height above ground (positive above), a ray, and a height that
+the whole surface stays below. Output: a ``Hit``. Sphere tracing becomes very slow where a ray
+passes close to a surface; this march takes long steps and finds the crossing between the last two.
 
-Source: the blog post "Sunset on the sea": steps of the larger of the distance and a length
-that grows, then a search that removes from the interval what the field's value at each probe rules
-out. The post halves what is left. Here the line through both ends' values gives the next probe (the
-rule of false position in its "Illinois" form: Dowell and Jarratt, 1971), and the line through the
-last two values the length of a step: fewer probes, and nearer to the surface.
+Source: the blog post "Sunset on the sea": each step is the larger of the distance and a growing
+length; then a search narrows the interval, using the field's value at each probe. The post halves
+the rest of the interval. Here the next probe is where the line through the values at both ends is 0
+(the rule of false position in its "Illinois" form: Dowell and Jarratt, 1971), and the line through
+the last two values determines the length of a step: fewer probes, and closer to the surface.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from distal.render.camera import Ray
 from distal.render.march import Hit, March, crossing
 
 UPRIGHT = 1e-6
-# A step is taken to where the line through the last two values meets 0, and past it by this much:
-# the next probe should lie below. LONGEST limits it, in safe steps of the field.
+# A step goes to where the line through the last two values is 0, times this factor, so that the
+# next probe is likely below the surface. LONGEST limits the step, in safe steps of the field.
 PAST = 1.02
 LONGEST = 6.0
-# The search ends so many thresholds from the surface: the line's last crossing is far nearer.
+# The search ends within this many thresholds of the surface: the last interpolation is much closer.
 ENOUGH = 4.0
 
 
 @struct
 class Stride:
-    """How a heightfield is stepped over.
+    """The steps of the hybrid march.
 
     Attributes:
-        top: A height that the field lies below everywhere.
-        first: The shortest step at the start, for each unit that the start is away (at least 1).
-        growth: By what factor it grows with each step.
+        top: A height that the surface is below everywhere.
+        first: The shortest first step, per unit of distance to the start (at least 1).
+        growth: The factor by which this length grows with each step.
     """
 
     top: float = 1.0
@@ -47,16 +47,16 @@ STRIDE = Stride()
 
 @struct
 class Bracket:
-    """Two places on a ray with the surface between them, and the field there.
+    """Two places on a ray with the surface between them, and the field's values there.
 
     Attributes:
-        above: The last place known to lie above.
+        above: The last place known to be above the surface.
         value_above: The field there.
-        below: The first place known to lie below, once there is one.
-        value_below: The field there; below 0 once there is one.
-        nearest: No surface lies before it.
-        farthest: One lies before it.
-        fell: Whether the last probe lay below.
+        below: The first place known to be below the surface, once there is one.
+        value_below: The field there; negative once there is one.
+        nearest: There is no surface before this place.
+        farthest: There is a surface before this place.
+        fell: Whether the last probe was below the surface.
     """
 
     above: float
@@ -70,9 +70,10 @@ class Bracket:
 
 @func
 def narrowed(bracket: Bracket, t: float, value: float, safe: float) -> Bracket:
-    """The bracket after a probe; nothing lies nearer to it than ``safe``.
+    """Return the bracket after a probe at ``t``; there is no surface within ``safe`` of the probe.
 
-    An end that two probes leave where it is counts half, or it would never move.
+    The value of an end that two probes have left unchanged is halved; otherwise the end might
+    never move.
     """
     crossed = bracket.value_below < 0.0
     if value < 0.0:
@@ -84,9 +85,9 @@ def narrowed(bracket: Bracket, t: float, value: float, safe: float) -> Bracket:
 
 @func
 def likely_crossing(bracket: Bracket) -> float:
-    """Where the line through both ends' values is 0, within what is not ruled out.
+    """Return where the line through the values at both ends is 0, within the possible interval.
 
-    The ray's start has no value as long as no probe lay above: halfway, then.
+    The start of the ray has no value until a probe lies above; until then, use the middle.
     """
     high = select(bracket.value_above > 0.0, bracket.value_above, -bracket.value_below)
     share = high / max(high - bracket.value_below, 1e-30)
@@ -96,7 +97,14 @@ def likely_crossing(bracket: Bracket) -> float:
 
 @func
 def likely_step(bracket: Bracket, t: float, value: float, safe: float) -> float:
-    """How far the surface is if the field goes on as since the bracket's probe; 0 if it rises."""
+    """Return the distance to the surface by linear extrapolation; 0 if the field rises.
+
+    Args:
+        bracket: Has the previous probe.
+        t: Place of the current probe.
+        value: The field there.
+        safe: The safe step there.
+    """
     fall = bracket.value_above - value
     guess = PAST * value * (t - bracket.above) / max(fall, 1e-30)
     return select(fall > 0.0, min(guess, LONGEST * safe), 0.0)
@@ -104,7 +112,7 @@ def likely_step(bracket: Bracket, t: float, value: float, safe: float) -> float:
 
 @func
 def start_below(ray: Ray, top: float, t: float) -> float:
-    """Where a ray from above comes down to ``top``; ``t`` where it starts below."""
+    """Return where a ray from above reaches height ``top``; ``t`` if it starts below."""
     falls = ray.direction.y < -UPRIGHT
     crossing = (top - ray.origin.y) / select(falls, ray.direction.y, -1.0)
     above = ray.origin.y + ray.direction.y * t > top
@@ -113,7 +121,7 @@ def start_below(ray: Ray, top: float, t: float) -> float:
 
 @func
 def end_above(ray: Ray, top: float, t: float) -> float:
-    """Where a rising ray leaves ``top`` for good; ``t`` where it does not before."""
+    """Return where a rising ray reaches height ``top``; at most ``t``."""
     rises = ray.direction.y > UPRIGHT
     crossing = (top - ray.origin.y) / select(rises, ray.direction.y, 1.0)
     return select(rises, min(crossing, t), t)
@@ -123,15 +131,15 @@ def end_above(ray: Ray, top: float, t: float) -> float:
 def march_heightfield(
     field: Field3, ray: Ray, bounds: Bounds, numbers: March, stride: Stride, steps: int
 ) -> Hit:
-    """The first surface along a ray from above.
+    """Return the first surface along a ray from above.
 
     Args:
-        field: Positive above the ground; strides may pass over what is thinner than they are long.
+        field: Positive above the ground; steps may miss parts that are thinner than the step.
         ray: Ray.
         bounds: Box that the surface lies in.
         numbers: As for ``march``; ``steps`` of the result counts all evaluations of the field.
-        stride: How to step.
-        steps: The most evaluations.
+        stride: The lengths of steps.
+        steps: Maximum number of evaluations.
     """
     span = crossing(ray, bounds)
     start = start_below(ray, stride.top, max(span.x, numbers.near))
@@ -140,7 +148,7 @@ def march_heightfield(
     bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
     step = stride.first * max(start, 1.0)
-    # Where a ray enters the box it is above: the first probe is a stride further.
+    # A ray is above the surface where it enters the box: the first probe is one step further.
     t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
     for _ in range(steps):
@@ -158,8 +166,8 @@ def march_heightfield(
                 found = True
                 break
         else:
-            # The ray's end is looked at too: a surface may lie between it and the last step.
+            # The end of the ray is probed too: there may be a surface between it and the last step.
             t = select(t < end, min(t + max(safe, guess, step), end), 2.0 * end + 1.0)
             step *= stride.growth
-    # With steps run out between two probes, the likeliest place is the best that is known.
+    # If the steps run out between two probes, the current estimate is the best known place.
     return Hit(t, found or bracket.value_below < 0.0, taken, 1.0)

@@ -1,8 +1,8 @@
-"""Layers of a picture: depth, normal, albedo and material as plain values, for compositing.
+"""Layers of a picture for compositing: depth, normal, albedo and material as plain values.
 
-Input: the ray through a pixel's middle, and the functions and numbers of a scene. Output: values,
-not colors: up to three numbers, and in w whether there is a surface. A pixel has one sample: a
-mean of depths or of numbers of materials means nothing.
+Input: the ray through the middle of a pixel, and the functions and numbers of a scene. Output:
+values, not colors: up to three numbers, and in w whether there is a surface. A pixel has one
+sample, because a mean of depths or of material numbers has no meaning.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from distal.render.normals import EXACT
 from distal.render.trace import facing_normal, first_surface, hit_point
 
 NOTHING = vec4(0.0)
-# The largest error of a depth of 4 (a sphere, 160x120, where it is not grazed) after 0, 1 and 2
-# steps: 4e-3, 6e-7, 6e-7; where a ray meets it at 6 degrees 2e-2, 1e-3, 5e-6.
+# The largest error of a depth of 4 (a sphere, 160x120, without grazing rays) after 0, 1 and 2
+# steps: 4e-3, 6e-7, 6e-7; where a ray hits it at 6 degrees 2e-2, 1e-3, 5e-6.
 NEWTON_STEPS = 2
 
 
@@ -31,16 +31,29 @@ def through_middle(
     camera: Callable[[vec2], Ray],
     radiance: Callable[[Ray], vec4],
 ) -> vec4:
-    """The value of the ray through a pixel's middle, unfiltered."""
+    """Return the value of the ray through the middle of a pixel, unfiltered.
+
+    Args:
+        coord: Middle of the pixel, in pixels.
+        resolution: Size of the picture, in pixels.
+        camera: Ray of a place in the picture.
+        radiance: Value of a ray.
+    """
     return radiance(camera((2.0 * coord - resolution) / resolution.y))
 
 
 @func
 def refined(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
-    """The distance to the surface, more exact than a march, which stops at a share of a pixel.
+    """Return the distance to the surface, more precise than that of the march.
 
-    Newton's method along the ray, no farther than the error of a hit. A ray that only passes by
-    within the threshold keeps its distance.
+    Newton's method along the ray, limited to the error of a hit. The distance of a ray that only
+    passes the surface within the threshold is not changed.
+
+    Args:
+        field: Signed distance.
+        ray: Ray.
+        hit: The hit of the march.
+        numbers: The parameters of the march.
     """
     t = hit.t
     room = FORGIVING * numbers.threshold * hit.t
@@ -62,7 +75,7 @@ def layer_depth(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """How far along the ray the first surface is, in scene units."""
+    """Return the distance along the ray to the first surface, in scene units."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
@@ -81,7 +94,7 @@ def layer_normal(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """The unit normal in world space that the shading uses: toward where the ray came from."""
+    """Return the unit normal that the shading uses, in world space, facing the ray's origin."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
@@ -99,7 +112,7 @@ def layer_albedo(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """The material's color, linear and without light."""
+    """Return the material's color, linear and without light."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING
@@ -117,7 +130,7 @@ def layer_material(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """The number of the material with the largest share."""
+    """Return the number of the material with the largest weight."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     if not hit.found:
         return NOTHING

@@ -1,7 +1,7 @@
-"""A legend over the view of steps: a bar of its colours, with numbers at the ends.
+"""The legend of the view of steps: a color bar with numbers at its ends.
 
-Input: a pixel's colour and place. Output: the colour, or the legend's. Numbers are
-drawn by arithmetic, so that every target can.
+Input: a pixel's colour and place. Output: the same colour, or the legend's. Digits are drawn by
+arithmetic, so that every target can draw them.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from distal.lang import clamp, floor, func, max, min, vec2, vec3, vec4
 from distal.render.views import heat
 
-# Ten digits, three columns by five rows each, a bit for each square, the upper left one first.
+# Ten digits of three columns by five rows; one bit per square, starting at the upper left.
 DIGITS = [31599, 29850, 29671, 31143, 18925, 31183, 31695, 18727, 31727, 31215]
 WIDTH = 4.0  # squares from one digit to the next
 INK = vec3(1.0)
@@ -18,7 +18,7 @@ PAPER = vec3(0.02)
 
 @func
 def digit_covers(digit: int, square: vec2) -> bool:
-    """Whether a digit's glyph has a square, (0, 0) at the lower left."""
+    """Return whether the glyph of a digit covers a square; (0, 0) is at the lower left."""
     if square.x < 0.0 or square.y < 0.0 or square.x > 2.0 or square.y > 4.0:
         return False
     bit = square.x + 3.0 * (4.0 - square.y)
@@ -28,7 +28,7 @@ def digit_covers(digit: int, square: vec2) -> bool:
 
 @func
 def number_covers(number: int, place: vec2) -> bool:
-    """Whether a number of at most four digits, its lower right at (0, 0), covers a place.
+    """Return whether a number of up to four digits covers a place; its lower right is (0, 0).
 
     Args:
         number: 0 to 9999.
@@ -54,13 +54,13 @@ def number_covers(number: int, place: vec2) -> bool:
 
 @func
 def with_legend(color: vec4, coord: vec2, resolution: vec2, most: int) -> vec4:
-    """A picture's pixel, under a bar of ``views.heat`` from 0 to ``most`` along its lower edge.
+    """Draw the legend over a pixel: a bar of ``views.heat`` from 0 to ``most`` at the lower edge.
 
     Args:
         color: Display-ready colour.
-        coord: Pixel's place, from the lower left.
-        resolution: Picture's size.
-        most: The number at the bar's right end.
+        coord: Place of the pixel, from the lower left.
+        resolution: Size of the picture.
+        most: The number at the right end of the bar.
     """
     unit = max(floor(min(resolution.x, resolution.y) / 120.0), 1.0)
     low = vec2(4.0 * unit, 4.0 * unit)

@@ -1,8 +1,8 @@
-"""Lights that come from somewhere: what each sends to a point.
+"""Lights with a position or direction: the light that each sends to a point.
 
-Input: a point and the numbers of a light. Output: a ``LightSample``. Knows neither
-shadows nor surfaces. The unit of ``radiance``: a white diffuse surface, square on, shows it as it
-is, so that a point light of intensity 1 at distance 1 shows 1.
+Input: a point and the numbers of a light. Output: a ``LightSample``. Does not depend on shadows or
+surfaces. The unit of ``radiance``: a white diffuse surface that faces the light shows this value,
+so a point light of intensity 1 at distance 1 shows 1.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class LightSample:
 
     Attributes:
         direction: Unit vector to the light.
-        distance: How far it is.
-        radiance: What a white diffuse surface would show, square on and unshadowed.
-        radius: Tangent of half the angle that the light fills; 0 casts hard shadows.
+        distance: Distance to the light.
+        radiance: The value that a white diffuse surface shows if it faces the light, unshadowed.
+        radius: Tangent of half the angular size of the light; 0 casts hard shadows.
     """
 
     direction: vec3
@@ -38,7 +38,7 @@ class LightSample:
 
 @func
 def no_light() -> LightSample:
-    """A light that is not there."""
+    """Return a light without effect."""
     return LightSample(vec3(0.0, 1.0, 0.0), FAR_AWAY, vec3(0.0), 0.0)
 
 
@@ -63,14 +63,14 @@ def distant_light(
     color: vec3 = WHITE,
     angle: float = 0.0,
 ) -> LightSample:
-    """Light from one side, equally bright everywhere: the sun.
+    """Light from one direction, equally bright everywhere, such as the sun.
 
     Args:
         p: Point; has no effect.
         direction: Towards the light, of any length.
-        intensity: How bright a white matte surface shows that faces it.
+        intensity: The value that a white matte surface shows if it faces the light.
         color: Its colour.
-        angle: How wide it looks, in radians: what softens its shadows (the sun: 0.0093).
+        angle: Its angular size in radians, which softens shadows (the sun: 0.0093).
     """
     return LightSample(normalize(direction), FAR_AWAY, color * intensity, tan(0.5 * angle))
 
@@ -84,17 +84,17 @@ def point_light(
     color: vec3 = WHITE,
     radius: float = 0.0,
 ) -> LightSample:
-    """Light from one point, fading with the square of the distance.
+    """Light from one point, falling off with the square of the distance.
 
     Args:
         p: Point.
-        position: Where it is.
-        intensity: How bright a white matte surface shows that faces it at distance 1.
+        position: Position of the light.
+        intensity: The value that a white matte surface shows if it faces the light at distance 1.
         color: Its colour.
-        radius: How large it is: what softens its shadows.
+        radius: Radius of the light, which softens shadows.
     """
     offset = position - p
-    # A point on the light itself: as if a thousandth away.
+    # Limits the brightness at the light itself: distances below a thousandth count as that.
     squared = max(dot(offset, offset), 1e-6)
     inverse = inversesqrt(squared)
     radiance = color * (intensity / squared)
@@ -117,13 +117,13 @@ def spot_light(
 
     Args:
         p: Point.
-        position: Where it is.
-        target: What it points at.
+        position: Position of the light.
+        target: The point that it points at.
         intensity: As for a point light.
         color: Its colour.
-        angle: The whole cone's opening, in radians; below pi.
-        softness: Share of half the angle over which the rim fades: 0 sharp, 1 from the axis on.
-        radius: How large it is: what softens its shadows.
+        angle: The opening of the whole cone, in radians; below pi.
+        softness: Fraction of half the angle over which the rim fades; 0: sharp, 1: from the axis.
+        radius: Radius of the light, which softens shadows.
     """
     light = point_light(p, position, intensity, color, radius)
     along = dot(light.direction, normalize(position - target))

@@ -1,7 +1,7 @@
-"""The probe of one pixel: what its ray meets, as numbers.
+"""Probe one pixel: return as numbers what its ray hits.
 
-Input: a pixel, and the functions and numbers of a scene. Output: a ``Seen``. The ray marches as in
-the picture itself.
+Input: a pixel, and the functions and numbers of a scene. Output: a ``Seen``. The ray is marched as
+in the picture.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from distal.render.trace import first_surface, hit_point, point_before
 
 @struct
 class Seen:
-    """A ray, where it ended, and what is there.
+    """A ray, where it ended, and the properties of the surface there.
 
-    ``span`` is where along the ray the scene's box is; ``value`` the field where the ray ended;
-    ``part`` and ``paint`` the numbers of the shape and of the material there.
+    ``span`` is the interval along the ray that is inside the scene's box; ``value`` is the field at
+    the end of the ray; ``part`` and ``paint`` are the numbers of the shape and the material there.
     """
 
     origin: vec3
@@ -57,7 +57,7 @@ def look_along(
     hybrid: bool,
     stride: Stride,
 ) -> Seen:
-    """What the ray through a place in a picture meets."""
+    """Return what the ray through a place in a picture hits."""
     ray = camera((2.0 * coord - resolution) / resolution.y)
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     p = hit_point(ray, hit)

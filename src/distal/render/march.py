@@ -13,23 +13,24 @@ from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct, vec2
 from distal.render.camera import Ray
 
-# The share of the predicted next ball that a step crosses, and the largest predicted radius, in
-# radii of the ball before.
+# The fraction of the predicted next ball that a step crosses, and the largest predicted radius, as
+# a multiple of the previous ball's radius.
 RELAXATION = 0.9
 LONGEST = 8.0
-# When steps run out, the closest approach is a hit if it came within so many thresholds.
+# When steps run out, the closest approach is a hit if it came within this many thresholds.
 FORGIVING = 4.0
 
 
 @struct
 class March:
-    """The numbers of a march.
+    """The parameters of a march.
 
     Attributes:
-        divisor: What distances are divided by for a safe step.
+        divisor: Distances are divided by it to get a safe step.
         near: Distance along the ray where rays begin.
         far: Distance along the ray where rays end.
-        threshold: How near to the surface a hit is, as a share of the distance along the ray.
+        threshold: Largest distance to the surface of a hit, as a fraction of the distance along
+            the ray.
     """
 
     divisor: float
@@ -40,12 +41,12 @@ class March:
 
 @struct
 class Hit:
-    """Where a ray ended.
+    """The end of a ray.
 
     Attributes:
         t: Distance along the ray, in scene units.
         found: Whether there is a surface.
-        steps: How often the field was evaluated.
+        steps: Number of evaluations of the field.
         side: -1 if the ray began inside a solid, else 1.
     """
 
@@ -57,7 +58,7 @@ class Hit:
 
 @func
 def crossing(ray: Ray, bounds: Bounds) -> vec2:
-    """Where a ray enters and leaves a box, of infinite sides too; empty (x > y) if it passes by."""
+    """Return where a ray enters and leaves a box, which may be infinite; x > y if it misses it."""
     tiny = 1e-9
     direction = select(abs(ray.direction) < tiny, ray.direction * 0.0 + tiny, ray.direction)
     near = (bounds.low - ray.origin) / direction
@@ -72,23 +73,23 @@ def crossing(ray: Ray, bounds: Bounds) -> vec2:
 
 @func
 def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -> Hit:
-    """The first surface along a ray.
+    """Return the first surface along a ray.
 
     Args:
         field: Signed distance.
         ray: Ray.
-        bounds: Box with a margin around the surface (``settings.grown_bounds``): rays end at its
+        bounds: Box around the surface with a margin (``settings.grown_bounds``); rays end at its
             sides.
-        numbers: The numbers of the march.
-        steps: The largest number of steps.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps.
     """
     span = crossing(ray, bounds)
     t = max(span.x, numbers.near)
     end = min(span.y, numbers.far)
     taken = 0
     side = 1.0
-    free = 0.0  # the radius of the free ball around the point before
-    step = 0.0  # from that point to this one
+    free = 0.0  # the radius of the free ball around the previous point
+    step = 0.0  # from the previous point to this one
     best = UNBOUNDED
     best_t = t
     found = False
@@ -102,7 +103,8 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
             value = -value
         d = value / numbers.divisor
         if step > free and d + free < step:
-            # The balls do not touch: a surface may be between. Back to the first one's edge.
+            # The balls do not touch, so a surface may be between them: go back to the edge of the
+            # first ball.
             t += free - step
             step = free
         else:
@@ -114,17 +116,17 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
                 best_t = t
             if error < numbers.threshold:
                 found = True
-                # On to where the line through the last two values meets 0.
+                # Go to where the line through the last two values is 0.
                 beyond = d * step / max(free - d, 1e-9)
                 best_t = t + clamp(beyond, 0.0, FORGIVING * numbers.threshold * t)
                 break
-            # The ball that would touch this one, if the surface ahead were flat.
+            # The ball that would touch this one if the surface ahead were flat.
             touching = d * (step - free + d) / max(step + free - d, 1e-9)
             step = d + select(step > 0.0, RELAXATION * clamp(touching, 0.0, LONGEST * d), 0.0)
             free = d
             t += step
             if t > end and t - step + free < end:
-                # The free ball ends before the ray does: the longer step is tried at the ray's end.
+                # The free ball ends before the ray does: try the longer step at the ray's end.
                 step += end - t
                 t = end
     # An early near miss is not a hit: the ray passed that surface.

@@ -1,1 +1,1 @@
-"""The runtime: calls of scene functions and pictures, from Python values to a device and back."""
+"""The runtime: runs scene functions and pictures on a device, with Python arguments and results."""

@@ -1,8 +1,8 @@
-"""Which overload a call from Python means, and its arguments as the kernel takes them.
+"""Select the overload of a call from Python and prepare its arguments for the kernel.
 
-Input: a function of scene code and the values of a call. Output: the parameter types, the values in
-their order, and these with one row for each point; or a ``TypeError`` that lists what the function
-takes. Knows no device.
+Input: a function of scene code and the arguments of a call. Output: the parameter types, the values
+in parameter order, and the values as arrays with one row per point; or a ``TypeError`` that lists
+the signatures. Does not depend on a device.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ def call_arguments(
     kwargs: Mapping[str, Any],
     dtype: np.dtype[Any],
 ) -> tuple[tuple[Type, ...], list[Any], list[Any]]:
-    """The overload that takes the arguments.
+    """Select the overload that accepts the arguments.
 
     Args:
-        function: What is called.
+        function: The function to call.
         args: Values by position.
         kwargs: Values by name.
-        dtype: float32 or float64: what the points are converted to.
+        dtype: float32 or float64, to which the points are converted.
 
     Returns:
-        The parameter types, the values in their order, and the same as arrays with one row for each
-        point.
+        The parameter types, the values in parameter order, and the values as arrays with one row
+        per point.
 
     Raises:
-        TypeError: No overload takes them.
-        CompileError: The signature is wrong, with the author's lines.
+        TypeError: No overload accepts the arguments.
+        CompileError: The signature is wrong; the message shows the author's lines.
     """
     if isinstance(function, LangFunction):
         if kwargs:

@@ -1,7 +1,8 @@
-"""Python values as arguments of scene functions, and results as Python values.
+"""Convert Python values to arguments of scene functions, and results to Python values.
 
-Input: what a person passes to a ``@func``: numbers, vectors, lists, arrays of points. Output: an
-overload's types, and arrays with one row for each point; and back. Knows no device.
+Input: the arguments of a call of a ``@func``: numbers, vectors, lists, arrays of points. Output:
+the types of an overload and arrays with one row per point; and the reverse. Does not depend on a
+device.
 """
 
 from __future__ import annotations
@@ -42,12 +43,16 @@ _KINDS = {Kind.FLOAT: "fiub", Kind.INT: "iu", Kind.UINT: "iu", Kind.BOOL: "b"}
 def bind(
     function: str, defaults: Mapping[str, Any], args: Sequence[Any], kwargs: Mapping[str, Any]
 ) -> list[Any]:
-    """The value of each parameter, in order, defaults filled in.
+    """Return the value of each parameter in order, with defaults for missing arguments.
 
-    ``defaults`` are by name, in order; ``MISSING`` where there is none.
+    Args:
+        function: The name of the function, for messages.
+        defaults: The defaults by name, in parameter order; ``MISSING`` if there is no default.
+        args: Values by position.
+        kwargs: Values by name.
 
     Raises:
-        TypeError: The call does not fit the definition; worded as Python words it.
+        TypeError: The call does not match the signature; the message is worded like Python's.
     """
     if len(args) > len(defaults):
         raise TypeError(f"{function}() takes {len(defaults)} arguments but {len(args)} were given")
@@ -67,9 +72,14 @@ def bind(
 def choose_types(
     header: FunctionSignature, values: Sequence[Any], dtype: np.dtype[Any]
 ) -> tuple[tuple[Type, ...], list[Any]] | None:
-    """The parameter types under which every value fits and the values as ``lanes``, or None.
+    """Return parameter types that accept every value, and the values as ``lanes``; else None.
 
-    A generic parameter tries its type variable's types in order.
+    For a generic parameter, the types of its type variable are tried in order.
+
+    Args:
+        header: The signature of the function.
+        values: One value per parameter.
+        dtype: The type of floats in the arrays.
     """
     variables: list[TypeVar] = []
     for slot in header.parameters:
@@ -89,7 +99,13 @@ def choose_types(
 
 
 def rows_of(values: Sequence[Any], types: Sequence[Type], dtype: np.dtype[Any]) -> list[Any] | None:
-    """The values as ``lanes``; None where one, or an array of such, is not of its type."""
+    """Return the values converted by ``lanes``; None if a value does not have its type.
+
+    Args:
+        values: One value per type; each may also be an array of values.
+        types: The types of the parameters.
+        dtype: The type of floats in the arrays.
+    """
     try:
         return [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
     except (TypeError, ValueError, OverflowError):
@@ -97,13 +113,19 @@ def rows_of(values: Sequence[Any], types: Sequence[Type], dtype: np.dtype[Any]) 
 
 
 def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
-    """The value with a leading axis of points (1 where one value serves all).
+    """Return the value as an array with a leading axis of points (length 1 for a single value).
 
-    Scalars (n,), vectors (n, size), matrices (n, rows, columns), arrays (n, length, ...); a struct
-    is a tuple of its fields.
+    Shapes: scalars (n,), vectors (n, size), matrices (n, rows, columns), arrays (n, length, ...);
+    a struct is a tuple of the arrays of its fields.
+
+    Args:
+        value: The Python value.
+        type: Its type in scene code.
+        dtype: The type of floats in the arrays.
 
     Raises:
-        TypeError: The value is not of the type.
+        TypeError: The value does not have this type.
+        OverflowError: An integer exceeds 32 bits.
     """
     match type:
         case Scalar(kind):
@@ -128,7 +150,7 @@ def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
 
 
 def is_double(value: Any) -> bool:
-    """Whether the person passed numbers of 64 bits, also inside a struct."""
+    """Return whether a value contains 64-bit NumPy floats, also in a struct."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return any(is_double(getattr(value, field.name)) for field in dataclasses.fields(value))
     if isinstance(value, tuple):
@@ -138,7 +160,7 @@ def is_double(value: Any) -> bool:
 
 def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
     if not shape and isinstance(value, tuple | VectorValue):
-        # As in scene code, a tuple is a vector; one number for each point is a list or an array.
+        # As in scene code, a tuple is a vector; numbers for several points are a list or an array.
         raise TypeError(f"{value!r} is a vector")
     if isinstance(value, VectorValue):
         value = tuple(value)
@@ -184,7 +206,7 @@ def _array(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
 
 
 def _stacked(elements: Sequence[Any], points: int) -> Any:
-    """Elements side by side along the second axis; of structs, field by field."""
+    """Stack elements along a new second axis; for structs, each field separately."""
     if isinstance(elements[0], tuple):
         return tuple(_stacked(field, points) for field in zip(*elements, strict=True))
     shape = (points, *elements[0].shape[1:])
@@ -192,14 +214,14 @@ def _stacked(elements: Sequence[Any], points: int) -> Any:
 
 
 def _element(result: Any, position: int) -> Any:
-    """One element of the array that every row holds."""
+    """Return one element of an array value, for all points."""
     if isinstance(result, tuple):
         return tuple(_element(part, position) for part in result)
     return result[:, position]
 
 
 def count(values: Sequence[Any]) -> int | None:
-    """How many points the arguments are for; None when none has a row for each of several.
+    """Return the number of points of the arguments; None if each argument has a single value.
 
     Raises:
         ValueError: Two arguments have different numbers of points.
@@ -212,14 +234,14 @@ def count(values: Sequence[Any]) -> int | None:
 
 
 def leaves(value: Any) -> list[NDArray[Any]]:
-    """The arrays that a value consists of."""
+    """Return the arrays that a value consists of."""
     if isinstance(value, tuple):
         return [leaf for part in value for leaf in leaves(part)]
     return [value]
 
 
 def is_many(value: Any, type: Type) -> bool:
-    """Whether the person passed one value for each point (also when that is a single point)."""
+    """Return whether the caller passed one value per point (even if there is one point only)."""
     match type:
         case Scalar():
             return np.ndim(value) == 1
@@ -244,7 +266,7 @@ def is_many(value: Any, type: Type) -> bool:
 
 
 def single(result: Any, type: Type) -> Any:
-    """The one value of a result for one point, as a plain Python value."""
+    """Return the result for a single point as a plain Python value."""
     match type:
         case Scalar():
             return result[0].item()
@@ -265,11 +287,11 @@ def single(result: Any, type: Type) -> Any:
 
 
 def with_names(result: Any, type: Type) -> Any:
-    """A struct's values with its fields as attributes; anything else as it is."""
+    """Return a struct's values as a named tuple; return any other value unchanged."""
     if not isinstance(type, Struct) or type.is_tuple:
         return result
     names = [name for name, _ in type.fields]
-    # A field called _x is no mistake in scene code, only in a namedtuple: added under its own name.
+    # A field may be called _x in scene code, but not in a namedtuple: add it as a property.
     named = namedtuple(type.name, names, rename=True)  # type: ignore[misc]  # a name made here
     for position, name in enumerate(names):
         if name not in named._fields:
@@ -278,7 +300,7 @@ def with_names(result: Any, type: Type) -> Any:
 
 
 def empty(type: Type, dtype: np.dtype[Any]) -> Any:
-    """The result for no points at all."""
+    """Return the result for zero points."""
     match type:
         case Scalar(kind):
             return np.empty(0, _dtype(kind, dtype))

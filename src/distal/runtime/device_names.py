@@ -1,6 +1,6 @@
-"""What renders: the names of the devices, declared once.
+"""The names of the devices, declared once.
 
-Docstrings, the command line and the executor name these and no others; a test compares them.
+Docstrings, the command line and the executor use exactly these names; a test compares them.
 """
 
 from __future__ import annotations
@@ -13,5 +13,5 @@ GPU: Final = "gpu"
 GPU_FRAGMENT: Final = "gpu-fragment"
 REFERENCE: Final = "reference"
 
-# What ``device=`` and ``--device`` take; an adapter may follow the GPU's: "gpu:nvidia".
+# Valid values of ``device=`` and ``--device``; "gpu" can be followed by an adapter: "gpu:nvidia".
 DEVICE_NAMES: Final = (AUTO, CPU, GPU, GPU_FRAGMENT, REFERENCE)

@@ -1,7 +1,7 @@
-"""Runs scene code for Python: ``f(points)`` and ``image.render()``.
+"""Run scene code for Python: ``f(points)`` and ``image.render()``.
 
-Input: recorded functions, plain values and ``RenderOptions``. Output: arrays and pictures. It joins
-the front end, the devices and the pictures; ``distal.lang`` reaches it through ``runtime_access``.
+Input: recorded functions, plain values and ``RenderOptions``. Output: arrays and pictures. Connects
+the front end, the devices and the pictures; ``distal.lang`` calls it through ``runtime_access``.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Parts:
-    """What is run one after the other: a function, and what encodes its pixels for display."""
+    """A function and, if there is one, the function that encodes its pixels for display."""
 
     parts: tuple[Lowered, ...]
     declared: DeclaredUniforms
@@ -55,9 +55,9 @@ class DrawTarget:
     """The texture that ``PythonExecutor.draw`` draws into.
 
     Attributes:
-        view: The texture's view, on the device of ``distal.devices.adapters``.
-        format: The texture's format.
-        adapter: The adapter that the texture is on; the best when None.
+        view: The view of the texture, on the device of ``distal.devices.adapters``.
+        format: The format of the texture.
+        adapter: The adapter that the texture is on; None for the best one.
     """
 
     view: Any
@@ -66,9 +66,9 @@ class DrawTarget:
 
 
 class PythonExecutor:
-    """Runs scene code for Python; keeps compiled kernels for the life of the process.
+    """Runs scene code for Python; keeps compiled kernels until the process ends.
 
-    A function is lowered again when a constant it captured has changed.
+    A function is lowered again if a constant that it captured has changed.
     """
 
     def __init__(self) -> None:
@@ -78,11 +78,11 @@ class PythonExecutor:
         self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
 
     def parameters(self, function: Func | Composed) -> list[Parameter]:
-        """The parameters that a function and what it calls read, by first use."""
+        """Return the parameters that a function and its callees read, in order of first use."""
         return list(self._parts(function).declared.parameters)
 
     def reads_time(self, image: Image | Composed) -> bool:
-        """Whether the picture depends on the time."""
+        """Return whether the picture depends on the time."""
         target = get_target("numpy")
         for part in self._parts(image).parts:
             entered = run_passes(part.module, target, after="entry")
@@ -91,7 +91,7 @@ class PythonExecutor:
         return False
 
     def render(self, image: Image | Composed, options: RenderOptions) -> Picture:
-        """The picture of an image, a scene, or a view of one.
+        """Render an image, a scene, or a view of a scene.
 
         Raises:
             DeviceError: The device is missing or was lost; never with "auto", which then warns.
@@ -155,15 +155,15 @@ class PythonExecutor:
     def draw(
         self, image: Image | Composed, target: DrawTarget, options: RenderOptions
     ) -> dict[str, Any]:
-        """Draw an image of display values into a texture of wgpu, and wait for nothing.
+        """Draw an image of display values into a texture of wgpu, without waiting for the GPU.
 
         Args:
-            image: What is drawn; its pixels are display values.
+            image: The image to draw; its pixels are display values.
             target: The texture.
-            options: As for ``render``; the size is the texture's, and the target says which device.
+            options: As for ``render``; ``size`` is the size of the texture, ``device`` is ignored.
 
         Returns:
-            What is known of the kernel.
+            The statistics of the kernel.
 
         Raises:
             DeviceError: The device is missing or was lost.
@@ -185,18 +185,19 @@ class PythonExecutor:
         time: float = 0.0,
         device: str = CPU,
     ) -> Any:
-        """The function's value for numbers, vectors, or arrays with one row for each point.
+        """Evaluate the function for numbers, vectors, or arrays with one row per point.
 
         Args:
-            function: What is called.
+            function: The function to call.
+            args: Values by position.
             args: Values by position.
             kwargs: Values by name.
             params: Values of parameters by name; the others have their defaults.
             time: Seconds.
-            device: A device's name, as for ``render``.
+            device: The name of a device, as for ``render``.
 
         Raises:
-            TypeError: No overload takes the values.
+            TypeError: No overload accepts the values.
         """
         seconds = checked_time(time)
         double = any(map(is_double, [*args, *kwargs.values()]))
@@ -213,20 +214,26 @@ class PythonExecutor:
         kernel: Kernel
         if rows:
             kernel = self.kernels.kernel(lowered, device, 64 if double else 32)
-        else:  # machine code for a single value would take longer than the value itself
+        else:  # compiling for a single value would take longer than the reference needs
             kernel = self.kernels.kernel(lowered, REFERENCE, 64)
         result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
 
     def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
-        """The value of an expression of parameters and time."""
+        """Return the value of an expression for values of its parameters and a time in seconds.
+
+        Args:
+            expression: The expression.
+            params: Values of parameters by name; the others have their defaults.
+            time: Seconds.
+        """
         lowered = Lowered.of(_ValueOf(expression), None)
         uniforms = _all_values(DeclaredUniforms([lowered.module]), params, checked_time(time))
         result = self.kernels.kernel(lowered, REFERENCE, 64).evaluate([], uniforms, {})
         return single(result, expression.type)
 
     def _parts(self, function: Func | Composed) -> _Parts:
-        """What is run for a function, remembered while it is the same."""
+        """Return the functions to run for an image or function; cached while they are unchanged."""
         with self._lock:
             first = self._lower(function, None)
             display = function.display if isinstance(function, Composed) else None
@@ -238,7 +245,7 @@ class PythonExecutor:
             return known
 
     def _lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
-        """The lowered function, remembered while what it captured is the same."""
+        """Lower the function; the result is cached while the captured constants are unchanged."""
         if isinstance(function, LangFunction):
             return Lowered.of(function, types)
         with self._lock:
@@ -250,14 +257,14 @@ class PythonExecutor:
 
 
 class _ValueOf(Composed):
-    """An expression as a function of nothing."""
+    """A function without parameters that returns the value of an expression."""
 
     def __init__(self, expression: Expression) -> None:
         self._expression = expression
         self.name, self.signature, self.result = "value", (), expression.type
 
     def compose(self, assembly: Any) -> str:
-        """The function whose result it is."""
+        """Add the function to a program and return its name there."""
         value = assembly.expression(self._expression)
         name: str = assembly.define("value", (), self.result, (Return(value),))
         return name
@@ -266,7 +273,7 @@ class _ValueOf(Composed):
 def _uniforms(
     declared: DeclaredUniforms, options: RenderOptions
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The values of the parameters, and those of the frame and of the numbers."""
+    """Return the values of the parameters, and those of the frame and of the scene's numbers."""
     values = declared.parameter_values(options.params)
     return values, {**declared.number_values(options.settings), **frame_values(options)}
 
@@ -274,6 +281,6 @@ def _uniforms(
 def _all_values(
     declared: DeclaredUniforms, params: Mapping[str, Any], seconds: float
 ) -> dict[str, Any]:
-    """The uniforms of a function that is called from Python."""
+    """Return the uniforms of a function that is called from Python."""
     others = {**declared.numbers, "time": seconds}
     return declared.for_kernel(0, declared.parameter_values(params), others)

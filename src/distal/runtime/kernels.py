@@ -1,7 +1,7 @@
-"""Compiled kernels, kept for the life of the process.
+"""A cache of compiled kernels for the life of the process.
 
-Input: a lowered function, a device's name, a precision. Output: a ``Kernel``, the same one for
-functions that mean the same. Knows nothing of pictures and of values.
+Input: a lowered function, the name of a device, a precision. Output: a ``Kernel``, shared by
+functions with equal digests. Does not depend on pictures or values.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ else:
     gpu = LazyModule("distal.devices.gpu")
     reference = LazyModule("distal.devices.reference")
 
-KERNELS_KEPT: Final = 128  # a scene that is edited for hours leaves no more than these behind
+KERNELS_KEPT: Final = 128  # limits the memory of a session in which a scene is edited for hours
 
-# Compiles a module for a precision in bits and, on a GPU, an adapter.
+# Compiles a module for a precision in bits and, on a GPU, for an adapter.
 Prepare: TypeAlias = Callable[[Module, int, str | None], Kernel]
 DEVICES: Final[Mapping[str, Prepare]] = {
     CPU: lambda module, bits, _: cpu.prepare(module, precision=bits),
@@ -41,9 +41,9 @@ DEVICES: Final[Mapping[str, Prepare]] = {
 
 
 class KernelCache:
-    """The kernels that were used last, by what lowering gave, device and precision.
+    """The kernels that were used last, by digest of the lowered function, device and precision.
 
-    Scenes that differ in their numbers only share a kernel.
+    Scenes that differ only in their numbers share a kernel.
     """
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class KernelCache:
         return len(self._kernels)
 
     def kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
-        """The kernel of a function, compiled now if it is not there.
+        """Return the kernel of a function; compile it if it is not in the cache.
 
         Args:
             lowered: The function.
@@ -74,13 +74,13 @@ class KernelCache:
             kernel = self._kernels.pop(key, None)
             if kernel is None:
                 kernel = DEVICES[name](lowered.module, precision, adapter or None)
-            self._kernels[key] = kernel  # the last used is at the end
+            self._kernels[key] = kernel  # the most recently used kernel is last
             if len(self._kernels) > KERNELS_KEPT:
                 self._kernels.pop(next(iter(self._kernels)), None)
             return kernel
 
 
 def automatic_device() -> str:
-    """What "auto" means on this machine."""
+    """Return the device that "auto" selects on this machine."""
     found = adapters.resolve(AUTO)
     return f"{found.device}:{found.adapter}" if found.adapter else str(found.device)

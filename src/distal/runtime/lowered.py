@@ -1,7 +1,7 @@
-"""Functions as the front end lowers them, identified by what they mean.
+"""Lowered functions with digests by which their kernels are cached.
 
-Input: recorded functions and composed objects. Output: their IR, a digest under
-which a kernel is kept, and whether what they captured has changed since. Runs nothing.
+Input: recorded functions and composed objects. Output: their IR, its digest, and whether the
+constants that they captured have changed since. Runs nothing.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class Lowered:
 
     Attributes:
         module: The IR.
-        digest: Hash of the printed IR without numbers' values: equal for functions that mean the
-            same but for these.
+        digest: Hash of the printed IR without the values of numbers: equal for functions that
+            differ only in these.
         source_hash: Hash of the text of every file that contains its functions.
-        captured: Says whether the function still means the same.
+        captured: Knows whether the captured constants have changed.
     """
 
     module: Module
@@ -49,7 +49,7 @@ class Lowered:
         return Lowered(module, _hash(print_identity(module)), _hash("\0".join(texts)), captured)
 
     def frozen(self, numbers: Mapping[str, Any]) -> Lowered:
-        """The same with these values of a scene's numbers as constants."""
+        """Return a copy with these values of the scene's numbers as constants."""
         uniforms = tuple(
             replace(u, default=numbers[u.name]) if u.origin is Origin.NUMBER else u
             for u in self.module.uniforms
@@ -59,7 +59,7 @@ class Lowered:
 
     @property
     def resources(self) -> dict[str, Any]:
-        """What the author declared of textures and buffers, by name."""
+        """The author's data of textures and buffers, by name."""
         return {r.name: r.source for r in self.module.resources}
 
 

@@ -1,7 +1,7 @@
-"""The value of every uniform of a run: the frame's, the parameters', a scene's numbers.
+"""Compute the value of every uniform: of the frame, the parameters and a scene's numbers.
 
-Input: modules, and what a caller gave: time, parameters by name, settings. Output: checked plain
-numbers by the names that kernels know. Knows no device.
+Input: modules, and the caller's values: time, parameters by name, settings. Output: checked plain
+numbers by the uniforms' names in kernels. Does not depend on a device.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from distal.passes.entry import renamed_parameters
 class DeclaredUniforms:
     """The parameters and numbers of modules that are run together.
 
-    They are collected once: a scene of a thousand numbers is rendered frame by frame.
+    They are collected once, because a scene can have a thousand numbers and many frames.
 
     Attributes:
-        parameters: The parameters that they read, by first use.
-        numbers: The scene's numbers by name, with their own values.
+        parameters: The parameters that the modules read, in order of first use.
+        numbers: The scene's numbers by name, with their default values.
     """
 
     def __init__(self, modules: Sequence[Module]) -> None:
@@ -37,23 +37,23 @@ class DeclaredUniforms:
         self._renamed = [renamed_parameters(module.uniforms) for module in modules]
 
     def parameter_values(self, params: Mapping[str, Any]) -> dict[str, Any]:
-        """The value of each parameter: as given, checked, or its default.
+        """Return the value of each parameter: the given one, checked, or its default.
 
-        Keys are parameters' names or labels.
+        Keys of ``params`` are names or labels of parameters.
 
         Raises:
-            ValueError: A name is unknown, or a value outside its range.
-            TypeError: A value is of another kind.
+            ValueError: There is no such parameter, or a value is out of its range.
+            TypeError: A value has the wrong type.
         """
         defaults: dict[str, Any] = {p.name: p.default for p in self.parameters}
         return {**defaults, **checked_values(self.parameters, params)}
 
     def number_values(self, settings: Mapping[str, Any]) -> dict[str, Any]:
-        """The value of each number of a scene: its own, or that of a setting.
+        """Return the value of each number of the scene: from ``settings``, or its default.
 
         Raises:
-            ValueError: No number is called like a setting, or a value is out of reach.
-            TypeError: A value is of another kind.
+            ValueError: There is no such number, or a value is out of range.
+            TypeError: A value has the wrong type.
         """
         changed = {}
         for name, value in settings.items():
@@ -65,10 +65,15 @@ class DeclaredUniforms:
     def for_kernel(
         self, position: int, parameters: Mapping[str, Any], others: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """Everything by the names that the kernel of one of the modules knows.
+        """Return all values by their names in the kernel of one of the modules.
 
-        ``others`` are the frame's values and the numbers; a parameter that is called like one of
-        the frame's has another name in the kernel (``distal.passes.entry``).
+        A parameter with the same name as a value of the frame has another name in the kernel
+        (``distal.passes.entry``).
+
+        Args:
+            position: The index of the module.
+            parameters: Values of the parameters by name.
+            others: Values of the frame and the scene's numbers by name.
         """
         renamed = self._renamed[position]
         return {**others, **{renamed.get(name, name): v for name, v in parameters.items()}}
@@ -86,7 +91,7 @@ def _checked_number(uniform: UniformDeclaration, value: Any) -> Any:
 
 
 def frame_values(options: RenderOptions) -> dict[str, Any]:
-    """The frame's uniforms."""
+    """Return the values of the frame's uniforms."""
     width, height = options.size
     return {
         "resolution": (float(width), float(height)),

@@ -1,7 +1,7 @@
-"""The prelude: scene code that stands for built-ins a target lacks, or defines them everywhere.
+"""The prelude: built-ins written in scene code, for targets that lack them or for all targets.
 
-Input: nothing. Output: ``@func`` functions that the rows of
-``distal.ir.intrinsics`` name as ``module.function``; the decompose pass calls them. They are
-scene code like an author's, compiled by the same front end, and know no target. A function written
-for scalars is applied component by component by the pass.
+The intrinsics in ``distal.ir.intrinsics`` name these ``@func`` functions as ``module.function``;
+the decompose pass replaces calls of the intrinsics by calls of them. They are compiled by the same
+front end as an author's code and do not depend on a target. The pass applies a function for
+scalars to each component of a vector.
 """

@@ -1,10 +1,11 @@
-"""Sine, cosine and tangent for drivers whose own are rough: no bits, no tricks, any GLSL or WGSL.
+"""Accurate sine, cosine and tangent for drivers whose own functions are inaccurate.
 
-Shading languages let the sine be off by 2^-11, and some drivers make use of it: SwiftShader's is
-off by 1.9e-4 (measured over -10 to 10), which turns a camera far enough to move a checker's edges.
-As ``elementary``, after Cody and Waite; but whole turns are found by ``floor``, since compilers of
-shaders may cancel what is added to round and taken away again, and a turn is folded onto its
-quarter by a magnitude, which costs nothing on a GPU.
+Works on any GLSL or WGSL, without access to a float's bits. Shading languages allow an error of
+2^-11 for the sine, and some drivers use that: SwiftShader's error is 1.9e-4 (measured over -10 to
+10), which turns a camera enough to move the edges of a checker pattern. The method is that of
+``elementary``, after Cody and Waite, with two changes: whole turns are found by ``floor``, because
+shader compilers may cancel a constant that is added and subtracted for rounding; and ``abs`` maps a
+turn to a quarter turn, which costs nothing on a GPU.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ TURN_LOW = 2.0 * PI_LOW
 
 @func
 def held_angle(x: float) -> float:
-    """The angle, up to where floats still tell angles apart."""
+    """Clamp the angle to the range where floats are precise enough to represent angles."""
     return clamp(x, -LARGEST_ANGLE, LARGEST_ANGLE)
 
 
 @func
 def sine(x: float) -> float:
-    """The sine, by the distance to its nearest zero: error below 2.5e-7 for ``abs(x) < 100``."""
-    # Whole turns and a quarter: what is left is the angle from the sine's greatest value.
+    """Return the sine, from the distance to its nearest zero; error < 2.5e-7 up to 100."""
+    # Subtract whole turns and a quarter: ``rest`` is the angle from the sine's maximum.
     held = held_angle(x)
     n = floor(held * TURNS + 0.25) + 0.25
     rest = (held - n * TURN_HIGH) - n * TURN_LOW
@@ -36,7 +37,7 @@ def sine(x: float) -> float:
 
 @func
 def cosine(x: float) -> float:
-    """The cosine; as the sine."""
+    """Return the cosine, computed like the sine."""
     held = held_angle(x)
     n = floor(held * TURNS + 0.5)
     rest = (held - n * TURN_HIGH) - n * TURN_LOW
@@ -45,6 +46,6 @@ def cosine(x: float) -> float:
 
 @func
 def tangent(x: float) -> float:
-    """The sine over the cosine; finite at the poles."""
+    """Return the sine divided by the cosine; finite at the poles."""
     across = cosine(x)
     return sine(x) / select(abs(across) < SMALLEST_COSINE, SMALLEST_COSINE, across)

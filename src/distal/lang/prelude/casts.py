@@ -1,4 +1,4 @@
-"""float to integer with every case settled, where a target leaves some undefined."""
+"""Conversion from float to integer, for targets that leave it undefined for some inputs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LARGEST_UINT = 4294967295
 
 @func
 def float_to_int(x: float) -> int:
-    """Toward zero; beyond the range the nearest int; 0 for NaN, which fails every comparison."""
+    """Round toward zero, clamp to the range of int; 0 for NaN, as NaN fails every comparison."""
     inside = select(x > -INT_END and x < INT_END, x, 0.0)
     least = select(x <= -INT_END, SMALLEST_INT, saturated_int(inside))
     return select(x >= INT_END, LARGEST_INT, least)
@@ -22,6 +22,6 @@ def float_to_int(x: float) -> int:
 
 @func
 def float_to_uint(x: float) -> uint:
-    """Toward zero; beyond the range the nearest uint; 0 for NaN."""
+    """Round toward zero, clamp to the range of uint; 0 for NaN."""
     inside = select(x > 0.0 and x < UINT_END, x, 0.0)
     return select(x >= UINT_END, uint(LARGEST_UINT), saturated_uint(inside))

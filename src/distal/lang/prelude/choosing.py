@@ -1,4 +1,4 @@
-"""Picking and blending values, component by component."""
+"""Selecting, clamping and blending values, component by component."""
 
 from __future__ import annotations
 
@@ -48,51 +48,51 @@ DEGREES_PER_RADIAN = 57.29577951308232
 
 @func
 def smaller_int(a: int, b: int) -> int:
-    """The smaller of two ints, for targets whose ``min`` takes floats only."""
+    """Return the smaller of two ints, for targets whose ``min`` takes floats only."""
     return select(b < a, b, a)
 
 
 @func
 def larger_int(a: int, b: int) -> int:
-    """The larger of two ints, for targets whose ``max`` takes floats only."""
+    """Return the larger of two ints, for targets whose ``max`` takes floats only."""
     return select(a < b, b, a)
 
 
 @func
 def magnitude_int(x: int) -> int:
-    """The magnitude of an int, for targets whose ``abs`` takes floats only."""
+    """Return the magnitude of an int, for targets whose ``abs`` takes floats only."""
     return select(x < 0, -x, x)
 
 
 @func
 def sign_int(x: int) -> int:
-    """-1, 0 or 1, for targets whose ``sign`` takes floats only."""
+    """Return -1, 0 or 1, for targets whose ``sign`` takes floats only."""
     return select(x < 0, -1, select(x > 0, 1, 0))
 
 
 @func
 def clamped(x: Numbers, low: Numbers, high: Numbers) -> Numbers:
-    """``x`` held between ``low`` and ``high``; ``high`` wins when they cross."""
+    """Clamp ``x`` to ``low`` and ``high``; return ``high`` if ``low`` is above it."""
     return min(max(x, low), high)
 
 
 @func
 def mixed(a: Floats, b: Floats, t: Floats) -> Floats:
-    """The value at ``t`` on the line from ``a`` (0) to ``b`` (1)."""
+    """Interpolate linearly from ``a`` (``t`` = 0) to ``b`` (``t`` = 1)."""
     return a + (b - a) * t
 
 
 @func
 def stepped(edge: float, x: float) -> float:
-    """0 below ``edge``, else 1."""
+    """Return 0 below ``edge``, else 1."""
     return select(x < edge, 0.0, 1.0)
 
 
 @func
 def smoothstepped(low: Floats, high: Floats, x: Floats) -> Floats:
-    """Hermite's cubic from 0 at ``low`` to 1 at ``high``, level at both ends.
+    """Return Hermite's cubic from 0 at ``low`` to 1 at ``high``, with slope 0 at both ends.
 
-    A step where both are the same; a ``low`` above ``high`` turns it about.
+    It is a step function if ``low`` equals ``high``, and falls from 1 to 0 if ``low`` is above.
     """
     extent = high - low
     is_step = abs(extent) < SMALLEST
@@ -103,11 +103,11 @@ def smoothstepped(low: Floats, high: Floats, x: Floats) -> Floats:
 
 @func
 def to_radians(x: Floats) -> Floats:
-    """Degrees to radians."""
+    """Convert degrees to radians."""
     return x * RADIANS_PER_DEGREE
 
 
 @func
 def to_degrees(x: Floats) -> Floats:
-    """Radians to degrees."""
+    """Convert radians to degrees."""
     return x * DEGREES_PER_RADIAN

@@ -1,16 +1,17 @@
-"""Elementary functions for the CPU in 32 bits: polynomials without branches, a few ulp exact.
+"""Elementary functions for the CPU in 32 bits: polynomials without branches, accurate to a few ulp.
 
-They decide much of a picture's speed, and results do not depend on a machine's mathematics
-library. ``tools/fit_elementary.py`` made the coefficients (minimax fits of relative error) and
-documents how; arguments are first brought into the fitted interval after W. J. Cody and W. Waite,
-"Software Manual for the Elementary Functions" (1980): a whole multiple of the period is taken away
-in two parts, the first so short that its product with the multiple is exact.
+They take much of the time of a picture, and make results independent of a machine's mathematics
+library. ``tools/fit_elementary.py`` computed the coefficients (minimax fits of relative error) and
+documents the method. Arguments are first reduced to the fitted interval after W. J. Cody and
+W. Waite, "Software Manual for the Elementary Functions" (1980): a whole multiple of the period is
+subtracted in two parts, the first with so few bits that its product with the multiple is exact.
 
-Rounding to whole numbers is done by adding and taking away 1.5 * 2^23, whose last bit counts ones:
-the sum's low bits then hold the whole number, ready for sign and exponent. That, and building
-floats from bits, works in 32 bits only; in 64 bit precision the backend computes these rows itself.
-Errors named below are measured (``tests/parity/test_elementary.py``), in units of the last place.
-Arguments arrive held where the table says so (``distal.ir.limits``).
+Rounding to whole numbers adds and subtracts 1.5 * 2^23, whose last bit has the value 1: the low
+bits of the sum then hold the whole number, and are used for sign and exponent. This, and building
+floats from bits, works in 32 bits only; in 64-bit precision the backend computes these intrinsics
+itself. The errors given below are measured (``tests/parity/test_elementary.py``), in units of the
+last place. Arguments are already clamped where the table of intrinsics requires it
+(``distal.ir.limits``).
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from distal.lang.prelude.hidden import raw_atan2, raw_power
 ROUNDER = 12582912.0  # 1.5 * 2^23
 BITS_OF_HALF_ROOT = 0x3F3504F3  # of sqrt(1/2): where the fraction's interval starts
 
-# Fitted: 2.606103e-06, with which a fused multiplication and addition reach 1 + 2^-23.
+# The fit is 2.606103e-06; with that, a fused multiply-add can return 1 + 2^-23.
 SINE_9 = 2.6058e-06
 INVERSE_PI = 0.3183098861837907
 PI = 3.141592653589793
@@ -50,7 +51,7 @@ LOG_2_LOW = -0.00021219444005469057
 
 @func
 def sine_near_zero(r: float) -> float:
-    """The sine for ``abs(r) <= pi / 2``."""
+    """Return the sine for ``abs(r) <= pi / 2``."""
     s = r * r
     p = -0.00019809778 + s * SINE_9
     p = 0.008333069 + s * p
@@ -60,33 +61,33 @@ def sine_near_zero(r: float) -> float:
 
 @func
 def sine(x: float) -> float:
-    """The sine: error below 1e-7 for ``abs(x) < 100``, 1e-6 for ``abs(x) < 10000``.
+    """Return the sine: error below 1e-7 for ``abs(x) < 100``, 1e-6 for ``abs(x) < 10000``.
 
-    Up to 2^22 the error is below the distance between neighbouring floats, and what is left of the
-    angle below 2.1: the polynomial stays within -1 and 1.
+    Up to 2^22 the error is below the distance between neighbouring floats, and the reduced angle is
+    below 2.1, so that the polynomial stays within -1 and 1.
     """
     shifted = x * INVERSE_PI + ROUNDER
     n = shifted - ROUNDER
     r = (x - n * PI_HIGH) - n * PI_LOW
-    # An odd multiple of pi turns the sign.
+    # An odd multiple of pi changes the sign.
     sign = float_bits_to_int(shifted) << 31
     return int_bits_to_float(float_bits_to_int(sine_near_zero(r)) ^ sign)
 
 
 @func
 def cosine(x: float) -> float:
-    """The cosine, by the distance to its nearest zero; errors as the sine's."""
+    """Return the cosine, from the distance to its nearest zero; errors like those of the sine."""
     shifted = (x * INVERSE_PI + 0.5) + ROUNDER
     n = (shifted - ROUNDER) - 0.5
     r = (x - n * PI_HIGH) - n * PI_LOW
-    # cos(n pi + r) for n half below the whole m is (-1)^m sin(r).
+    # With n = m - 1/2 and m a whole number, cos(n pi + r) is (-1)^m sin(r).
     sign = float_bits_to_int(shifted) << 31
     return int_bits_to_float(float_bits_to_int(sine_near_zero(r)) ^ sign)
 
 
 @func
 def tangent(x: float) -> float:
-    """The tangent: of the rest to the nearest multiple of pi / 2, or minus its inverse."""
+    """Return the tangent: tan(r), or -1 / tan(r), with r = x minus a multiple of pi / 2."""
     shifted = x * (2.0 * INVERSE_PI) + ROUNDER
     n = shifted - ROUNDER
     r = (x - n * HALF_PI_HIGH) - n * HALF_PI_LOW
@@ -103,13 +104,13 @@ def tangent(x: float) -> float:
 
 @func
 def scaled_by_power_of_2(x: float, shifted: float) -> float:
-    """``x`` times 2 to the whole number in the low bits of ``shifted``, from -127 (0) to 128."""
+    """Return ``x`` * 2^n; n, in the low bits of ``shifted``, is from -127 (result 0) to 128."""
     return x * int_bits_to_float((float_bits_to_int(shifted) + 127) << 23)
 
 
 @func
 def exponential(x: float) -> float:
-    """e^x up to x = 88, relative error below 1e-7; 0 below x = -87.6."""
+    """Return e^x up to x = 88, relative error below 1e-7; 0 below x = -87.6."""
     held = max(x, -88.0)
     shifted = held * LOG2_E + ROUNDER
     n = shifted - ROUNDER
@@ -123,7 +124,7 @@ def exponential(x: float) -> float:
 
 @func
 def exponential_base_2(x: float) -> float:
-    """2^x up to x = 127, relative error below 2e-7; 0 below x = -126.5."""
+    """Return 2^x up to x = 127, relative error below 2e-7; 0 below x = -126.5."""
     held = max(x, -127.0)
     shifted = held + ROUNDER
     f = held - (shifted - ROUNDER)
@@ -137,7 +138,7 @@ def exponential_base_2(x: float) -> float:
 
 @func
 def logarithm_near_one(f: float) -> float:
-    """log(1 + f) for 1 + f from sqrt(1/2) to sqrt(2)."""
+    """Return log(1 + f) for 1 + f from sqrt(1/2) to sqrt(2)."""
     p = -0.14267501 + f * 0.08701546
     p = 0.14914362 + f * p
     p = -0.16577569 + f * p
@@ -150,19 +151,19 @@ def logarithm_near_one(f: float) -> float:
 
 @func
 def exponent_of(x: float) -> int:
-    """The exponent that leaves a fraction from sqrt(1/2) to sqrt(2)."""
+    """Return the exponent for which the fraction is from sqrt(1/2) to sqrt(2)."""
     return (float_bits_to_int(x) - BITS_OF_HALF_ROOT) >> 23
 
 
 @func
 def fraction_of(x: float, exponent: int) -> float:
-    """``x`` over 2 to that exponent."""
+    """Return ``x`` divided by 2^exponent."""
     return int_bits_to_float(float_bits_to_int(x) - (exponent << 23))
 
 
 @func
 def logarithm(x: float) -> float:
-    """The natural logarithm of a positive normal number."""
+    """Return the natural logarithm of a positive normal number."""
     exponent = exponent_of(x)
     n = float(exponent)
     r = logarithm_near_one(fraction_of(x, exponent) - 1.0)
@@ -171,7 +172,7 @@ def logarithm(x: float) -> float:
 
 @func
 def logarithm_base_2(x: float) -> float:
-    """The logarithm to base 2 of a positive normal number."""
+    """Return the logarithm to base 2 of a positive normal number."""
     exponent = exponent_of(x)
     r = logarithm_near_one(fraction_of(x, exponent) - 1.0)
     return float(exponent) + r * LOG2_E
@@ -179,14 +180,14 @@ def logarithm_base_2(x: float) -> float:
 
 @func
 def power(x: float, y: float) -> float:
-    """2^(y log2(x)); for x at or below 0 (or too small to tell): 1, 0 or the largest, as y says."""
-    # A logarithm far below every real one gives those three by itself; 0 times it is 0.
+    """Return 2^(y log2(x)); for x <= 0 (or tiny): 1, 0 or the largest value, depending on y."""
+    # -1e30, far below every real logarithm, yields these three values; 0 times it is 0.
     return exp2(y * select(x < SMALLEST, -1e30, logarithm_base_2(x)))
 
 
 @func
 def guarded_power(x: float, y: float) -> float:
-    """The target's power where it is defined; 0 ** 0 = 1, and 0 to a negative power is large."""
+    """Return the target's power where it is defined; 0 ** 0 = 1; 0 ** negative is LARGEST_POWER."""
     at_zero = select(y == 0.0, 1.0, select(y < 0.0, LARGEST_POWER, 0.0))
     power = min(raw_power(max(x, SMALLEST), y), LARGEST_POWER)
     return select(x < SMALLEST, at_zero, power)
@@ -194,7 +195,7 @@ def guarded_power(x: float, y: float) -> float:
 
 @func
 def arc_sine_near_zero(t: float, s: float) -> float:
-    """The arc sine of ``t`` up to 1/2, ``s`` its square."""
+    """Return the arc sine of ``t`` up to 1/2; ``s`` is the square of ``t``."""
     p = 0.024184741 + s * 0.0421584
     p = 0.045469154 + s * p
     p = 0.074953094 + s * p
@@ -204,7 +205,7 @@ def arc_sine_near_zero(t: float, s: float) -> float:
 
 @func
 def arc_sine(x: float) -> float:
-    """The arc sine; above 1/2 by asin(a) = pi/2 - 2 asin(sqrt((1 - a) / 2))."""
+    """Return the arc sine; above 1/2 by asin(a) = pi/2 - 2 asin(sqrt((1 - a) / 2))."""
     a = abs(x)
     large = a > 0.5
     s = select(large, 0.5 - 0.5 * a, a * a)
@@ -215,7 +216,7 @@ def arc_sine(x: float) -> float:
 
 @func
 def arc_cosine(x: float) -> float:
-    """The arc cosine, exact near 1 and -1 too."""
+    """Return the arc cosine, accurate also near 1 and -1."""
     a = abs(x)
     large = a > 0.5
     s = select(large, 0.5 - 0.5 * a, a * a)
@@ -227,7 +228,7 @@ def arc_cosine(x: float) -> float:
 
 @func
 def arc_tangent_up_to_one(t: float) -> float:
-    """The arc tangent for ``t`` from 0 to 1."""
+    """Return the arc tangent for ``t`` from 0 to 1."""
     s = t * t
     p = -0.01636355 + s * 0.0029195533
     p = 0.043205086 + s * p
@@ -241,7 +242,7 @@ def arc_tangent_up_to_one(t: float) -> float:
 
 @func
 def arc_tangent(x: float) -> float:
-    """The arc tangent; above 1 by the inverse."""
+    """Return the arc tangent; above 1 by atan(a) = pi/2 - atan(1/a)."""
     a = abs(x)
     large = a > 1.0
     q = arc_tangent_up_to_one(select(large, 1.0 / a, a))
@@ -251,10 +252,10 @@ def arc_tangent(x: float) -> float:
 
 @func
 def arc_tangent_2(y: float, x: float) -> float:
-    """The angle of (x, y); 0 for (0, 0)."""
+    """Return the angle of (x, y); 0 for (0, 0)."""
     across = abs(x)
     up = abs(y)
-    # The smallest normal float stands in for 0, so that (0, 0) has the angle of (1, 0).
+    # The smallest normal float replaces 0, so that (0, 0) has the angle of (1, 0).
     q = arc_tangent_up_to_one(min(across, up) / max(max(across, up), SMALLEST))
     first = select(up > across, HALF_PI - q, q)
     r = select(x < 0.0, PI - first, first)
@@ -263,14 +264,14 @@ def arc_tangent_2(y: float, x: float) -> float:
 
 @func
 def guarded_arc_tangent_2(y: float, x: float) -> float:
-    """The target's angle where it is defined: away from (0, 0), and from x = 0 alone."""
+    """Return the target's atan2 where it is defined; 0 for (0, 0)."""
     across = select(x == 0.0 and y == 0.0, 1.0, x)
     return raw_atan2(y, across)
 
 
 @func
 def hyperbolic_sine(x: float) -> float:
-    """(e^x - e^-x) / 2, and a polynomial below 1, where the difference would lose digits."""
+    """Return (e^x - e^-x) / 2; a polynomial below 1, where the difference would lose digits."""
     s = x * x
     p = 0.0083302725 + s * 0.00020373041
     p = 0.16666716 + s * p
@@ -280,14 +281,14 @@ def hyperbolic_sine(x: float) -> float:
 
 @func
 def hyperbolic_cosine(x: float) -> float:
-    """(e^x + e^-x) / 2."""
+    """Return (e^x + e^-x) / 2."""
     e = exp(x)
     return 0.5 * e + 0.5 / e
 
 
 @func
 def hyperbolic_tangent(x: float) -> float:
-    """1 - 2 / (e^2x + 1), and a polynomial below 5/8, where the difference would lose digits."""
+    """Return 1 - 2 / (e^2x + 1); a polynomial below 5/8, where the difference would lose digits."""
     s = x * x
     p = 0.020628167 + s * -0.0056922967
     p = -0.053736515 + s * p

@@ -1,14 +1,14 @@
 """Integer hashes: the same random numbers on every target.
 
-Source: Mark Jarzynski and Marc Olano, "Hash Functions for GPU Rendering", Journal of Computer
-Graphics Techniques 9(3), 2020; the scalar one after Melissa O'Neill's PCG (2014).
+Source: Mark Jarzynski and Marc Olano, "Hash Functions for GPU Rendering", Journal of
+Computer Graphics Techniques 9(3), 2020; the scalar hash after Melissa O'Neill's PCG (2014).
 """
 
 from __future__ import annotations
 
 from distal.lang import func, uint, uvec2, uvec3, uvec4
 
-# The multiplier and increment of Numerical Recipes' generator, which the vector hashes start with.
+# The multiplier and increment of the generator in "Numerical Recipes"; vector hashes use them.
 MULTIPLIER = 1664525
 INCREMENT = 1013904223
 
@@ -23,7 +23,7 @@ def pcg(v: uint) -> uint:
 
 @pcg.overload
 def pcg2d(v: uvec2) -> uvec2:
-    """Two numbers hashed into two."""
+    """Hash two numbers to two."""
     h = v * uint(MULTIPLIER) + uint(INCREMENT)
     h.x += h.y * uint(MULTIPLIER)
     h.y += h.x * uint(MULTIPLIER)
@@ -36,7 +36,7 @@ def pcg2d(v: uvec2) -> uvec2:
 
 @pcg.overload
 def pcg3d(v: uvec3) -> uvec3:
-    """Three numbers hashed into three."""
+    """Hash three numbers to three."""
     h = v * uint(MULTIPLIER) + uint(INCREMENT)
     h.x += h.y * h.z
     h.y += h.z * h.x
@@ -50,7 +50,7 @@ def pcg3d(v: uvec3) -> uvec3:
 
 @pcg.overload
 def pcg4d(v: uvec4) -> uvec4:
-    """Four numbers hashed into four."""
+    """Hash four numbers to four."""
     h = v * uint(MULTIPLIER) + uint(INCREMENT)
     h.x += h.y * h.w
     h.y += h.z * h.x
@@ -66,5 +66,5 @@ def pcg4d(v: uvec4) -> uvec4:
 
 @func
 def unit_float(v: uint) -> float:
-    """The hash of ``v`` as a float in [0, 1): its upper 24 bits, all exact in a float."""
+    """Return the hash of ``v`` as a float in [0, 1): its upper 24 bits, exact in a float."""
     return float(pcg(v) >> uint(8)) * 5.9604644775390625e-08

@@ -1,7 +1,7 @@
-"""The hidden rows of the table under the names that prelude code calls them by.
+"""The hidden intrinsics, under the names that prelude code uses.
 
-They are what a target computes by itself with a narrower meaning than the language promises; the
-prelude functions around them make up the difference. Authors never see them.
+A target implements them with narrower guarantees than the language gives; the prelude functions
+that call them handle the other cases. Authors cannot use them.
 """
 
 from __future__ import annotations

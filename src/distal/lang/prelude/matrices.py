@@ -1,4 +1,4 @@
-"""Matrices by their columns, for targets that lack the operation."""
+"""Matrix operations, computed from columns, for targets that lack them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from distal.lang import abs, cross, dot, func, mat2, mat3, mat4, select, transpo
 
 @func
 def transposed(m: mat2) -> mat2:
-    """Rows become columns."""
+    """Return the transposed matrix."""
     return mat2(vec2(m[0].x, m[1].x), vec2(m[0].y, m[1].y))
 
 
 @transposed.overload
 def transposed_3(m: mat3) -> mat3:
-    """Rows become columns."""
+    """Return the transposed matrix."""
     return mat3(
         vec3(m[0].x, m[1].x, m[2].x),
         vec3(m[0].y, m[1].y, m[2].y),
@@ -24,7 +24,7 @@ def transposed_3(m: mat3) -> mat3:
 
 @transposed.overload
 def transposed_4(m: mat4) -> mat4:
-    """Rows become columns."""
+    """Return the transposed matrix."""
     return mat4(
         vec4(m[0].x, m[1].x, m[2].x, m[3].x),
         vec4(m[0].y, m[1].y, m[2].y, m[3].y),
@@ -35,26 +35,26 @@ def transposed_4(m: mat4) -> mat4:
 
 @func
 def outer_product(a: vec2, b: vec2) -> mat2:
-    """Column i is ``a * b[i]``."""
+    """Return the matrix whose column i is ``a * b[i]``."""
     return mat2(a * b.x, a * b.y)
 
 
 @outer_product.overload
 def outer_product_3(a: vec3, b: vec3) -> mat3:
-    """Column i is ``a * b[i]``."""
+    """Return the matrix whose column i is ``a * b[i]``."""
     return mat3(a * b.x, a * b.y, a * b.z)
 
 
 @outer_product.overload
 def outer_product_4(a: vec4, b: vec4) -> mat4:
-    """Column i is ``a * b[i]``."""
+    """Return the matrix whose column i is ``a * b[i]``."""
     return mat4(a * b.x, a * b.y, a * b.z, a * b.w)
 
 
 @func
 def cofactors_4(a: vec4, b: vec4, c: vec4) -> vec4:
-    """The vector whose inner product with d is the determinant of the columns (d, a, b, c)."""
-    # 2 x 2 minors of the last two columns, named by their rows.
+    """Return the vector whose dot product with d is the determinant of columns (d, a, b, c)."""
+    # 2 x 2 minors of the last two columns; the names are their rows.
     xy = b.x * c.y - b.y * c.x
     xz = b.x * c.z - b.z * c.x
     xw = b.x * c.w - b.w * c.x
@@ -71,39 +71,39 @@ def cofactors_4(a: vec4, b: vec4, c: vec4) -> vec4:
 
 @func
 def determinant_of(m: mat2) -> float:
-    """The signed area of the columns' parallelogram."""
+    """Return the signed area of the parallelogram of the columns."""
     return m[0].x * m[1].y - m[1].x * m[0].y
 
 
 @determinant_of.overload
 def determinant_of_3(m: mat3) -> float:
-    """The signed volume of the columns' parallelepiped."""
+    """Return the signed volume of the parallelepiped of the columns."""
     return dot(m[0], cross(m[1], m[2]))
 
 
 @determinant_of.overload
 def determinant_of_4(m: mat4) -> float:
-    """Laplace's expansion along the first column."""
+    """Return the determinant by Laplace expansion along the first column."""
     return dot(m[0], cofactors_4(m[1], m[2], m[3]))
 
 
 @func
 def inverse_factor(determinant: float) -> float:
-    """1 / determinant; 0 for that of a singular matrix, which makes its inverse 0."""
+    """Return 1 / determinant; 0 for a singular matrix, so that its inverse is 0."""
     is_singular = abs(determinant) < SMALLEST_DETERMINANT
     return select(is_singular, 0.0, 1.0 / select(is_singular, 1.0, determinant))
 
 
 @func
 def inverse_of(m: mat2) -> mat2:
-    """The adjugate over the determinant (Cramer's rule)."""
+    """Return the adjugate divided by the determinant (Cramer's rule)."""
     adjugate = mat2(vec2(m[1].y, -m[0].y), vec2(-m[1].x, m[0].x))
     return adjugate * inverse_factor(determinant_of(m))
 
 
 @inverse_of.overload
 def inverse_of_3(m: mat3) -> mat3:
-    """The adjugate over the determinant: its rows are the cross products of the columns."""
+    """Return the adjugate, whose rows are cross products of columns, divided by the determinant."""
     first = cross(m[1], m[2])
     rows = mat3(first, cross(m[2], m[0]), cross(m[0], m[1]))
     return transpose(rows) * inverse_factor(dot(m[0], first))
@@ -111,7 +111,7 @@ def inverse_of_3(m: mat3) -> mat3:
 
 @inverse_of.overload
 def inverse_of_4(m: mat4) -> mat4:
-    """The adjugate over the determinant; moving a column to the front may turn the sign."""
+    """Return the adjugate divided by the determinant; two rows get a sign for the column order."""
     first = cofactors_4(m[1], m[2], m[3])
     rows = mat4(
         first,

@@ -1,4 +1,4 @@
-"""Rounding a float and what is left of it."""
+"""Rounding of floats, and remainders."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from distal.lang import Floats, abs, floor, func, select
 
 @func
 def round_half_even(x: float) -> float:
-    """The nearest whole number, halves to the even one; for targets without ``roundEven``."""
+    """Round to the nearest whole number, halves to even; for targets without ``roundEven``."""
     below = floor(x)
     over = x - below
     odd = below - 2.0 * floor(below * 0.5) > 0.5
@@ -17,20 +17,20 @@ def round_half_even(x: float) -> float:
 
 @func
 def truncate(x: float) -> float:
-    """The whole part, toward zero."""
+    """Return the whole part, rounded toward zero."""
     whole = floor(abs(x))
     return select(x < 0.0, -whole, whole)
 
 
 @func
 def fraction(x: Floats) -> Floats:
-    """What floor leaves: from 0 to 1, which tiny negative x are rounded to."""
+    """Return ``x - floor(x)``: from 0 to 1; exactly 1 occurs for tiny negative x, by rounding."""
     return x - floor(x)
 
 
 @func
 def remainder(a: Floats, b: Floats) -> Floats:
-    """A floored remainder, with the sign of ``b``: Python's ``%`` of floats; 0 for ``b`` = 0."""
+    """Return the floored remainder with the sign of ``b``, as Python's ``%``; 0 if b is 0."""
     is_zero = abs(b) < SMALLEST_DIVISOR
     divisor = select(is_zero, 1.0, b)
     return select(is_zero, 0.0, a - divisor * floor(a / divisor))

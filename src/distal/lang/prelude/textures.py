@@ -1,7 +1,7 @@
-"""Filtering textures from single texels, for targets that do not do it themselves.
+"""Texture filtering computed from single texels, for targets without it.
 
-Texel (0, 0) is the lower left one of a picture; texel centres lie at half coordinates. ``wrap``
-is 0 to repeat and 1 to clamp, as the texture was declared. There are no mip maps.
+Texel (0, 0) is the lower left texel of a picture; texel centres are at half coordinates. ``wrap``
+is 0 to repeat and 1 to clamp, as declared for the texture. There are no mip maps.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from distal.lang import (
 
 @func
 def wrapped(index: int, count: int, wrap: int) -> int:
-    """A texel's index along one axis; reading a texel clamps, so that is left to it."""
+    """Return a texel index along one axis; not clamped, because reading a texel clamps it."""
     return select(wrap == 0, index % count, index)
 
 
 @func
 def sample_2d(texture: Texture2D, coord: vec2, wrap: int) -> vec4:
-    """Bilinear: the four texels around ``coord``, weighted by the overlap."""
+    """Interpolate bilinearly between the four texels around ``coord``."""
     extent = size(texture)
     place = coord * vec2(extent) - 0.5
     corner = floor(place)
@@ -51,7 +51,7 @@ def sample_2d(texture: Texture2D, coord: vec2, wrap: int) -> vec4:
 
 @func
 def sample_3d(texture: Texture3D, coord: vec3, wrap: int) -> vec4:
-    """Trilinear: the eight texels around ``coord``, weighted by the overlap."""
+    """Interpolate trilinearly between the eight texels around ``coord``."""
     extent = size(texture)
     place = coord * vec3(extent) - 0.5
     corner = floor(place)
@@ -76,7 +76,7 @@ def sample_3d(texture: Texture3D, coord: vec3, wrap: int) -> vec4:
 
 @struct
 class CubePlace:
-    """A point of a cube map: the face, and where on it, (-1, -1) to (1, 1)."""
+    """A point of a cube map: the face, and its position there from (-1, -1) to (1, 1)."""
 
     face: int
     along: vec2
@@ -84,10 +84,10 @@ class CubePlace:
 
 @func
 def cube_place(direction: vec3) -> CubePlace:
-    """The place that a direction points at.
+    """Return the point of a cube map that a direction points at.
 
-    Faces and their axes as in OpenGL's cube maps (OpenGL ES 3.0 specification, table 3.21): +x,
-    -x, +y, -y, +z, -z.
+    Faces and their axes are those of OpenGL's cube maps (OpenGL ES 3.0 specification, table 3.21):
+    +x, -x, +y, -y, +z, -z.
     """
     reach = abs(direction)
     face = 0
@@ -108,7 +108,7 @@ def cube_place(direction: vec3) -> CubePlace:
 
 @func
 def cube_direction(place: CubePlace) -> vec3:
-    """The direction of a place; beyond a face's edge it points at the neighbouring face."""
+    """Return the direction of a point; beyond the edge of a face it points at the next face."""
     side = select(place.face % 2 == 0, 1.0, -1.0)
     if place.face < 2:
         return vec3(side, -place.along.y, -side * place.along.x)
@@ -119,7 +119,7 @@ def cube_direction(place: CubePlace) -> vec3:
 
 @func
 def cube_texel(texture: TextureCube, face: int, index: ivec2, extent: int) -> vec4:
-    """A texel of a face, or of the face that lies beyond its edge."""
+    """Return a texel of a face; an index beyond the edge reads the neighbouring face."""
     place = CubePlace(face, (2.0 * vec2(index) + 1.0) / float(extent) - 1.0)
     if max(abs(place.along.x), abs(place.along.y)) > 1.0:
         place = cube_place(cube_direction(place))
@@ -129,9 +129,9 @@ def cube_texel(texture: TextureCube, face: int, index: ivec2, extent: int) -> ve
 
 @func
 def sample_cube(texture: TextureCube, direction: vec3, wrap: int) -> vec4:
-    """Bilinear, across the edges of faces ("seamless", OpenGL ES 3.0 specification, 3.8.9).
+    """Interpolate bilinearly, also across edges of faces (OpenGL ES 3.0 specification, 3.8.9).
 
-    At a corner of the cube three texels meet; the fourth is their mean.
+    At a corner of the cube only three texels meet; the fourth is their mean.
     """
     extent = size(texture).x
     place = cube_place(direction)

@@ -7,25 +7,25 @@ from distal.lang import Vectors, dot, func, inversesqrt, length, max, select, sq
 
 @func
 def distance_between(a: Vectors, b: Vectors) -> float:
-    """Euclidean distance."""
+    """Return the Euclidean distance."""
     return length(a - b)
 
 
 @func
 def normalized(v: Vectors) -> Vectors:
-    """The vector of length 1 with the same direction."""
+    """Return the vector of length 1 with the same direction."""
     return v * inversesqrt(dot(v, v))
 
 
 @func
 def reflected(incident: Vectors, normal: Vectors) -> Vectors:
-    """``incident`` mirrored at the plane with the unit ``normal``."""
+    """Reflect ``incident`` at the plane with the unit vector ``normal``."""
     return incident - normal * (2.0 * dot(normal, incident))
 
 
 @func
 def refracted(incident: Vectors, normal: Vectors, eta: float) -> Vectors:
-    """Snell's law in vector form; the zero vector where all light is reflected."""
+    """Refract by Snell's law in vector form; the zero vector for total internal reflection."""
     cosine = dot(normal, incident)
     discriminant = 1.0 - eta * eta * (1.0 - cosine * cosine)
     bent = incident * eta - normal * (eta * cosine + sqrt(max(discriminant, 0.0)))
@@ -34,5 +34,5 @@ def refracted(incident: Vectors, normal: Vectors, eta: float) -> Vectors:
 
 @func
 def facing_forward(n: Vectors, incident: Vectors, reference: Vectors) -> Vectors:
-    """``n``, turned to point against ``incident``, by the sign of dot(reference, incident)."""
+    """Return ``n`` or ``-n``: ``n`` if dot(reference, incident) is negative."""
     return select(dot(incident, reference) < 0.0, n, -n)
