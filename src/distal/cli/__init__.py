@@ -1,8 +1,8 @@
-"""The ``distal`` command: parses, calls, reports.
+"""The ``distal`` command: parses the command line, calls the library, reports errors.
 
-Input: words of a command line. Output: files, text on stdout (data only),
-messages on stderr, and an exit code: 0, 1 for a mistake in a scene or a file, 2 for a wrong
-command line, 130 after ctrl-C. Knows no algorithm.
+Input: the arguments of the command line. Output: files, text on stdout (data only), messages on
+stderr, and an exit code: 0, 1 for a mistake in a scene or a file, 2 for a wrong command line, 130
+after ctrl-C. Contains no algorithms.
 """
 
 from __future__ import annotations
@@ -14,24 +14,24 @@ import warnings
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
-    """A warning in one line: where in our code it arose is of no use to who gave the command."""
+    """Print a warning in one line, without the place in distal's code, which users do not need."""
     from distal.cli.messages import say
 
     say(f"warning: {message}")
 
 
 def _open_what_is_closed() -> None:
-    """Stand-ins for standard streams that were closed: a scene's file must not become one."""
+    """Reopen closed standard streams, so that no opened file gets their descriptor."""
     for number in range(3):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free: this one
+            os.open(os.devnull, os.O_RDWR)  # uses the lowest free number, which is this one
     if sys.stdout is None:
         sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115 (for good)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # a file's name may be no text
+            stream.reconfigure(errors="backslashreplace")  # file names may not be valid text
     if sys.stderr is None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (for good)
 
@@ -40,7 +40,7 @@ def main() -> None:
     """Run the command line of this process."""
     try:
         _open_what_is_closed()
-        # Inside the try, and nothing heavy before it, so that ctrl-C is never a traceback.
+        # Nothing slow runs before the try, so that ctrl-C never prints a traceback.
         from distal.cli.application import application
 
         warnings.showwarning = _show_warning
@@ -50,7 +50,7 @@ def main() -> None:
     except Exception as error:
         from distal.packages import explained
 
-        found = explained(error)  # typer, rich or what they need
+        found = explained(error)  # typer, rich or one of their dependencies
         if found is None:
             raise
         print(f"error: {found}", file=sys.stderr)

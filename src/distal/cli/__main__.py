@@ -1,4 +1,4 @@
-"""``python -m distal.cli``: the command where no script is installed."""
+"""``python -m distal.cli``: runs the command where the script is not installed."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The commands, each a few lines around the library's own functions.
+"""The application with all commands; the short commands are defined here.
 
-Input: parsed words. Output: the work of ``distal.load``, ``distal.compile`` and
-``render``. Heavy packages are imported only by the command that needs them: ``compile`` runs
-without numpy, llvmlite and wgpu. ``render``, ``check`` and ``probe`` have modules of their own.
+Input: parsed arguments. Output: the results of ``distal.load``, ``distal.compile`` and ``render``.
+Heavy packages are imported only by the commands that need them: ``compile`` runs without numpy,
+llvmlite and wgpu. ``render``, ``check``, ``probe`` and others have modules of their own.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from distal.images.atomic_files import check_destination
 from distal.loading import EXAMPLE_PREFIX
 from distal.version import __version__
 
-# Importing them is what adds their commands.
+# Importing these modules adds their commands.
 COMMANDS = (render, check, probe, export, video, rerender, view)
-# As --help lists them: what a newcomer needs first.
+# The order in --help: first the commands that new users need.
 _ORDER = (
     *("render", "view", "video", "export", "rerender"),
     *("check", "probe", "compile", "examples", "doctor"),
@@ -35,7 +35,7 @@ _ORDER = (
 __all__ = ["COMMANDS", "TargetName", "application"]
 
 
-# What ``distal compile`` writes.
+# The targets of ``distal compile``.
 _MEMBERS = {name.upper().replace("-", "_"): name for name in COMPILE_TARGETS}
 TargetName = StrEnum("TargetName", _MEMBERS)  # type: ignore[misc]  # members are not literals
 
@@ -126,7 +126,7 @@ application.registered_commands.sort(key=_place)
 
 
 def _file_name(scene: str) -> str:
-    """The name of the author's file, of FILE[:NAME] or example:NAME."""
+    """Return the name of the author's file, from FILE[:NAME] or example:NAME."""
     path = read_scene(scene)[0]
     if path.startswith(EXAMPLE_PREFIX):
         return f"{path.removeprefix(EXAMPLE_PREFIX)}.py"

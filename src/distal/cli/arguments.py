@@ -1,7 +1,7 @@
-"""What the words of the command line mean.
+"""Parse texts of the command line.
 
-Input: texts. Output: plain values, or ``UsageError`` with one clear message. Knows
-neither typer nor how anything is rendered.
+Input: texts. Output: plain values, or ``UsageError`` with one clear message. Does not depend on
+typer or on rendering.
 """
 
 from __future__ import annotations
@@ -18,11 +18,15 @@ from distal.loading import EXAMPLE_PREFIX, split_source
 
 
 class UsageError(Exception):
-    """A command line that does not say what to do."""
+    """The command line is invalid."""
 
 
 def read_scene(text: str) -> tuple[str, str | None]:
-    """FILE[:NAME] or example:NAME[:NAME] as the path that ``distal.load`` takes, and the name."""
+    """Split FILE[:NAME] or example:NAME[:NAME] into the path for ``distal.load`` and the name.
+
+    Raises:
+        UsageError: There is no file or example in it.
+    """
     path, name = split_source(text)
     if path in ("", EXAMPLE_PREFIX):
         raise UsageError(f"'{text}' names no {'example' if path else 'file'}")
@@ -30,7 +34,11 @@ def read_scene(text: str) -> tuple[str, str | None]:
 
 
 def read_size(text: str, largest: int) -> tuple[int, int]:
-    """Width and height from WIDTHxHEIGHT, each from 1 to ``largest``."""
+    """Parse WIDTHxHEIGHT; each side is from 1 to ``largest`` pixels.
+
+    Raises:
+        UsageError: The text is not a size, or a side is out of range.
+    """
     match = re.fullmatch(r"\s*([0-9]{1,9})\s*[xX]\s*([0-9]{1,9})\s*", text)
     if match is None:
         raise UsageError(f"a size is WIDTHxHEIGHT in pixels, like 640x480, not '{text:.40}'")
@@ -41,7 +49,11 @@ def read_size(text: str, largest: int) -> tuple[int, int]:
 
 
 def read_time(text: str) -> float:
-    """Finite seconds."""
+    """Parse a finite number of seconds.
+
+    Raises:
+        UsageError: The text is not a number, or is out of range.
+    """
     try:
         time = float(text)
     except ValueError:
@@ -56,7 +68,11 @@ def read_time(text: str) -> float:
 
 
 def read_plane(text: str) -> tuple[tuple[float, float, float], float]:
-    """A plane's normal and its distance from the origin, from AXIS=OFFSET."""
+    """Parse AXIS=OFFSET; return the plane's normal and its distance from the origin.
+
+    Raises:
+        UsageError: The text is not of this form.
+    """
     axis, equals, offset = (part.strip() for part in text.partition("="))
     normals = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     try:
@@ -69,7 +85,11 @@ def read_plane(text: str) -> tuple[tuple[float, float, float], float]:
 
 
 def read_pixel(text: str, size: tuple[int, int]) -> tuple[int, int]:
-    """Column and row of a pixel from X,Y; both count from 0, rows from the top."""
+    """Parse X,Y; return column and row of a pixel, counted from 0 at the upper left.
+
+    Raises:
+        UsageError: The text is not of this form, or the pixel is outside the picture.
+    """
     match = re.fullmatch(r"\s*([0-9]{1,9})\s*,\s*([0-9]{1,9})\s*", text)
     if match is None:
         raise UsageError(f"a pixel is X,Y from the upper left, like 320,240, not '{text:.40}'")
@@ -81,11 +101,11 @@ def read_pixel(text: str, size: tuple[int, int]) -> tuple[int, int]:
 
 
 def read_assignments(texts: Iterable[str], parameters: Sequence[Parameter]) -> dict[str, Value]:
-    """The values of ``name=value`` texts, each checked against its parameter.
+    """Parse ``name=value`` texts; each value is checked by its parameter.
 
     Raises:
-        UsageError: With the list of parameters, since the author of a command line may not know
-            the scene.
+        UsageError: A text is invalid. The message lists the parameters, because the user may not
+            know the scene.
     """
     known = {parameter.name: parameter for parameter in parameters}
     values: dict[str, Value] = {}

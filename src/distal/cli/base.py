@@ -1,7 +1,7 @@
-"""What the commands share: the application they belong to, arguments, error reports.
+"""Code shared by the commands: the application, common arguments, error reports.
 
-Input: words of the command line. Output: a loaded scene; an author's mistake as its
-message and exit code. Knows no command.
+Input: arguments of the command line. Output: a loaded scene; for an author's mistake, its message
+and exit code. Does not depend on any command.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ application = typer.Typer(
     help="Scenes and shaders written as Python: render them, compile them.",
     no_args_is_help=True,
     add_completion=False,
-    # A traceback is an error of distal; it is shown as Python shows it, with nothing hidden.
+    # A traceback is a bug in distal, so it is shown complete, as Python prints it.
     pretty_exceptions_enable=False,
 )
 
 
 class Device(StrEnum):
-    """What renders."""
+    """The device to render on."""
 
     AUTO = device_names.AUTO
     CPU = device_names.CPU
@@ -54,16 +54,16 @@ class Device(StrEnum):
     REFERENCE = device_names.REFERENCE
 
 
-# Commands that load no NumPy.
+# Commands that do not import NumPy.
 _WITHOUT_ARRAYS: Final = ("compile", "doctor", "examples")
-_NUMPY_BYTES: Final = 96 * 2**20  # measured: 85 with one thread of OpenBLAS, 41 for each more
+_NUMPY_BYTES: Final = 96 * 2**20  # measured: 85 with one OpenBLAS thread, 41 per further thread
 
 
 def prepare_for_arrays() -> None:
-    """Refuse a limit under which NumPy's BLAS would end the process with words of its own.
+    """Refuse a memory limit under which NumPy's BLAS would end the process with its own message.
 
     Raises:
-        MemoryError: What is left is too little.
+        MemoryError: The memory that is left is not enough.
     """
     if is_limited() and "numpy" not in sys.modules:
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # distal multiplies no large matrices
@@ -71,7 +71,7 @@ def prepare_for_arrays() -> None:
 
 
 def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
-    """Turn an author's mistake into its message and exit code; other errors stay as they are."""
+    """Wrap a command: print an author's mistake and set the exit code; other errors propagate."""
 
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
@@ -132,10 +132,10 @@ AdapterOption = Annotated[
 
 
 def chosen_device(device: Device, adapter: str | None) -> str:
-    """The device's name, as ``render`` takes it; where "auto" ends on the CPU, says why.
+    """Return the name of the device for ``render``; if "auto" selects the CPU, print why.
 
     Raises:
-        UsageError: The options do not go together.
+        UsageError: The options are not valid together, or the processor is not supported.
         DeviceError: There is no such adapter.
     """
     if device in (Device.CPU, Device.REFERENCE):
@@ -165,14 +165,14 @@ def answer(text: str) -> None:
     """
     try:
         print(text, flush=True)
-    except BrokenPipeError:  # whoever reads has seen enough
+    except BrokenPipeError:  # the reader closed the pipe
         raise
     except OSError as error:
         raise SaveError(f"cannot write to stdout: {error.strerror or error}") from None
 
 
 def load(scene: str) -> SceneCode:
-    """The object that FILE[:NAME] means."""
+    """Load the object FILE[:NAME]."""
     path, name = read_scene(scene)
     return distal.load(path, name)
 
@@ -180,11 +180,11 @@ def load(scene: str) -> SceneCode:
 def load_picture(
     scene: str, assignments: Sequence[str] | None
 ) -> tuple[Image | Scene | BaseShape, dict[str, Value]]:
-    """What FILE[:NAME] means, and the values of its parameters that --set gives.
+    """Load the picture FILE[:NAME] and parse the parameter values given by --set.
 
     Raises:
-        LoadError: There is none, or it is no picture.
-        UsageError: A parameter's value is wrong.
+        LoadError: There is no such object, or it is not a picture.
+        UsageError: The value of a parameter is invalid.
     """
     from distal.scene.viewing.viewable import checked_picture
 
@@ -193,7 +193,7 @@ def load_picture(
 
 
 def check_view(seen: Viewable, view: str) -> None:
-    """Refuse a view that does not exist."""
+    """Raise ``UsageError`` if there is no such view."""
     try:
         seen.image(view)
     except ValueError as error:
@@ -201,7 +201,7 @@ def check_view(seen: Viewable, view: str) -> None:
 
 
 def check_processor() -> None:
-    """Refuse a processor that cannot run what the CPU device makes."""
+    """Raise ``UsageError`` if the processor cannot run the code of the CPU device."""
     from distal.devices.features import chosen_level
 
     try:

@@ -1,7 +1,7 @@
-"""``distal check``: what a scene's shapes guarantee, where slope comes from, and what is violated.
+"""``distal check``: show what shapes guarantee, where slope comes from, and what is violated.
 
-Input: parsed words. Output: a tree of shapes and findings with their lines, or the
-same as JSON for editors; exit code 1 when a guarantee is violated.
+Input: parsed arguments. Output: a tree of shapes and findings with their lines, or the same as JSON
+for editors; exit code 1 if a guarantee is violated.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from distal.diagnostics import LoadError
 if TYPE_CHECKING:
     from distal.scene.checks.validation import CheckFinding, ShapeReport, ValidationReport
 
-# A tree is shown so deep; what is below a shared shape only once.
+# The tree is cut at this depth; a shared shape is expanded only once.
 DEEPEST = 12
 MOST_ROWS = 60
 
@@ -68,12 +68,12 @@ def check(
 
 
 def report_lines(checkup: ValidationReport) -> Iterator[str]:
-    """The report as text."""
+    """Yield the lines of the report."""
     yield from _tree(checkup)
     yield ""
     yield from _slope(checkup)
     yield from _measurements(checkup)
-    # Where the slope of the whole comes from was said above.
+    # The source of the slope of the whole is already shown above.
     said = [f for f in checkup.findings if f.code != "slope-raised" or not _is_in(f, checkup)]
     for finding, more in _gathered(said):
         yield ""
@@ -94,7 +94,7 @@ def _tree(checkup: ValidationReport) -> Iterator[str]:
 
 
 def _rows(checkup: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
-    """A row for each shape: name, slope, claims, box and line."""
+    """Yield a table row for each shape: name, slope, guarantees, box and line."""
     seen: set[int] = set()
     stack = [(0, 0)]
     while stack:
@@ -139,7 +139,7 @@ def _line(row: ShapeReport) -> str:
 
 
 def _slope(checkup: ValidationReport) -> Iterator[str]:
-    """Where the slope of the whole comes from: which shape raised it, by how much, and where."""
+    """Yield the sources of the whole's slope: which shapes raised it, by how much, and where."""
     from distal.scene.checks.validation import described
 
     whole = checkup.shapes[0]
@@ -175,7 +175,7 @@ def _is_in(finding: CheckFinding, checkup: ValidationReport) -> bool:
 
 
 def _gathered(findings: Sequence[CheckFinding]) -> list[tuple[CheckFinding, int]]:
-    """Findings, each with how many more of its kind come from the same line."""
+    """Group findings of the same kind and line; return each with the number of further ones."""
     groups: dict[Any, list[CheckFinding]] = {}
     for finding in findings:
         key = (finding.severity, finding.code, finding.diagnostic.span)

@@ -1,7 +1,7 @@
-"""What this machine can do for distal, and how to install what is missing.
+"""Examine what this machine can do for distal, and how to install what is missing.
 
-Input: the machine. Output: a list of ``MachineFact``. Nothing here fails: an error becomes a fact
-too. Knows nothing of how they are shown.
+Input: the machine. Output: a list of ``MachineFact``. Nothing here raises: an error becomes a fact.
+Does not depend on how the facts are shown.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class State(Enum):
     """Whether something works."""
 
     READY = "ready"
-    OPTIONAL = "optional"  # missing, and only some things need it
+    OPTIONAL = "optional"  # missing, and only some features need it
     BROKEN = "broken"  # missing or faulty, and rendering needs it
 
 
@@ -39,10 +39,10 @@ class MachineFact:
     """One fact about the machine.
 
     Attributes:
-        area: The heading that it is listed under.
-        subject: What was looked at.
+        area: The heading under which it is listed.
+        subject: The thing that was examined.
         state: Whether it works.
-        detail: What was found.
+        detail: The result.
         remedy: The command or setting that repairs it, or "".
     """
 
@@ -77,7 +77,7 @@ for module in sys.argv[1:]:
 
 
 def examine() -> list[MachineFact]:
-    """Look at everything; takes a few seconds where a GPU driver has to start."""
+    """Examine everything; takes a few seconds if a GPU driver has to start."""
     return [
         finding
         for look in (_python, _cpu, _cache, _packages, _gpu, _system)
@@ -88,7 +88,7 @@ def examine() -> list[MachineFact]:
 def _safely(look: Callable[[], Iterator[MachineFact]]) -> Iterator[MachineFact]:
     try:
         yield from look()
-    except Exception as error:  # whatever a broken installation throws is the finding
+    except Exception as error:  # any error of a broken installation becomes a fact
         area = look.__name__.strip("_")
         yield MachineFact(area, "examination", State.BROKEN, f"{type(error).__name__}: {error}")
 
@@ -118,7 +118,7 @@ def _cpu() -> Iterator[MachineFact]:
     possible = ", ".join(level.name for level in host_levels())
     try:
         level = chosen_level()
-    except ValueError as error:  # an old processor, or a level that it does not have
+    except ValueError as error:  # an old processor, or a level that the processor lacks
         remedy = f"unset {FEATURES_VARIABLE}" if FEATURES_VARIABLE in os.environ else ""
         yield MachineFact("cpu", "feature level", State.BROKEN, str(error), remedy)
     else:
@@ -136,7 +136,7 @@ def _cpu_model() -> str:
 
 
 def _cache() -> Iterator[MachineFact]:
-    """The kernel cache: tried by storing something, since many things can forbid it."""
+    """Test the kernel cache by storing something, because many things can prevent that."""
     from distal.devices.cache import FOLDER_VARIABLE, Cache, default_folder
 
     folder = default_folder()
@@ -163,7 +163,7 @@ def _cache() -> Iterator[MachineFact]:
 
 
 def _packages() -> Iterator[MachineFact]:
-    """What is installed, and what of that cannot be loaded."""
+    """Yield what is installed, and which of it cannot be loaded."""
     faults = _faults([package.imported_as for package in PACKAGES])
     for package in PACKAGES:
         fault = faults.get(package.imported_as, "")
@@ -184,7 +184,7 @@ def _packages() -> Iterator[MachineFact]:
 
 
 def _faults(modules: list[str]) -> dict[str, str]:
-    """What importing each module says; each may end the process that tries it."""
+    """Return the error of importing each module, in a subprocess, which an import may end."""
     path = os.pathsep.join(filter(None, sys.path))
     found: dict[str, str] = {}
     while len(found) < len(modules):
@@ -215,7 +215,7 @@ def _text(output: str | bytes | None) -> str:
 
 
 def _gpu() -> Iterator[MachineFact]:
-    """The adapters with their numbers for ``--adapter``, and what "auto" makes of them."""
+    """Yield the adapters with their numbers for ``--adapter``, and the choice of "auto"."""
     if importlib.util.find_spec("wgpu") is None:
         return
     from distal.devices import adapters

@@ -1,4 +1,4 @@
-"""Prints the report of ``distal doctor``.
+"""Print the report of ``distal doctor``.
 
 Input: facts about the machine. Output: a table on stdout.
 """
@@ -23,14 +23,14 @@ _MARKS: Final = {
 
 
 def show(facts: Iterable[MachineFact]) -> None:
-    """Print one table: a heading for each area, a remedy under what is missing."""
+    """Print one table: a heading for each area, and a remedy below each missing thing."""
     table = Table(box=None, show_header=False, pad_edge=False)
     for _ in range(3):
         table.add_column(overflow="fold")
     for area, rows in groupby(facts, key=lambda fact: fact.area):
         table.add_row("", Text(area, "bold"), "")
         for row in rows:
-            # Text, not markup: "distal[gpu]" is no style.
+            # Text, not markup: the brackets of "distal[gpu]" must not be read as a style.
             table.add_row(_MARKS[row.state], Text(row.subject), Text(row.detail))
             if row.remedy:
                 table.add_row("", "", Text(f"fix: {row.remedy}", "cyan"))

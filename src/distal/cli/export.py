@@ -1,7 +1,7 @@
-"""``distal export``: a scene as a page, or as a shader for another place.
+"""``distal export``: write a scene as a page or as a shader.
 
-Input: parsed words. Output: a file, and a line that says what it is made of. Only
-which options go together is decided here.
+Input: parsed arguments. Output: a file, and a line that describes it. This module only checks which
+options are valid together.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def export(
         bool, typer.Option("--no-poster", help="A page without a still picture.")
     ] = False,
 ) -> None:
-    """Write a scene as a page that shows it by itself, or as a shader for another place."""
+    """Write a scene as a page that shows it, or as a shader for another program."""
     flags: dict[str, tuple[str, Any]] = {
         "--size": ("size", _size(size)),
         "--duration": ("duration", _duration(duration)),
@@ -100,7 +100,7 @@ def export(
         "--no-poster": ("poster", False if no_poster else None),
     }
     given = {flag: entry for flag, entry in flags.items() if entry[1] is not None}
-    # The names of ``flags`` are fields of PageOptions, which checks the values.
+    # The names in ``flags`` are fields of PageOptions, which checks the values.
     options: ExportOptions = {"view": view or "color", "time": read_time(at)}
     options.update(cast("ExportOptions", dict(given.values())))
     _check(scene, output, target, {flag: name for flag, (name, _) in given.items()})
@@ -108,13 +108,16 @@ def export(
 
 
 def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str]) -> None:
-    """Refuse what does not go together, before any work is spent on it.
+    """Check that the options are valid together, before time is spent on the work.
 
     Args:
         scene: The scene's file.
         output: The file to write.
-        target: What is written, where the suffix does not say it.
-        given: The flags of pages that were given, and the names of their options.
+        target: The output format if the suffix does not determine it.
+        given: The flags for pages that were given, and the names of their options.
+
+    Raises:
+        UsageError: They are not.
     """
     from distal.export.registry import FORMATS, kind_of
     from distal.images.atomic_files import check_destination

@@ -1,7 +1,7 @@
-"""What the commands say to a person, on stderr; stdout stays for data.
+"""Print messages for the user on stderr; stdout is only for data.
 
-Input: messages, which may quote names and texts that others wrote. Output: lines
-without control characters. Loads nothing heavy.
+Input: messages, which may quote names and texts from other sources. Output: lines without control
+characters. Imports nothing heavy.
 """
 
 from __future__ import annotations
@@ -12,5 +12,5 @@ from distal.diagnostics import printable_lines
 
 
 def say(message: object) -> None:
-    """A message to the person."""
+    """Print a message for the user."""
     print(printable_lines(message), file=sys.stderr)

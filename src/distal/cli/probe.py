@@ -1,7 +1,7 @@
-"""``distal probe``: what one pixel of a scene saw.
+"""``distal probe``: show what one pixel of a scene sees.
 
-Input: parsed words. Output: ray, march, shape and material in words, with the
-author's line; or the same as JSON for editors.
+Input: parsed arguments. Output: ray, march, shape and material in words, with the author's line; or
+the same as JSON for editors.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def probe(
         bool, typer.Option("--json", help="Plain values for editors, on one line.")
     ] = False,
 ) -> None:
-    """Show what one pixel saw: its ray, the march, the shape and its material."""
+    """Show what one pixel sees: its ray, the march, the shape and its material."""
     from distal.lang.functions import Func
     from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.scene.checks.probe import probe as look
@@ -71,7 +71,7 @@ def probe(
 
 
 def report_lines(found: Probed, seconds: float) -> Iterator[str]:
-    """What a pixel saw, as text."""
+    """Yield a text report of what a pixel sees."""
     (x, y), (width, height), seen = found.pixel, found.size, found.seen
     yield f"pixel     {x},{y} of {width}x{height} at {seconds:g} s"
     yield f"ray       from {_point(seen.origin)} along {_point(seen.direction)}"

@@ -1,7 +1,7 @@
-"""``distal render``: a picture of a scene, a shape or an image, in color or as another view.
+"""``distal render``: render a scene, a shape or an image, in color or as another view.
 
-Input: parsed words. Output: a picture's file, and how long it took. Only
-which options go together is decided here.
+Input: parsed arguments. Output: a picture file, and the time that it took. This module only checks
+which options are valid together.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ViewArguments:
-    """How a scene is to be seen; None where nothing was said."""
+    """The options of a view; None for options that were not given."""
 
     view: str
     plane: tuple[tuple[float, float, float], float] | None
@@ -50,7 +50,7 @@ class ViewArguments:
     tone_map: str | None
 
     def refuse_for_image(self, name: str, layers: tuple[str, ...]) -> None:
-        """Refuse what only a scene has."""
+        """Raise ``UsageError`` if an option for scenes was given for an ``@image``."""
         given = {
             "--slice": self.plane,
             "--samples": self.samples,
@@ -172,7 +172,19 @@ def read_view(
     exposure: float | None,
     tone_map: str | None,
 ) -> ViewArguments:
-    """The options of how a scene is seen, with those that exclude each other refused."""
+    """Parse and check the options of a view.
+
+    Args:
+        view: The name of the view; None for the default.
+        plane: AXIS=OFFSET for the view "slice".
+        samples: Rays per pixel.
+        transparent: Whether alpha is 0 where a ray hits nothing.
+        exposure: Factor on all light.
+        tone_map: The name of a tone map.
+
+    Raises:
+        UsageError: The options are not valid together, or a value is invalid.
+    """
     from distal.render.tonemap import NAMES
 
     if plane is not None and view not in (None, "slice"):
@@ -187,7 +199,17 @@ def read_view(
 
 
 def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
-    """The layers that a file of a suffix is to hold: those that were given, else all."""
+    """Return the layers to store in a file: the given ones, or the default for the suffix.
+
+    Args:
+        given: Names separated by commas, or "none"; None for the default.
+        suffix: The suffix of the file.
+        seen: The object to render.
+        view: The name of the view.
+
+    Raises:
+        UsageError: The file cannot hold layers, or there is no such layer.
+    """
     from distal.scene.lowering.layers import NAMES, checked_layers
 
     if given is None:
@@ -204,10 +226,15 @@ def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tu
 
 
 def check_shown(seen: Viewable, arguments: ViewArguments, layers: tuple[str, ...]) -> None:
-    """Refuse what cannot be seen that way.
+    """Check that the object supports the view and its options.
+
+    Args:
+        seen: The object to render.
+        arguments: The options of the view.
+        layers: The layers to store.
 
     Raises:
-        UsageError: It is an ``@image``, which has no such option, or there is no such view.
+        UsageError: It is an ``@image``, which lacks such an option, or there is no such view.
     """
     if seen.scene is None:
         arguments.refuse_for_image(seen.name, layers)
@@ -217,7 +244,14 @@ def check_shown(seen: Viewable, arguments: ViewArguments, layers: tuple[str, ...
 def rendered_picture(
     seen: Viewable, arguments: ViewArguments, layers: tuple[str, ...], options: RenderOptions
 ) -> Picture:
-    """The picture as it is to be seen."""
+    """Render the picture with the given options of the view.
+
+    Args:
+        seen: The object to render.
+        arguments: The options of the view.
+        layers: The layers to store.
+        options: The other options.
+    """
     from distal.scene.rendering import render_scene
     from distal.scene.view_options import ViewOptions
 

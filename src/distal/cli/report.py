@@ -1,6 +1,6 @@
-"""What a person sees on stderr while a command works and when it ends.
+"""Show progress bars and timings on stderr.
 
-Input: progress and figures. Output: a bar, and one line. Knows no scene.
+Input: progress and statistics. Output: a bar, and one line of text. Does not depend on scenes.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from rich.progress import (
 
 from distal.cli.messages import say
 
-PATIENCE_S: Final = 1.0  # a bar that flashes by is noise
+PATIENCE_S: Final = 1.0  # shorter work shows no bar
 
 
 class _Bar:
-    """A bar on stderr, drawn only on a terminal and only when the work takes long."""
+    """A progress bar on stderr, shown only on a terminal and only for long work."""
 
     def __init__(self, *columns: ProgressColumn) -> None:
         self._begin = time.monotonic()
@@ -47,7 +47,7 @@ class _Bar:
         self._stop()
 
     def _shown(self) -> Progress | None:
-        """The bar, begun now if it was not yet; None while there is to be none."""
+        """Return the bar, started if necessary; None if it must not be shown (yet)."""
         if not self._wanted or time.monotonic() - self._begin < PATIENCE_S:
             return None
         if self._progress is None:
@@ -62,9 +62,9 @@ class _Bar:
 
 
 class ProgressBar(_Bar):
-    """The bar of a picture.
+    """The progress bar of a picture.
 
-    Called with the share that is done.
+    Call it with the finished fraction.
     """
 
     def __init__(self) -> None:
@@ -72,7 +72,7 @@ class ProgressBar(_Bar):
         self._task: TaskID | None = None
 
     def __call__(self, done: float) -> None:
-        """Show how far the work is."""
+        """Show the finished fraction of the work."""
         bar = self._shown()
         if bar is None:
             return
@@ -82,9 +82,9 @@ class ProgressBar(_Bar):
 
 
 class FrameBar(_Bar):
-    """The bar of a sequence: frames, frames a second, time that remains.
+    """The progress bar of a sequence: frames, frames per second, remaining time.
 
-    Called with frames done, all frames, and what is being done with them.
+    Call it with the number of finished frames, the number of all frames, and the kind of work.
     """
 
     def __init__(self) -> None:
@@ -98,13 +98,19 @@ class FrameBar(_Bar):
         self._tasks: dict[str, tuple[TaskID, float, int]] = {}
 
     def __call__(self, done: int, total: int, what: str) -> None:
-        """Show how far the work is."""
+        """Show the number of finished frames.
+
+        Args:
+            done: Number of finished frames.
+            total: Number of all frames.
+            what: The kind of work: "rendering" or "encoding".
+        """
         bar = self._shown()
         if bar is None:
             return
         now = time.monotonic()
         if what not in self._tasks:
-            # Frames that an earlier run made cost no time: the pace is that of this run.
+            # Frames of an earlier run took no time now, so the rate counts only this run's frames.
             task = bar.add_task(what, total=total, completed=done, pace="")
             self._tasks[what] = (task, now, done)
         task, begin, first = self._tasks[what]
@@ -112,14 +118,14 @@ class FrameBar(_Bar):
         bar.update(task, completed=done, total=total, pace=pace)
 
     def say(self, line: str) -> None:
-        """A line that stays, above the bar."""
+        """Print a line above the bar that stays when the bar is updated."""
         self._stop()
         self._tasks = {}
         say(line)
 
 
 def stages(figures: Mapping[str, Any]) -> str:
-    """Words like "load 0.01 s, compile 0.30 s", for the figures that are seconds."""
+    """Return a text like "load 0.01 s, compile 0.30 s" of all entries that are times."""
     return ", ".join(
         f"{name.removesuffix('_s')} {seconds:.3f} s"
         for name, seconds in figures.items()

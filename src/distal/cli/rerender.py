@@ -1,6 +1,6 @@
-"""``distal rerender``: a saved picture, rendered again from what its file says.
+"""``distal rerender``: render a saved picture again, using the metadata in its file.
 
-Input: parsed words. Output: a picture's file, or how the two differ.
+Input: parsed arguments. Output: a picture file, or the difference of the two pictures.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def rerender(
     adapter: AdapterOption = None,
     threads: ThreadsOption = None,
 ) -> None:
-    """Render a saved picture again, from what its file says about itself."""
+    """Render a saved picture again, using the metadata in its file."""
     from distal.cli.messages import say
     from distal.cli.report import ProgressBar
     from distal.images.metadata import ReadError
@@ -119,7 +119,7 @@ def rerender(
 
 
 def _kept_bits(kind: str, bits: int, target: Path) -> int | None:
-    """The recorded bits, where the new file is of the same kind."""
+    """Return the recorded bits if the new file has the same format, else None."""
     return bits if target.suffix.lower() == f".{kind}" else None
 
 

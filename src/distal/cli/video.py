@@ -1,7 +1,7 @@
-"""``distal video``: a scene that moves, as a video or as numbered pictures.
+"""``distal video``: render an animated scene as a video or as numbered pictures.
 
-Input: parsed words. Output: the file, and one line about it. When work was
-interrupted, the line says how to continue.
+Input: parsed arguments. Output: the file, and one line about it. After an interruption, the line
+says how to continue.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def video(
         bool, typer.Option("--fresh", help="Render all frames again after an interrupted run.")
     ] = False,
 ) -> None:
-    """Render a scene that moves to a video or to numbered pictures."""
+    """Render an animated scene to a video or to numbered pictures."""
     from distal.cli.messages import say
     from distal.cli.report import FrameBar
     from distal.lang.render_options import LARGEST_SIDE_PX

@@ -1,6 +1,6 @@
-"""``distal view``: a native window that shows a scene live and follows its file.
+"""``distal view``: show a scene live in a native window and reload it when its file changes.
 
-Input: parsed words. Output: a window, and an exit code when it is closed.
+Input: parsed arguments. Output: a window, and an exit code when it is closed.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def view(
     ] = 1.0,
     paused: Annotated[bool, typer.Option("--paused", help="Begin with the time paused.")] = False,
 ) -> None:
-    """Show a scene in a window, and again whenever its file is saved. H shows the keys."""
+    """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
     from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display
@@ -67,8 +67,8 @@ def view(
     except ValueError as error:
         raise UsageError(str(error)) from None
     if not ended:
-        # A compiler is still at work in a thread that cannot be stopped: Python, shutting down
-        # under it, could crash.
+        # A compiler is still running in a thread that cannot be stopped; it could crash during a
+        # normal shutdown of Python.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)

@@ -1,1 +1,1 @@
-"""What leaves the machine: a page that shows a scene by itself, and shaders for other places."""
+"""Export: pages that show a scene without distal, and shaders for other programs."""

@@ -1,4 +1,4 @@
-"""What an export says of the file that it wrote."""
+"""``Exported``: the description of a file that an export wrote."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """What was written.
+    """The result of an export.
 
     Attributes:
         path: The file.
-        parts: What it is made of: bytes by name.
-        beside: Further files.
-        omitted: Views that the place cannot show, and why.
+        parts: The sizes of its parts in bytes, by name.
+        beside: Further files that were written.
+        omitted: Views that the target cannot show, and why.
     """
 
     path: Path
@@ -24,7 +24,7 @@ class Exported:
     omitted: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        """One line: the file, its size, and that of its parts in kB."""
+        """Return one line: the file, its size, and the sizes of its parts in kB."""
         total = self.path.stat().st_size
         parts = ", ".join(f"{name} {_kilobytes(size)}" for name, size in self.parts.items() if size)
         beside = f", and {', '.join(p.name for p in self.beside)}" if self.beside else ""

@@ -1,7 +1,7 @@
-"""A scene as a page: one file that needs no network, or a fragment for other pages.
+"""Write a scene as a page: one file that needs no network, or a fragment for other pages.
 
-Input: something to be seen. Output: HTML with the player, the programs and a poster
-inside. The page's own policy forbids it every request. Knows nothing of how the player draws.
+Input: a viewable object. Output: HTML that contains the player, the programs and a poster. The
+page's content security policy forbids every request. Does not depend on how the player draws.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__
 
 PLAYER: Final = Path(__file__).with_name("player.js")
-# A page that takes all rules from its elements would show the text of its scripts too.
+# In a page that resets all styles, the text of scripts would be visible without this.
 _UNSEEN: Final = ' style="display:none"'
-# A module, so that names stay its own. What it inserts must not be seen either.
+# A module, to keep its names out of the page. The script that it inserts must be invisible too.
 _UNPACK: Final = (
     'try{const bytes=Uint8Array.from(atob("%s"),(c)=>c.charCodeAt(0));'
     'const plain=new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));'
@@ -41,7 +41,7 @@ _UNPACK: Final = (
 TOO_OLD: Final = "This picture moves and turns in a browser of 2024 or younger."
 NO_SCRIPT: Final = "This picture moves and turns where JavaScript is allowed."
 
-# The colors are those of the player's own sheet, so that nothing flashes before it is ready.
+# The same colors as in the player's style sheet, so that nothing flashes before it is ready.
 _STYLE: Final = (
     ":root{color-scheme:dark light}"
     "html,body{height:100%;margin:0}"
@@ -60,9 +60,20 @@ _ICON: Final = (
 
 
 def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
-    """Write the page."""
+    """Write the page.
+
+    Args:
+        seen: The object to show.
+        path: The file to write.
+        options: The options of the page.
+
+    Raises:
+        CompileError: WebGL 2 cannot show the first view.
+        ValueError: There is no such view or parameter, or a value is out of range.
+        SaveError: The file cannot be written.
+    """
     for name in (options.view, *(options.views or ())):
-        seen.image(name)  # there must be such a view
+        seen.image(name)  # raises if there is no such view
     player = player_script()
     omitted: dict[str, str] = {}
     content = payload(
@@ -84,11 +95,11 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
 
 @dataclass(frozen=True, slots=True)
 class PlayerScript:
-    """The player as a page carries it.
+    """The player's script in a page.
 
     Attributes:
-        text: The script that unpacks it and lets it run.
-        hashes: Of all that runs then, as a policy names them.
+        text: The script that unpacks and starts the player.
+        hashes: Hashes of all scripts that run, for the content security policy.
     """
 
     text: str
@@ -97,9 +108,9 @@ class PlayerScript:
 
 @cache
 def player_script() -> PlayerScript:
-    """The player, packed: a page of 60 kB becomes one of 36.
+    """Return the compressed player: a page of 60 kB becomes one of 36 kB.
 
-    What unpacks it is younger than nothing else that the player needs of a browser.
+    Decompression needs no newer browser than the player itself.
     """
     player = PLAYER.read_text(encoding="utf-8").strip()
     press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
@@ -114,9 +125,9 @@ def _hash(text: str) -> str:
 
 
 def json_text(value: Any) -> str:
-    """JSON for a script element: no text in it can end the element."""
+    """Return JSON for a script element, escaped so that no text in it can end the element."""
     text = json.dumps(value, separators=(",", ":"), ensure_ascii=False)
-    # A lone surrogate is no text in UTF-8; as an escape it survives.
+    # A lone surrogate cannot be encoded in UTF-8; an escape can.
     text = "".join(c if not "\ud800" <= c <= "\udfff" else f"\\u{ord(c):04x}" for c in text)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
@@ -126,7 +137,7 @@ def _escaped(text: str) -> str:
 
 
 def _stage(content: Mapping[str, Any], poster: bytes) -> str:
-    """The element that the player takes over, and its data."""
+    """Return the element in which the player draws, and its data."""
     width, height = content["size"]
     description = _escaped(content["description"])
     shown = ""
@@ -140,7 +151,7 @@ def _stage(content: Mapping[str, Any], poster: bytes) -> str:
     own = unseen = ""
     if content["embed"]:
         unseen = _UNSEEN
-        # As wide as its container; as high too, where that has a height of its own.
+        # As wide as its container, and as high if the container has a height.
         place = (
             f"display:block;position:relative;width:100%;height:100%;aspect-ratio:{width}/{height}"
         )

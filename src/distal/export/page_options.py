@@ -1,6 +1,7 @@
-"""What an exported file shows: each option with its default, its check and its meaning.
+"""The options of an exported file: their defaults and checks.
 
-Input: values from a caller. Output: ``TextOptions`` or ``PageOptions``. Knows no file format.
+Input: values from a caller. Output: ``TextOptions`` or ``PageOptions``. Does not depend on file
+formats.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ class TextOptions:
     """The options of every exported file.
 
     Attributes:
-        params: Values of parameters at the start, by name.
-        time: Seconds at the start.
-        view: What is shown first.
+        params: Initial values of parameters by name.
+        time: Initial time in seconds.
+        view: The initial view.
     """
 
     params: Mapping[str, Any] | None = None
@@ -29,17 +30,17 @@ class TextOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageOptions(TextOptions):
-    """The options of a page, checked when they are made.
+    """The options of a page, checked on construction.
 
     Attributes:
         size: Width and height of the author's picture in pixels.
-        duration: Seconds after which the time starts again; None: never.
-        title: What a person reads; None for the scene's own name.
-        embed: Whether it is the bare canvas: a fragment for other pages.
-        panel: Whether there are controls beside it; never where it is embedded.
-        poster: Whether a still picture is shown before the first frame.
-        views: What can be looked at; None for all.
-        device: What renders the poster, as for ``Scene.render``.
+        duration: Seconds after which the time starts again; None for never.
+        title: The title of the page; None for the scene's name.
+        embed: Whether to write only the canvas, as a fragment for other pages.
+        panel: Whether to show controls; an embedded page has none.
+        poster: Whether to show a still picture before the first frame.
+        views: The views to include; None for all.
+        device: The device that renders the poster, as for ``Scene.render``.
 
     Raises:
         TypeError: A value has the wrong type.

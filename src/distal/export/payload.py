@@ -1,7 +1,7 @@
-"""The data of a page's player: a scene's programs, parameters and data, as plain JSON values.
+"""Build the data for a page's player: programs, parameters and resources as plain JSON values.
 
-Input: something that can be looked at. Output: the payload, a dictionary that JSON
-can carry. Knows no HTML. The player's side of the format is ``web/src/payload.ts``.
+Input: a viewable object. Output: the payload, a dictionary for JSON. Does not depend on HTML. The
+player's side of the format is ``web/src/payload.ts``.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from distal.version import __version__
 PACKAGE: Final = PurePath(distal.__file__).parent
 FORMAT: Final = 1
 TARGET: Final = "glsl-es300"
-# Names that say nothing about a scene: its file's says more.
+# Generic names; the name of the scene's file is more informative.
 _PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main"})
 _COMMENT: Final = re.compile(r"\s*//.*$")
 
@@ -47,12 +47,12 @@ def payload(
     options: PageOptions,
     omit: Callable[[str, CompileError], None] | None = None,
 ) -> dict[str, Any]:
-    """Everything that the player needs.
+    """Return all data that the player needs.
 
     Args:
-        seen: What is shown.
+        seen: The object to show.
         options: The options of the page.
-        omit: Called with each view that WebGL 2 cannot show.
+        omit: Called with the name and error of each view that WebGL 2 cannot show.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
@@ -100,14 +100,14 @@ def payload(
 
 
 def name_of(seen: Viewable) -> str:
-    """What a person calls it: its own name, or that of its file where it has a plain one."""
+    """Return the name for people: the object's own, or that of its file if its own is generic."""
     if seen.name in _PLAIN_NAMES and seen.file is not None:
         return seen.file.stem.replace("_", " ")
     return seen.name.replace("_", " ")
 
 
 def description_of(seen: Viewable, name: str) -> str:
-    """One sentence for who cannot see it: the author's own, else one made of the name."""
+    """Return one sentence for people who cannot see it: the author's, or one with the name."""
     text = _documentation(seen).strip()
     if text:
         return " ".join(text.split("\n\n")[0].split()).replace("``", "")
@@ -115,7 +115,7 @@ def description_of(seen: Viewable, name: str) -> str:
 
 
 def _documentation(seen: Viewable) -> str:
-    """The docstring of an image's function, else that of its file."""
+    """Return the docstring of an image's function, or else that of its file."""
     image = seen.image(COLOR)
     if isinstance(image, Image) and image.python_function.__doc__:
         return image.python_function.__doc__
@@ -123,18 +123,18 @@ def _documentation(seen: Viewable) -> str:
         return ""
     try:
         return ast.get_docstring(ast.parse(seen.file.read_text(encoding="utf-8"))) or ""
-    except (OSError, ValueError, SyntaxError):  # edited or gone since it was loaded
+    except (OSError, ValueError, SyntaxError):  # edited or deleted since it was loaded
         return ""
 
 
 def _start_values(
     parameters: Sequence[Parameter], params: Mapping[str, Any] | None
 ) -> dict[str, Any]:
-    """The values that are not the defaults, by name, as JSON has them.
+    """Return the values that differ from the defaults, by name, as JSON values.
 
     Raises:
         ValueError: There is no such parameter, or a value is out of range.
-        TypeError: A value is of another kind.
+        TypeError: A value has the wrong type.
     """
     defaults = {p.name: p.default for p in parameters}
     chosen = checked_values(parameters, params)
@@ -154,10 +154,10 @@ def _plain(value: Any) -> Any:
 
 
 def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
-    """The programs as they are, or deflated where that is smaller.
+    """Return the programs, compressed by deflate if that is smaller.
 
-    Deflated field by field: programs of one scene are much alike, and deflate sees no further back
-    than 32 kB. Ten views of the bunny take half as much as program by program.
+    They are compressed field by field: programs of one scene are similar, and deflate refers back
+    by at most 32 kB. Ten views of the bunny take half as much space as program by program.
     """
     plain = json.dumps(programs, separators=(",", ":"))
     columns = {key: [program[key] for program in programs] for key in programs[0]}
@@ -170,11 +170,11 @@ def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 class PagePrograms:
-    """The programs of a scene's views; what they share is there once.
+    """The programs of a scene's views; shared data is stored once.
 
     Attributes:
         made: The programs.
-        files: The author's files, without their folders.
+        files: The names of the author's files, without folders.
         resources: Textures and buffers by name.
     """
 
@@ -186,7 +186,7 @@ class PagePrograms:
         self._names: dict[tuple[int, str], str] = {}  # resource -> its name in all programs
 
     def add(self, view: str) -> int:
-        """The number of a view's program.
+        """Add the program of a view and return its index.
 
         Raises:
             CompileError: WebGL 2 cannot show it.
@@ -226,7 +226,7 @@ class PagePrograms:
         }
 
     def _resource(self, name: str, source: Any, type: Any) -> str:
-        """Its name in the payload: programs of two views may call two textures alike."""
+        """Return a resource's name in the payload; equal names in two views may differ there."""
         key = (id(source), str(type))
         if key not in self._names:
             assert isinstance(type, Texture | Buffer)
@@ -234,7 +234,7 @@ class PagePrograms:
         return self._names[key]
 
     def _table(self, entry: Mapping[str, Any]) -> str:
-        """The same of a buffer that has the program's own tables; equal ones are there once."""
+        """Return the name of a table of the program, added as a buffer; equal tables are shared."""
         made = table(entry)
         for name, known in self.resources.items():
             if known == made:
@@ -249,7 +249,7 @@ class PagePrograms:
         return free
 
     def _lean(self, text: str, places: Places) -> tuple[str, list[list[int]]]:
-        """A text without comments, empty lines and indentation, and where its lines come from."""
+        """Return a text without comments, empty lines and indentation, and the lines' origins."""
         kept: list[str] = []
         origins: list[list[int]] = []
         for line, place in zip(text.splitlines(), places, strict=True):
@@ -274,20 +274,20 @@ class PagePrograms:
 
 
 def _is_library(file: str) -> bool:
-    """Whether a line is ours: no author edits it there, and such lines are half of a payload."""
+    """Return whether a line is of distal, not the author's; these are half of all lines."""
     path = PurePath(file)
     return path.is_relative_to(PACKAGE) and not path.is_relative_to(PACKAGE / "gallery")
 
 
 def _compiled(image: Func | Composed) -> tuple[Artifact, Module]:
-    """The text of a picture, and the module that knows its textures' data."""
+    """Return the compiled text of a picture, and its module, which has the data of textures."""
     target = get_target(TARGET)
     module = lower(image.text() if isinstance(image, Composed) else image)
     return emit(run_passes(module, target), target), module
 
 
 def _uniform(entry: dict[str, Any]) -> dict[str, Any]:
-    """A uniform by the name that a person sets it by."""
+    """Return a uniform's entry, with the name by which a person sets it."""
     return {
         "name": entry.get("parameter", entry["name"]),
         "uniform": entry["uniform"],

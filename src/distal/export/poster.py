@@ -1,6 +1,6 @@
-"""The picture that a page shows before its first frame, and where it cannot draw.
+"""Render the picture that a page shows before its first frame, or if it cannot draw.
 
-Input: something to be seen. Output: a small WebP file's bytes.
+Input: a viewable object. Output: the bytes of a small WebP file.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from distal.scene.viewing.viewable import Viewable
 
 WIDTH_PX: Final = 480
 MOST_BYTES: Final = 10_000
-# Tried in turn until the file is small enough: below the last the blocks are seen.
+# Tried in order until the file is small enough; below the last one, blocks would be visible.
 QUALITIES: Final = (82, 74, 66, 58, 50, 42, 34)
 
 
 def poster(seen: Viewable, options: PageOptions) -> bytes:
-    """A small picture in the aspect of a page's own, as WebP."""
+    """Return a small picture with the aspect ratio of the page's picture, as WebP."""
     width = min(WIDTH_PX, options.size[0])
     height = max(1, round(width * options.size[1] / options.size[0]))
     small = RenderOptions(

@@ -1,7 +1,7 @@
-"""Every kind of file that an export writes, by name and by suffix.
+"""The formats of exported files, by name and suffix.
 
-Input: a picture and a path. Output: the file, and what it is made of. The kinds of texts come from
-the declarations of targets. To add another kind: one module with ``write``, and one row here.
+Input: a picture and a path. Output: the file, and a description of it. The text formats come from
+the declarations of targets. To add another format, write a module with ``write`` and an entry here.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ else:
 
 @dataclass(frozen=True, slots=True)
 class FileFormat:
-    """A kind of file that an export writes.
+    """A format of exported files.
 
     Attributes:
-        options: Its options.
-        suffix: What its files end in; None where another one has the suffix.
+        options: The class of its options.
+        suffix: The suffix of its files; None if another format has the suffix.
     """
 
     options: type[TextOptions]
@@ -40,7 +40,7 @@ class FileFormat:
 
     @property
     def option_names(self) -> frozenset[str]:
-        """What ``export`` takes for it."""
+        """The names of the options that ``export`` accepts for it."""
         return frozenset(field.name for field in fields(self.options))
 
 
@@ -57,22 +57,22 @@ def export(
     target: str | None = None,
     **options: Unpack[ExportOptions],
 ) -> Exported:
-    """Write a scene, a shape or an ``@image`` as a file that shows it elsewhere.
+    """Write a scene, a shape or an ``@image`` to a file that other programs can show.
 
     Args:
-        obj: The picture.
-        path: The file. Its suffix says what is written where ``target`` does not: .html a page,
+        obj: The object to show.
+        path: The file. Without ``target``, its suffix determines the format: .html for a page,
             .glsl for Shadertoy, .fs for ISF, .frag for WebGL 2, .wgsl for WebGPU.
-        target: "html", or that of a text, a name of ``distal.backends.TEXT_TARGETS``: "shadertoy",
-            "glsl-es300" ...
+        target: "html" or a text target, a name in ``distal.backends.TEXT_TARGETS``:
+            "shadertoy", "glsl-es300" ...
         options: The fields of ``PageOptions`` for a page, those of ``TextOptions`` for a text.
 
     Raises:
         SaveError: The suffix is unknown, or the file cannot be written.
-        LoadError: It is no picture.
-        CompileError: It says what the place cannot do.
+        LoadError: The object is not a picture.
+        CompileError: The scene uses something that the target lacks.
         ValueError: There is no such view, parameter or target, or a value is out of range.
-        TypeError: The target does not take such an option.
+        TypeError: The target does not accept such an option.
     """
     destination = Path(path)
     name = kind_of(destination, target)
@@ -89,10 +89,10 @@ def export(
 
 
 def kind_of(path: Path, target: str | None) -> str:
-    """The kind of file that a target or a suffix means.
+    """Return the name of the format for a target or a suffix.
 
     Raises:
-        SaveError: The suffix means none.
+        SaveError: The suffix is unknown.
         ValueError: There is no such target.
     """
     if target is not None:

@@ -1,7 +1,7 @@
-"""The data of textures and buffers as a page carries it.
+"""Convert the data of textures and buffers for a page.
 
-Input: what the author declared. Output: JSON with the numbers in base64, in the
-narrowest format that shows the same picture. Knows no page and no program.
+Input: the data that the author declared. Output: JSON with the numbers in base64, in the smallest
+format that shows the same picture. Does not depend on pages or programs.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ LEVELS: Final = 256
 
 
 def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
-    """One resource of a payload.
+    """Return the payload entry of a texture or buffer.
 
     Raises:
-        LoadError: A file cannot be read, or the data has not the shape of such a resource.
+        LoadError: A file cannot be read, or the data has the wrong shape for the resource.
     """
     data = load(source, type)
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
 
 
 def table(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """The same of a buffer of the program's own tables, whose entry has the values."""
+    """Return the payload entry of a buffer for a table of the program."""
     return _buffer(np.array(entry["values"], np.int32 if entry["element"] == "int" else np.float32))
 
 
@@ -48,7 +48,7 @@ def _buffer(data: NDArray[Any]) -> dict[str, Any]:
 
 def _texture(texels: NDArray[np.float32], type: Texture) -> dict[str, Any]:
     if bool((texels[..., 3] == 1.0).all()):
-        texels = texels[..., :3]  # a texture without alpha reads as 1 there
+        texels = texels[..., :3]  # without an alpha component, the texture's alpha reads as 1
     name, stored = _narrowest(texels)
     height, width = texels.shape[-3:-1]
     deep = type.shape is TextureShape.VOLUME
@@ -62,11 +62,11 @@ def _texture(texels: NDArray[np.float32], type: Texture) -> dict[str, Any]:
 
 
 def _narrowest(texels: NDArray[np.float32]) -> tuple[str, NDArray[Any]]:
-    """The format that loses nothing one can see.
+    """Return the smallest format without visible loss, and the data in it.
 
-    Bytes where the numbers are bytes. Half floats, of 11 bits, where there are no more levels than
-    a byte has: a picture of bytes decoded to light. Else single floats: heights and volumes are
-    data, and normals of rounded ones show steps.
+    Bytes if the values are bytes. Half floats (11 bits) if there are no more levels than a byte
+    has, as in an 8-bit picture decoded to light. Otherwise single floats: heights and volumes are
+    data, and normals computed from rounded ones show steps.
     """
     scaled = texels * np.float32(255.0)
     whole = np.rint(scaled)

@@ -1,7 +1,7 @@
-"""A picture as a shader for another place, with a comment that says how to use it there.
+"""Export a picture as a shader text, with a comment that explains how to use it.
 
-Input: something to be seen, or a text of the compiler's. Output: files. The
-comment's part needs the standard library only: ``distal compile`` uses it too.
+Input: a viewable object, or a compiled text. Output: files. The functions for the comment need the
+standard library only, because ``distal compile`` uses them too.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ WIDTH: Final = 96
 
 
 def with_header(artifact: Artifact, target: str, file: str) -> str:
-    """A text under a comment that says whose it is and how to use it.
+    """Return a text with a comment in front: its author's file and how to use it.
 
     Args:
-        artifact: The compiler's.
-        target: For which place.
+        artifact: The compiled text.
+        target: The name of its target.
         file: The name of the author's file, without its folder; may be empty.
     """
     described = TEXT_TARGETS.get(target)
@@ -70,7 +70,7 @@ def with_header(artifact: Artifact, target: str, file: str) -> str:
 
 
 def _placed(text: str, comment: str) -> str:
-    """Before the text; but a version, or the JSON of ISF, stays the first thing in the file."""
+    """Insert the comment at the start, but after ``#version`` or the JSON of ISF."""
     if text.startswith("#version"):
         first, _, rest = text.partition("\n")
         return f"{first}\n{comment}{rest}"
@@ -94,13 +94,13 @@ def _broken(text: str) -> list[str]:
 
 
 def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Exported:
-    """Write the text, the files it needs, and its interface where a host has to set inputs.
+    """Write the text, the files it needs, and its interface if the host has to set inputs.
 
     Args:
-        seen: What it shows.
+        seen: The object to show.
         path: The file.
-        target: The text's target, as for ``distal.compile``.
-        options: What is shown.
+        target: The text target, as for ``distal.compile``.
+        options: The view, time and parameters.
     """
     values = checked_values(seen.parameters, options.params)
     image = seen.image(options.view, encoded=True)
@@ -109,7 +109,7 @@ def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Expo
     artifact = emit(run_passes(_set(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
     text = with_header(artifact, target, name)
-    # Other places set their inputs by themselves.
+    # Only for targets where the text declares the parameters; elsewhere the host sets its inputs.
     with_interface = description.parameters is Declares.TEXT
     beside = write_files(path, artifact, text, with_interface=with_interface)
     return Exported(path, {}, beside)
@@ -118,13 +118,19 @@ def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Expo
 def write_files(
     path: Path, artifact: Artifact, text: str, *, with_interface: bool
 ) -> tuple[Path, ...]:
-    """Write a text, and what belongs to it: its vertex stage, its interface.
+    """Write a text and the files that belong to it: its vertex stage, its interface.
+
+    Args:
+        path: The file of the text.
+        artifact: The compiled text, its vertex stage and interface.
+        text: The text to write.
+        with_interface: Whether to write the interface.
 
     Returns:
-        The further files.
+        The other files.
 
     Raises:
-        SaveError: The file system refuses.
+        SaveError: The file system reports an error.
     """
     files = {}
     if with_interface:
@@ -141,7 +147,7 @@ def write_files(
 
 
 def _set(module: Module, values: Mapping[str, Any]) -> Module:
-    """The module with these as the defaults of its parameters."""
+    """Return the module with these values as the defaults of its parameters."""
     uniforms = tuple(
         replace(u, default=values[u.name])
         if u.origin is Origin.PARAMETER and u.name in values

@@ -1,7 +1,7 @@
-"""Files that appear whole or not at all.
+"""Write files atomically: completely or not at all.
 
-Input: a destination and the bytes for it. Output: the file, replaced in one step;
-a failure or an interruption leaves what stood there before. Knows nothing of formats.
+Input: a destination and its bytes. Output: the file, replaced in one step. After a failure or an
+interruption the old file is unchanged. Does not depend on file formats.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from typing import BinaryIO
 
 
 class SaveError(Exception):
-    """A file that cannot be written, and why, in one line."""
+    """A file cannot be written; the message says why, in one line."""
 
 
 def check_destination(path: Path) -> None:
-    """Refuse a destination that no file can take, before any work is spent on it.
+    """Check that a file can be written at a destination, before time is spent on its content.
 
     Raises:
-        SaveError: The folder is missing or cannot be written, or the path is no plain file.
+        SaveError: The folder is missing or not writable, or the path is not an ordinary file.
     """
     target = Path(os.path.realpath(path))
     folder = target.parent
@@ -41,41 +41,42 @@ def check_destination(path: Path) -> None:
 
 
 def move_into_place(temporary: Path, path: Path) -> None:
-    """Let a whole file take the place of another, after its bytes are on disk.
+    """Replace a file by a complete temporary file, after flushing it to disk.
 
     Raises:
-        OSError: The file system refuses.
+        OSError: The file system reports an error.
     """
     with open(temporary, "rb+") as file:
-        os.fsync(file.fileno())  # renamed before it is on disk, a crash would leave zeros
+        os.fsync(file.fileno())  # otherwise a crash after the rename could leave zeros
     os.replace(temporary, path)
 
 
 @contextmanager
 def replacement(path: Path) -> Iterator[BinaryIO]:
-    """Open a file that takes the place of ``path`` when the block ends well.
+    """Open a temporary file that replaces ``path`` when the block ends without an error.
 
-    The bytes go to a temporary file in the same folder, which is renamed: a reader never sees half
-    a file, and an interrupted writer leaves nothing. A symbolic link keeps pointing where it did.
+    The temporary file is in the same folder and is renamed at the end: a reader never sees part of
+    a file, and an interrupted writer leaves nothing. A symbolic link is kept; its target is
+    replaced.
 
     Raises:
-        SaveError: The file system refuses.
+        SaveError: The file system reports an error.
     """
     check_destination(path)
     target = Path(os.path.realpath(path))
-    # Not named after the target: a name near the limit of 255 bytes has no room for an addition.
+    # Not named after the target, because a name near the limit of 255 bytes cannot be extended.
     temporary = target.parent / f".distal-{secrets.token_hex(8)}.tmp"
     try:
         try:
-            # Opened by mode, not through tempfile, so that the author's umask decides who may read.
+            # os.open, not tempfile, so that the file has the permissions of the author's umask.
             descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o666)
             with os.fdopen(descriptor, "w+b") as file:
                 yield file
                 file.flush()
-                os.fsync(file.fileno())  # renamed before it is on disk, a crash would leave zeros
+                os.fsync(file.fileno())  # otherwise a crash after the rename could leave zeros
             os.replace(temporary, target)
         except OSError as error:
             raise SaveError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
-        with suppress(OSError):  # it is gone when all went well
+        with suppress(OSError):  # after success the temporary file no longer exists
             temporary.unlink()

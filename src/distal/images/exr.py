@@ -1,8 +1,8 @@
-"""Linear light and layers to an OpenEXR file, and back.
+"""Encode linear light and layers as an OpenEXR file, and decode such a file.
 
-Input: linear light with straight alpha, layers by name, texts. Output: one part of
-scan lines. Knows nothing of scenes. Channels are called as compositors find them by themselves:
-``R G B A``, ``Z`` (the format's own name for depth), ``N.X N.Y N.Z``, ``albedo.R`` …,
+Input: linear light with straight alpha, layers by name, texts. Output: a file with one part of scan
+lines. Does not depend on scenes. Channels have the names that compositors recognize:
+``R G B A``, ``Z`` (the format's standard name for depth), ``N.X N.Y N.Z``, ``albedo.R`` …,
 ``material.id``.
 """
 
@@ -24,8 +24,8 @@ from distal.packages import imported
 
 BITS: Final = (16, 32)
 
-# Layer -> its channels, and whether half floats are enough for it. Depth is geometry: 11 bits would
-# make steps of it. An id is a whole number.
+# For each layer its channels, and whether half floats are precise enough. Depth is geometry: a
+# half's 11 bits would quantize it visibly. An id is a whole number.
 CHANNELS: Final[dict[str, tuple[tuple[str, ...], bool]]] = {
     "depth": (("Z",), False),
     "normal": (("N.X", "N.Y", "N.Z"), True),
@@ -44,20 +44,20 @@ def encode(
     texts: Mapping[str, str],
     bits: int = 16,
 ) -> bytes:
-    """An EXR of the light, with the layers beside it and the texts as attributes.
+    """Return an EXR file of the light, with the layers, and the texts as attributes.
 
     Args:
-        light: (height, width, 4), straight alpha; stored premultiplied, as the format has it.
+        light: (height, width, 4), straight alpha; stored premultiplied, as the format requires.
         layers: Arrays by the names of ``CHANNELS``: (height, width) or (height, width, 3).
-        texts: What the file says about itself.
-        bits: Of a channel: 16, half floats, or 32.
+        texts: The metadata of the file.
+        bits: Bits of a channel: 16 for half floats, or 32.
 
     Raises:
         PackageError: OpenEXR is missing or broken.
     """
     openexr = imported("OpenEXR")
     associated = light.copy()
-    # Where nothing covers a pixel its color is nothing too, even if it is infinite.
+    # The color of an uncovered pixel is stored as 0, even if it is infinite.
     np.multiply(light[..., :3], light[..., 3:], out=associated[..., :3], where=light[..., 3:] != 0)
     associated[light[..., 3] == 0, :3] = 0.0
     channels = {n: _stored(associated[..., i], bits) for i, n in enumerate(_COLOR)}
@@ -80,10 +80,10 @@ def encode(
 
 
 def _stored(values: NDArray[Any], bits: int) -> NDArray[Any]:
-    """Values as a channel: half floats, floats, or whole numbers as they are.
+    """Convert values to a channel: half floats, floats, or whole numbers unchanged.
 
-    What is too large for a half becomes its largest: infinity would spread in every filter.
-    Infinities and NaN that the scene made stay.
+    Values too large for a half become the largest half, because infinity would spread in every
+    filter. Infinities and NaN of the scene are kept.
     """
     if bits == 32 or values.dtype == np.uint32:
         return np.ascontiguousarray(values)
@@ -92,10 +92,10 @@ def _stored(values: NDArray[Any], bits: int) -> NDArray[Any]:
 
 
 def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
-    """The size, the bits of a color's channel and our texts of an EXR.
+    """Return the size, the bits of a color channel and distal's texts of an EXR file.
 
     Raises:
-        ReadError: The file is broken or cut short.
+        ReadError: The file is broken or incomplete.
     """
     try:
         header = read_header(path)
@@ -106,7 +106,7 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
 
 
 def decode(data: bytes) -> dict[str, NDArray[Any]]:
-    """The channels of an EXR by name, each (height, width).
+    """Return the channels of an EXR file by name, each (height, width).
 
     Raises:
         ReadError: The file is broken.
@@ -122,7 +122,7 @@ def decode(data: bytes) -> dict[str, NDArray[Any]]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep to itself what the library's C++ prints of a broken file, beside what it raises."""
+    """Suppress what the C++ library prints about a broken file; it also raises an exception."""
     kept = [os.dup(number) for number in (1, 2)]
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:

@@ -1,8 +1,8 @@
-"""The head of an OpenEXR file, read without the library: others may have made the file.
+"""Read the header of an OpenEXR file without the library, because the file may be malicious.
 
-Input: a file. Output: its size, the bits of a channel, its texts; or a
-``ValueError`` in words. OpenEXR's C++ ends the process on some broken files, so nothing of a file
-reaches it before its head is known to be one that ``exr.encode`` writes.
+Input: a file. Output: its size, the bits of its channels, its texts; or a ``ValueError`` that
+explains the fault. OpenEXR's C++ ends the process on some broken files, so no file is passed to it
+unless its header is one that ``exr.encode`` writes.
 
 Source: "OpenEXR File Layout" of the format's documentation.
 """
@@ -18,23 +18,23 @@ from distal.lang.render_options import LARGEST_SIDE_PX
 
 _MAGIC: Final = b"\x76\x2f\x31\x01"
 _VERSION: Final = 2
-_LONG_NAMES: Final = 0x400  # the one flag that a single part of scan lines may have
+_LONG_NAMES: Final = 0x400  # the only flag allowed for a single part of scan lines
 _LONGEST_NAME: Final = 255
 _LONGEST_VALUE: Final = 2**22  # bytes
 _MOST_ATTRIBUTES: Final = 1000
-_BITS: Final = {0: 32, 1: 16, 2: 32}  # of whole numbers, halves, floats
-# Rows in a chunk, by the number of the compression.
+_BITS: Final = {0: 32, 1: 16, 2: 32}  # of unsigned integers, half floats, floats
+# Rows in a chunk, by the code of the compression.
 _ROWS: Final = {0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 256}
 
 
 @dataclass(slots=True)
 class ExrHeader:
-    """What the head of a file says.
+    """The relevant content of a header.
 
     Attributes:
         size: Width and height in pixels.
-        bits: Of each channel by name.
-        texts: The attributes that are texts.
+        bits: Bits of each channel by name.
+        texts: The text attributes.
     """
 
     size: tuple[int, int] = (0, 0)
@@ -43,11 +43,11 @@ class ExrHeader:
 
 
 def read_header(path: Path) -> ExrHeader:
-    """Read the head, and see that every row is there.
+    """Read the header, and check that every row is in the file.
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: It is none that distal writes, or is cut short.
+        ValueError: Its header is not one that distal writes, or the file is incomplete.
     """
     with path.open("rb") as file:
         magic, version = struct.unpack("<4sI", _exactly(file, 8))
@@ -85,7 +85,7 @@ def _name(file: BinaryIO) -> str:
 
 
 def _attributes(file: BinaryIO) -> dict[str, tuple[str, bytes]]:
-    """Type and value of each attribute by name."""
+    """Return type and value of each attribute by name."""
     found: dict[str, tuple[str, bytes]] = {}
     while name := _name(file):
         kind = _name(file)
@@ -139,7 +139,7 @@ def _channels(values: dict[str, tuple[str, bytes]]) -> dict[str, int]:
 
 
 def _check_rows(file: BinaryIO, height: int, rows: int) -> None:
-    """Each chunk lies in the file: position of its row, its length, and so many bytes."""
+    """Check that each chunk is in the file: its offset, its length, and as many bytes."""
     count = -(-height // rows)
     places = struct.unpack(f"<{count}Q", _exactly(file, 8 * count))
     begin = file.tell()

@@ -1,8 +1,7 @@
-"""Where a picture came from, as texts in its file, and back.
+"""Metadata: how a picture was rendered, as texts in its file.
 
-Input: a ``Provenance``, or a file that ``Picture.save`` wrote. Output: texts by
-key, or the ``Record`` that they describe. Knows file formats by their first bytes only, and no
-pixels.
+Input: a ``Provenance``, or a file that ``Picture.save`` wrote. Output: texts by key, or a
+``Record``. Recognizes file formats by their first bytes only. Does not depend on pixels.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from distal.version import __version__
 _First = TypeVar("_First")
 
 PREFIX: Final = "distal:"
-# Characters of a text, and modules beside a scene: more was not written here.
+# Limits of a text's length and of the number of modules; distal never writes more.
 _LONGEST_TEXT: Final = 2**20
 _MOST_NEIGHBOURS: Final = 10_000
 _HEAD_PNG: Final = b"\x89PNG\r\n\x1a\n"
@@ -29,40 +28,40 @@ _HEAD_EXR: Final = b"\x76\x2f\x31\x01"
 
 
 class ReadError(Exception):
-    """A picture's file that cannot be read, or does not say where it came from, in one line."""
+    """A picture file cannot be read or has no valid metadata; the message is one line."""
 
     def __init__(self, message: str) -> None:
-        # It quotes the content of files that others made.
+        # The message may quote content of files from other sources.
         super().__init__(printable(message, LONGEST_MESSAGE))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
-    """Where a picture came from: what is needed to render it again.
+    """How a picture was rendered: everything needed to render it again.
 
     Attributes:
-        source: ``FILE[:NAME]`` or ``example:NAME`` as the author gave it; of what no file was
-            loaded for, the name of the scene or function; may be empty.
-        source_hash: SHA-256 of the text of that file and of the modules beside it that it imports;
-            of what no file was loaded for, of the files of its functions; may be empty.
-        neighbours: The places of these modules beside the file.
+        source: ``FILE[:NAME]`` or ``example:NAME`` as the author wrote it; without a file, the name
+            of the scene or function; may be empty.
+        source_hash: SHA-256 of the text of that file and of the modules in its folder that it
+            imports; without a file, of the files of its functions; may be empty.
+        neighbours: The paths of these modules relative to the folder of the file.
         parameters: The value of each parameter by name, as plain JSON values.
         time: Seconds.
-        index: The frame's number.
-        seed: What random numbers start from.
+        index: The number of the frame.
+        seed: The seed of random numbers.
         mouse: The frame's mouse.
-        samples: Rays for each pixel.
-        view: What is shown.
+        samples: Rays per pixel.
+        view: The name of the view.
         plane: The plane of the view "slice": normal and offset.
-        transparent: Whether alpha is 0 where nothing is met.
-        exposure: The factor on all light that was given; None: the scene's own.
-        tone_map: The tone map that was given; None: the scene's own.
-        steering: How the camera was moved by hand: yaw, pitch, zoom, pan x and y; None: not.
-        stage: The parameters and the time that a lone shape's stage was made for; None of a scene
-            of its own.
+        transparent: Whether alpha is 0 where a ray hits nothing.
+        exposure: The given factor on all light; None if the scene's own was used.
+        tone_map: The given tone map; None if the scene's own was used.
+        steering: The movement of the camera: yaw, pitch, zoom, pan x and y; None if not moved.
+        stage: The parameters and the time for which the default scene of a single shape was made;
+            None for a scene.
         layers: The layers that were rendered with it.
-        freeze: Whether the scene's numbers were constants.
-        device: What rendered it.
+        freeze: Whether the scene's numbers were compiled as constants.
+        device: The device that rendered it.
     """
 
     source: str = ""
@@ -88,15 +87,15 @@ class Provenance:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """What a picture's file says about itself.
+    """The metadata of a picture file.
 
     Attributes:
-        provenance: Where it came from.
-        size: Width and height in pixels, as it was rendered.
-        stored_size: The file's own: another if a program scaled or cropped it since.
-        version: The version of distal that made it.
+        provenance: How the picture was rendered.
+        size: Width and height in pixels when it was rendered.
+        stored_size: Width and height of the file; different if a program scaled or cropped it.
+        version: The version of distal that rendered it.
         format: "png" or "exr".
-        bits: Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR.
+        bits: Bits of each channel: 8 or 16 in a PNG; 16 or 32 in an EXR.
     """
 
     provenance: Provenance
@@ -108,7 +107,7 @@ class Record:
 
 
 def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
-    """The texts that a file carries; an option at its default has none."""
+    """Return the texts for a picture's file; options with their default value are omitted."""
     found = {
         "Software": f"distal {__version__}",
         "distal:version": __version__,
@@ -146,7 +145,7 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
 
 
 def provenance(found: Mapping[str, str]) -> Provenance:
-    """The record that texts describe; what they do not mention has its default.
+    """Return the provenance described by texts; missing entries have their defaults.
 
     Raises:
         ReadError: A text is invalid.
@@ -188,10 +187,10 @@ def provenance(found: Mapping[str, str]) -> Provenance:
 
 
 def read(path: Path) -> Record:
-    """What a picture's file says about itself.
+    """Read the metadata of a picture file.
 
     Raises:
-        ReadError: There is no such file, it is no picture, is broken, or says nothing.
+        ReadError: The file is missing, broken, not a picture, or has no metadata.
     """
     try:
         with path.open("rb") as file:
@@ -258,7 +257,7 @@ def _flag(text: str) -> bool:
 
 
 def _values(given: Any) -> dict[str, Any]:
-    """Values of parameters: numbers, words, or lists of numbers."""
+    """Return values of parameters, checked: numbers, words, or lists of numbers."""
     if not isinstance(given, dict):
         raise TypeError("values by name are wanted")
     for value in given.values():

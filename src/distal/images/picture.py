@@ -1,9 +1,8 @@
-"""A finished picture.
+"""``Picture``: a finished picture.
 
-Input: pixels encoded for display, the light they show where it is known, and where they
-came from. Output: an immutable
-``Picture`` that saves itself and shows itself in a notebook. Knows nothing about how the pixels
-were made.
+Input: pixels encoded for display, the linear light before encoding if available, and how they were
+rendered. Output: an immutable ``Picture`` with methods to save it and to show it in a notebook.
+Does not depend on how the pixels were computed.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ from distal.packages import PackageError, imported
 if TYPE_CHECKING:
     from distal.images import exr
 else:
-    exr = LazyModule("distal.images.exr")  # OpenEXR is an extra, and heavy
+    exr = LazyModule("distal.images.exr")  # OpenEXR is optional, and slow to import
 
-# Suffix -> the bits of a channel that its files may have; the first are its usual ones.
+# The possible bits of a channel by suffix; the first is the default.
 FORMATS: Final = {".png": (8, 16), ".exr": (16, 32)}
 
 __all__ = ["FORMATS", "Picture", "Provenance", "check_savable"]
@@ -39,19 +38,19 @@ __all__ = ["FORMATS", "Picture", "Provenance", "check_savable"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """Pixels encoded for display, and where they came from.
+    """Pixels encoded for display, with their provenance.
 
     Attributes:
         array: float32, (height, width, 4), top row first: red, green, blue encoded for display
-            and straight alpha. Read-only. Values outside 0 to 1, infinities and NaN stay as the
-            scene made them; saving clamps them, and makes NaN 0.
-        provenance: Where the picture came from; it travels in the file's metadata.
-        stats: What rendering took: times in seconds and how it was done.
-        light: The same pixels before they were encoded, where the renderer has them.
-        layers: What else is known of each pixel's middle, by name: "depth" (float32, scene units
-            along the ray, infinite where nothing is met), "normal" (float32, (height, width, 3),
-            world space, toward the eye; 0), "albedo" (float32, (height, width, 3), linear; 0),
-            "material" (uint32, from 1 in the order of the author's tree; 0).
+            and straight alpha. Read-only. Values outside 0 to 1, infinities and NaN are kept as the
+            scene computed them; saving clamps them and replaces NaN by 0.
+        provenance: How the picture was rendered; saved in the metadata of the file.
+        stats: Statistics of the rendering: times in seconds, the device and others.
+        light: The same pixels before they were encoded, if the renderer has them.
+        layers: Other values at the middle of each pixel, by name: "depth" (float32, scene units
+            along the ray, infinite if nothing is hit), "normal" (float32, (height, width, 3),
+            world space, toward the eye; else 0), "albedo" (float32, (height, width, 3), linear;
+            else 0), "material" (uint32, from 1 in the order of the author's tree; else 0).
     """
 
     array: NDArray[np.float32]
@@ -74,8 +73,8 @@ class Picture:
     def linear(self) -> NDArray[np.float32]:
         """Linear light: float32 (height, width, 4), straight alpha, top row first. Read-only.
 
-        What the scene's renderer computed, before exposure and tone mapping; of an ``@image``,
-        whose values are encoded already, these decoded (IEC 61966-2-1).
+        For a scene: the light before exposure and tone mapping. For an ``@image``, whose values
+        are already encoded: these values decoded (IEC 61966-2-1).
         """
         if self.light is None:
             object.__setattr__(self, "light", _checked(_decoded(self.array)))
@@ -83,47 +82,47 @@ class Picture:
         return self.light
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        """``array``, for NumPy and for what shows arrays."""
+        """Return ``array``, for NumPy and for libraries that display arrays."""
         made: NDArray[Any] = np.array(self.array, dtype) if copy else np.asarray(self.array, dtype)
         return made
 
     @property
     def width(self) -> int:
-        """Pixels from left to right."""
+        """Width in pixels."""
         return int(self.array.shape[1])
 
     @property
     def height(self) -> int:
-        """Pixels from top to bottom."""
+        """Height in pixels."""
         return int(self.array.shape[0])
 
     @property
     def metadata(self) -> dict[str, str]:
-        """The texts that a saved file carries."""
+        """The metadata of a saved file."""
         return metadata.texts(self.provenance, (self.width, self.height))
 
     def with_provenance(self, **changes: Any) -> Picture:
-        """The same picture with these fields of its ``Provenance`` changed."""
+        """Return the same picture with some fields of its ``Provenance`` changed."""
         return replace(self, provenance=replace(self.provenance, **changes))
 
     def with_layers(self, layers: Mapping[str, NDArray[Any]]) -> Picture:
-        """The same picture with layers."""
+        """Return the same picture with these layers."""
         return replace(self, layers=layers)
 
     def save(self, path: str | PathLike[str], bits: int | None = None) -> None:
-        """Write the picture; the suffix says how. The file appears whole or not at all.
+        """Write the picture in the format of the suffix. The file is complete or not written.
 
-        PNG: display values with sRGB declared, nearest rounding, straight alpha. EXR: linear
-        light, before exposure and tone mapping, premultiplied, and the layers. Both carry
+        PNG: display values with sRGB declared, rounded to nearest, straight alpha. EXR: linear
+        light before exposure and tone mapping, premultiplied, and the layers. Both contain
         ``metadata``.
 
         Args:
             path: A file that ends in .png or .exr.
-            bits: Of each channel: 8 (the usual) or 16 of a PNG, 16 (half floats, the usual) or 32
-                of an EXR.
+            bits: Bits of a channel: 8 (default) or 16 for a PNG, 16 (default, half floats) or 32
+                for an EXR.
 
         Raises:
-            SaveError: The suffix is unknown, it has no such bits, or the file cannot be written.
+            SaveError: The suffix or number of bits is not supported, or the file cannot be written.
         """
         destination = Path(path)
         suffix, bits = check_savable(destination, bits)
@@ -135,7 +134,7 @@ class Picture:
             file.write(data)
 
     def _repr_png_(self) -> bytes:
-        """The bytes that a notebook shows."""
+        """Return the PNG file that a notebook shows."""
         return png.encode(self.array, self.metadata)
 
     def __repr__(self) -> str:
@@ -144,7 +143,7 @@ class Picture:
 
 
 def _checked(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The pixels, not to be written to."""
+    """Return the pixels as a read-only view, after checking their shape and type."""
     shape = pixels.shape
     if len(shape) != 3 or shape[2] != 4 or 0 in shape:
         raise ValueError(f"a picture's array has the shape (height, width, 4), not {shape}")
@@ -156,24 +155,28 @@ def _checked(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _decoded(array: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Light from values encoded in sRGB."""
+    """Decode sRGB values to linear light."""
     linear = array.copy()
     color = array[..., :3]
-    # The reference device: machine code would take longer for a single call.
+    # On the reference device, because compiling for a single call would take longer.
     light = executor().call(decode_srgb, (color.reshape(-1, 3),), {}, device="reference")
     linear[..., :3] = light.reshape(color.shape)
     return linear
 
 
 def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
-    """Refuse what ``Picture.save`` would refuse, before any work is spent on it.
+    """Check that ``Picture.save`` would work, before time is spent on rendering.
+
+    Args:
+        path: A file that ends in .png or .exr.
+        bits: Bits of a channel; None for the default.
 
     Returns:
         The suffix, and the bits of a channel.
 
     Raises:
-        SaveError: The suffix is unknown, it has no such bits, its package is missing or broken, or
-            no file can be written there.
+        SaveError: The suffix or number of bits is not supported, the package is missing or broken,
+            or no file can be written there.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
@@ -192,7 +195,7 @@ def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
 
 
 def _layer(name: str, values: NDArray[Any], array: NDArray[np.float32]) -> NDArray[Any]:
-    """A layer, not to be written to."""
+    """Return a layer as a read-only view, after checking its shape."""
     if values.shape[:2] != array.shape[:2]:
         raise ValueError(f"layer {name} of shape {values.shape} for {array.shape}")
     view = values.view()

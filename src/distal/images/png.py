@@ -1,7 +1,7 @@
-"""Pixels to PNG bytes, and back.
+"""Encode pixels as PNG, and decode PNG.
 
-Input: display-encoded float pixels, top row first, and texts to keep beside them. Output: a PNG of
-8 or 16 bits that says it is sRGB. Knows nothing of scenes.
+Input: display-encoded float pixels, top row first, and texts for the metadata. Output: a PNG of 8
+or 16 bits that is declared as sRGB. Does not depend on scenes.
 """
 
 from __future__ import annotations
@@ -37,24 +37,24 @@ _LARGEST_CHUNK = 2**31 - 1
 
 
 def quantise(array: NDArray[np.float32], bits: int = 8) -> NDArray[Any]:
-    """Each value as the nearest of 256 or 65536 levels, as uint8 or uint16.
+    """Round each value to the nearest of 256 or 65536 levels, as uint8 or uint16.
 
-    NaN, of which no display has a notion, becomes 0, so that a broken pixel is black (or
-    transparent) and never the luck of a cast; infinities and values outside 0 to 1 are clamped.
+    NaN becomes 0, so that a broken pixel is always black (or transparent), independent of how the
+    platform casts NaN; infinities and values outside 0 to 1 are clamped.
     """
-    # Below this, loading machine code takes longer than it saves.
+    # For fewer values, loading the machine code takes longer than it saves.
     found = fast_levels(array, bits) if array.size >= _MANY else None
     return defined_levels(array, bits) if found is None else found
 
 
 def defined_levels(array: NDArray[np.float32], bits: int) -> NDArray[Any]:
-    """What ``quantise`` means, by NumPy: for few values, and where no code of ours runs."""
+    """The reference implementation of ``quantise`` in NumPy; used for few values or without JIT."""
     levels = np.empty(array.shape, np.uint8 if bits == 8 else np.uint16)
     most = float(2**bits - 1)
-    # In bands, since a picture in doubles would need several times its own memory.
+    # In bands, because a whole picture in doubles would need several times its own memory.
     for top in range(0, len(array), _BAND):
-        # Doubles hold value * most + 0.5 exactly enough that the floor is never the wrong
-        # neighbour.
+        # Doubles represent value * most + 0.5 precisely enough that the floor is never the wrong
+        # level.
         band = array[top : top + _BAND].astype(np.float64)
         np.nan_to_num(band, copy=False, nan=0.0, posinf=1.0, neginf=0.0)
         np.clip(band, 0.0, 1.0, out=band)
@@ -63,17 +63,22 @@ def defined_levels(array: NDArray[np.float32], bits: int) -> NDArray[Any]:
 
 
 def encode(array: NDArray[np.float32], texts: Mapping[str, str], bits: int = 8) -> bytes:
-    """A PNG of the pixels, with the texts in its metadata.
+    """Return a PNG of the pixels, with the texts in its metadata.
 
-    An opaque picture is stored without alpha. Texts of Latin-1 go into tEXt chunks, others into
-    iTXt.
+    An opaque picture is stored without alpha. Texts in Latin-1 become tEXt chunks, others iTXt
+    chunks.
+
+    Args:
+        array: (height, width, 4), display values with straight alpha.
+        texts: The metadata by key.
+        bits: Bits of a channel, 8 or 16.
     """
     levels = quantise(array, bits)
     pixels = np.ascontiguousarray(levels[..., :3] if _is_opaque(levels) else levels)
     information = PngInfo()
     information.add(b"sRGB", _SRGB_INTENT)
     for key, text in texts.items():
-        # add_text itself turns to iTXt where Latin-1 does not reach.
+        # add_text itself uses iTXt for text outside Latin-1.
         information.add_text(key, text)
     buffer = io.BytesIO()
     if bits == 16:
@@ -90,10 +95,10 @@ def _is_opaque(levels: NDArray[Any]) -> bool:
 
 
 def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: PngInfo) -> None:
-    """A PNG of 16 bits: Pillow has no such pixels, but its chunks serve.
+    """Write a PNG of 16 bits, which Pillow cannot write; only its function for chunks is used.
 
-    Each row is stored as the difference from the one above (the filter Up): of the five it is the
-    one that whole rows of an array give at once, both ways.
+    Each row is stored as the difference from the one above (the filter Up): of the five filters it
+    is the only one that NumPy can apply to whole rows in both directions.
     """
     height, width, channels = pixels.shape
     kind = 2 if channels == 3 else 6
@@ -105,7 +110,7 @@ def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: Png
     filtered = np.empty((height, rows.shape[1] + 1), np.uint8)
     filtered[:, 0] = _UP
     filtered[0, 1:] = rows[0]
-    np.subtract(rows[1:], rows[:-1], out=filtered[1:, 1:])  # modulo 256, as the filter wants
+    np.subtract(rows[1:], rows[:-1], out=filtered[1:, 1:])  # modulo 256, as the filter requires
     packed = zlib.compress(filtered.data, _COMPRESSION)
     for start in range(0, len(packed), _LARGEST_CHUNK):
         putchunk(buffer, b"IDAT", packed[start : start + _LARGEST_CHUNK])
@@ -113,31 +118,31 @@ def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: Png
 
 
 def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
-    """The size, the bits of a channel and our texts of a PNG.
+    """Return the size, the bits of a channel and distal's texts of a PNG.
 
     Raises:
         ReadError: The file is broken.
     """
     try:
-        # Not by Image.open, which takes large pictures for an attack.
+        # Not Image.open, which refuses large pictures as a possible attack.
         with PngImageFile(path) as image:
             if max(image.size) > LARGEST_SIDE_PX:
                 raise ValueError(f"it claims {image.width}x{image.height} pixels")
-            image.load()  # finds what is cut off, and texts after the pixels
+            image.load()  # detects missing data, and reads texts after the pixels
             texts = {str(key): str(value) for key, value in image.info.items()}
             size = image.size
         with path.open("rb") as file:
             bits = file.read(25)[24]
-    except Exception as error:  # Pillow raises of every kind on broken files
+    except Exception as error:  # Pillow raises many kinds of exceptions for broken files
         raise ReadError(f"{path} is broken: it is no whole PNG: {error}") from None
     return size, bits, {key: text for key, text in texts.items() if key.startswith(PREFIX)}
 
 
 def decode(data: bytes) -> NDArray[Any]:
-    """The levels of a PNG, (height, width, 4): uint8, or uint16 of one that ``encode`` wrote.
+    """Return the levels of a PNG, (height, width, 4): uint8, or uint16 if ``encode`` wrote 16 bits.
 
     Raises:
-        ReadError: The file is broken, or of 16 bits and written by another program.
+        ReadError: The file is broken, or has 16 bits and was written by another program.
     """
     try:
         if data[24] != 16:
@@ -146,7 +151,7 @@ def decode(data: bytes) -> NDArray[Any]:
         return _read_deep(data)
     except ReadError:
         raise
-    except Exception as error:  # Pillow raises of every kind on broken files
+    except Exception as error:  # Pillow raises many kinds of exceptions for broken files
         raise ReadError(f"it is no whole PNG: {error}") from None
 
 
@@ -157,7 +162,7 @@ def _read_deep(data: bytes) -> NDArray[np.uint16]:
         raise ReadError("it was written by another program, and cannot be compared")
     channels = _CHANNELS[kind]
     packed = b"".join(content for name, content in chunks if name == b"IDAT")
-    length = height * (1 + 2 * channels * width)  # no more, whatever a small file unpacks to
+    length = height * (1 + 2 * channels * width)  # a limit, however much the file would unpack to
     unpacked = zlib.decompressobj().decompress(packed, length)
     filtered = np.frombuffer(unpacked, np.uint8).reshape(height, -1)
     if (filtered[:, 0] != _UP).any():
@@ -170,7 +175,7 @@ def _read_deep(data: bytes) -> NDArray[np.uint16]:
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """The chunks of a PNG: name and content."""
+    """Yield the chunks of a PNG: name and content."""
     place = len(_SIGNATURE)
     while place < len(data):
         length, name = struct.unpack_from(">I4s", data, place)

@@ -1,5 +1,5 @@
-"""Notebooks: a live picture in a cell, its parameters bound both ways to Python.
+"""Notebooks: a live picture in a cell, whose parameters are bound both ways to Python.
 
-Input: a scene, a shape or an image. Output: a widget. The picture is drawn by the
-player of exported pages; Python and the browser share its state only.
+Input: a scene, a shape or an image. Output: a widget. The player of exported pages draws the
+picture; Python and the browser share only its state.
 """

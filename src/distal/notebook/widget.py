@@ -1,8 +1,8 @@
 """The live picture of a notebook cell.
 
-Input: something that can be looked at, and values of its parameters. Output: a
-widget that shows it in the browser, whose state (parameters, time, view, camera) either side may
-change. Knows nothing of how the browser draws.
+Input: a viewable object, and values of its parameters. Output: a widget that shows it in the
+browser. Both sides can change its state (parameters, time, view, camera). Does not depend on how
+the browser draws.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from distal.scene.viewing.viewable import Viewable, viewable
 
 
 class LiveView(anywidget.AnyWidget):
-    """A live picture. Observe ``params``, ``time``, ``view``, ``steering`` as any trait's.
+    """A live picture. ``params``, ``time``, ``view`` and ``steering`` are traits to observe.
 
     Attributes:
         params: The value of each parameter by name. Set it, or ``set(name=value)``, from Python;
             controls in the browser change it.
         time: Seconds.
         playing: Whether the time runs.
-        view: What is shown: "color", "normal", "depth" …
-        steering: How the camera was moved: ``yaw``, ``pitch``, ``zoom``, ``pan``.
-        error: The browser driver's message about the shader, or "".
+        view: The name of the view: "color", "normal", "depth" …
+        steering: The movement of the camera: ``yaw``, ``pitch``, ``zoom``, ``pan``.
+        error: The message of the browser's driver about the shader, or "".
     """
 
     _esm = PLAYER
@@ -51,7 +51,7 @@ class LiveView(anywidget.AnyWidget):
     time = traitlets.Float(0.0).tag(sync=True)
     playing = traitlets.Bool(False).tag(sync=True)
     view = traitlets.Unicode("color").tag(sync=True)
-    steering = traitlets.Any().tag(sync=True)  # a Steering is taken too
+    steering = traitlets.Any().tag(sync=True)  # may also be set to a Steering
     error = traitlets.Unicode("").tag(sync=True)
 
     def __init__(
@@ -65,29 +65,29 @@ class LiveView(anywidget.AnyWidget):
         view: str = "color",
         panel: bool = True,
     ) -> None:
-        """A live picture of a scene, a shape or an ``@image``.
+        """Show a scene, a shape or an ``@image`` as a live picture.
 
         Args:
-            obj: What is shown.
+            obj: The object to show.
             size: Width and height of the picture in CSS pixels.
             params: Values of parameters by name; the others have their defaults.
-            time: Seconds at the start.
+            time: Initial time in seconds.
             playing: Whether the time runs; None: if the picture depends on it.
-            view: What is shown first.
-            panel: Whether there are controls beside the picture.
+            view: The initial view.
+            panel: Whether to show controls beside the picture.
 
         Raises:
-            CompileError: The scene code has mistakes, or says what WebGL cannot do.
-            ValueError: A value lies outside its parameter's range, or there is no such view.
+            CompileError: The scene code has mistakes, or uses something that WebGL lacks.
+            ValueError: A value is out of its parameter's range, or there is no such view.
         """
         size, time = checked_size(size), checked_time(time)
         self._seen: Viewable = viewable(obj, params, time)
         if view not in self._seen.views:
             raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
         values = self._checked(params)
-        # The view that is shown first is the widget's own trait.
+        # The widget's own trait, not the payload, determines the initial view.
         made = payload(self._seen, PageOptions(size=size, params=values, time=time, panel=panel))
-        # Without what WebGL cannot show.
+        # Without views that WebGL cannot show.
         self._views = [shown["name"] for shown in made["views"]]
         super().__init__(
             params={**{p.name: _plain(p.default) for p in self._seen.parameters}, **values},
@@ -103,8 +103,8 @@ class LiveView(anywidget.AnyWidget):
         """Change parameters: ``widget.set(softness=0.1)``.
 
         Raises:
-            ValueError: There is no such parameter, or a value lies outside its range.
-            TypeError: A value is of another kind.
+            ValueError: There is no such parameter, or a value is out of its range.
+            TypeError: A value has the wrong type.
         """
         self.params = {**self.params, **values}
 
@@ -121,18 +121,18 @@ class LiveView(anywidget.AnyWidget):
         seed: int = 0,
         freeze: bool = False,
     ) -> Picture:
-        """What the widget shows now, computed by Python: a ``Picture`` to save or to measure.
+        """Render what the widget shows now in Python, as a ``Picture`` to save or to measure.
 
         Args:
-            size: Width and height in pixels; the widget's without it.
-            device: As for ``Scene.render``, like all that follows.
+            size: Width and height in pixels; None for the widget's size.
+            device: As for ``Scene.render``, like all following arguments.
             threads: How many CPU threads to use.
-            progress: Called with the finished share.
-            cancel: Ends the work early.
+            progress: Called with the finished fraction.
+            cancel: Stops the rendering early.
             mouse: The frame's mouse.
-            index: The frame's number.
-            seed: Where random numbers start.
-            freeze: Make constants of all numbers.
+            index: The number of the frame.
+            seed: The seed of random numbers.
+            freeze: Compile all numbers as constants.
         """
         options = RenderOptions(
             size=size or self._size,
@@ -156,12 +156,12 @@ class LiveView(anywidget.AnyWidget):
 
     @traitlets.validate("params")
     def _check_params(self, proposal: Any) -> dict[str, Any]:
-        # What one side leaves out keeps its value: nothing is lost by a partial change.
+        # Parameters that a message omits keep their values, so partial changes lose nothing.
         return {**self.params, **self._checked(proposal["value"])}
 
     @traitlets.validate("time")
     def _check_time(self, proposal: Any) -> float:
-        # A message to the browser is JSON, which has no infinity.
+        # Messages to the browser are JSON, which has no infinity.
         return checked_time(proposal["value"])
 
     @traitlets.validate("view")
@@ -200,12 +200,12 @@ def _as_dict(steering: Steering) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """A parameter's value as JSON has it."""
+    """Return a parameter's value in the form for JSON."""
     return list(value) if isinstance(value, tuple) else value
 
 
 def show(obj: Any, **options: Unpack[ShowOptions]) -> LiveView:
-    """A live picture of a scene, a shape or an ``@image``; see ``LiveView``.
+    """Show a scene, a shape or an ``@image`` as a live picture; see ``LiveView``.
 
     Raises:
         TypeError: There is no such option.

@@ -1,7 +1,7 @@
-"""What a surface is made of at one place, and how much of the light goes which way.
+"""Materials: the optical properties of a surface at a point, and how it divides light.
 
-Input: colours, weights, optical constants. Output: a ``Surface``, and from it the
-shares of light that a ray splits into. Knows no geometry and no lights.
+Input: colours, weights, optical constants. Output: a ``Surface``, and from it the scattered,
+mirrored and transmitted fractions of a ray's light. Does not depend on geometry or lights.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ SILVER = vec3(0.91, 0.92, 0.92)
 
 @struct
 class Surface:
-    """A material at one place. Every field is a number that mixes linearly in blends.
+    """The material at a point. Every field is a number that blends linearly.
 
     Attributes:
-        color: Share of red, green and blue that is scattered, that a metal mirrors, that goes
-            through.
+        color: Fraction of red, green and blue that is scattered, mirrored by a metal, or
+            transmitted.
         diffuse: Weight of the light that is scattered evenly.
         specular: Weight of the light that is mirrored.
-        transmission: Weight of the light that goes through.
-        ior: Index of refraction of the inside against the outside.
-        roughness: 0 a perfect mirror, 1 as rough as paper; the width of highlights.
+        transmission: Weight of the light that is transmitted.
+        ior: Index of refraction of the inside relative to the outside.
+        roughness: From 0, a perfect mirror, to 1, as rough as paper; the width of highlights.
         metal: 1 for metals, whose mirrored light is tinted by ``color``.
-        emission: Light that the surface gives by itself.
-        absorption: How much light the inside takes for each unit of way (Beer and Lambert).
-        fresnel: 0, the weights hold. 1, the mirrored share follows Fresnel's formulas, and the
-            weights share out the rest.
+        emission: Light that the surface emits.
+        absorption: Absorption coefficient of the inside, per scene unit (Beer and Lambert).
+        fresnel: 0: only the weights count. 1: the mirrored fraction follows Fresnel's formulas, and
+            the weights divide the rest.
     """
 
     color: vec3 = WHITE
@@ -49,10 +49,10 @@ class Surface:
 @material("matte")
 @func
 def matte(color: vec3 = WHITE) -> Surface:
-    """A material that scatters light evenly to all sides: plaster, paper.
+    """A material that scatters light evenly in all directions: plaster, paper.
 
     Args:
-        color: What it scatters.
+        color: Fraction of the light that it scatters.
     """
     return Surface(color=color)
 
@@ -62,15 +62,15 @@ def matte(color: vec3 = WHITE) -> Surface:
 def glossy(
     color: vec3 = WHITE, diffuse: float = 0.5, specular: float = 0.5, roughness: float = 0.0
 ) -> Surface:
-    """A material that scatters a part of the light and mirrors a part, alike from all sides.
+    """A material that scatters part of the light and mirrors part, independent of the angle.
 
-    The shares add up to at most 1.
+    The weights add up to at most 1.
 
     Args:
-        color: What it scatters.
-        diffuse: Share of light scattered.
-        specular: Share of light mirrored.
-        roughness: 0 mirrors sharply, 1 hardly at all.
+        color: Fraction of the light that it scatters.
+        diffuse: Weight of scattered light.
+        specular: Weight of mirrored light.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
     """
     return Surface(color=color, diffuse=diffuse, specular=specular, roughness=roughness)
 
@@ -78,11 +78,11 @@ def glossy(
 @material("metal", reflects=True)
 @func
 def metal(color: vec3 = SILVER, roughness: float = 0.2) -> Surface:
-    """A metal: it mirrors in its own colour, white at the rim.
+    """A metal: it mirrors in its own colour, and white at grazing angles.
 
     Args:
-        color: What it mirrors, seen straight on.
-        roughness: 0 mirrors sharply, 1 hardly at all.
+        color: Colour of the mirrored light, seen straight on.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
     """
     return Surface(
         color=color, diffuse=0.0, specular=1.0, roughness=roughness, metal=1.0, fresnel=1.0
@@ -95,18 +95,18 @@ def mirror(color: vec3 = WHITE) -> Surface:
     """A perfect mirror.
 
     Args:
-        color: What it mirrors.
+        color: Colour of the mirrored light.
     """
     return Surface(color=color, diffuse=0.0, specular=1.0, metal=1.0)
 
 
 @func
 def glass(ior: float = 1.5, absorption: vec3 = BLACK) -> Surface:
-    """Clear glass: mirrors as Fresnel says and lets the rest through.
+    """Clear glass: mirrors by Fresnel's formulas and transmits the rest.
 
     Args:
         ior: Index of refraction: glass 1.5, water 1.33, diamond 2.42.
-        absorption: How much the inside takes for each unit of way.
+        absorption: Absorption coefficient of the inside, per scene unit.
     """
     return Surface(diffuse=0.0, transmission=1.0, ior=ior, absorption=absorption, fresnel=1.0)
 
@@ -114,32 +114,32 @@ def glass(ior: float = 1.5, absorption: vec3 = BLACK) -> Surface:
 @material("plastic", reflects=True)
 @func
 def plastic(color: vec3 = WHITE, roughness: float = 0.2, ior: float = 1.5) -> Surface:
-    """A scattering material under a clear coat: it mirrors more the flatter light comes.
+    """A scattering material under a clear coat, which mirrors more at grazing angles.
 
     Args:
-        color: What it scatters.
-        roughness: Of the coat; 0 mirrors sharply.
+        color: Fraction of the light that it scatters.
+        roughness: Roughness of the coat; 0 mirrors sharply.
         ior: Index of refraction of the coat.
     """
     return Surface(color=color, ior=ior, roughness=roughness, fresnel=1.0)
 
 
-# What shines may be brighter than white.
+# Emitted light may be brighter than white.
 @material("emissive", limits={"strength": Limit.NOT_NEGATIVE})
 @func
 def emissive(color: vec3 = WHITE, strength: float = 1.0) -> Surface:
-    """A material that shines by itself and shows nothing else.
+    """A material that emits light and reflects none.
 
     Args:
-        color: What it gives off.
-        strength: A factor on it; beyond 1 too.
+        color: Colour of the emitted light.
+        strength: Factor on the colour; may be above 1.
     """
     return Surface(color=BLACK, diffuse=0.0, emission=color * strength)
 
 
 @func
 def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
-    """``a`` where t is 0, ``b`` where it is 1, every number in proportion between."""
+    """Interpolate linearly from ``a`` (t = 0) to ``b`` (t = 1)."""
     return Surface(
         color=mix(a.color, b.color, t),
         diffuse=mix(a.diffuse, b.diffuse, t),
@@ -156,11 +156,11 @@ def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
 
 @func
 def fresnel_dielectric(cosine: float, eta: float) -> float:
-    """The share of unpolarised light that a clear surface mirrors.
+    """Return the fraction of unpolarised light that a clear surface mirrors.
 
     Args:
-        cosine: Of the angle between the ray and the normal, 0 to 1.
-        eta: Index beyond the surface over the index on the ray's side.
+        cosine: Cosine of the angle between the ray and the normal, 0 to 1.
+        eta: Index of refraction beyond the surface divided by that on the ray's side.
 
     Source: Fresnel's equations, e.g. Born and Wolf, "Principles of Optics", 1.5.2.
     """
@@ -174,7 +174,7 @@ def fresnel_dielectric(cosine: float, eta: float) -> float:
 
 @func
 def fresnel_metal(cosine: float, color: vec3) -> vec3:
-    """The share that a metal mirrors: its colour head on, white at the rim.
+    """Return the fraction that a metal mirrors: its colour straight on, white at grazing angles.
 
     Source: Christophe Schlick, "An Inexpensive BRDF Model for Physically-based Rendering" (1994).
     """
@@ -183,7 +183,7 @@ def fresnel_metal(cosine: float, color: vec3) -> vec3:
 
 @struct
 class Shares:
-    """Where the light of a ray that meets a surface comes from; the weights of each way."""
+    """The weights of the scattered, mirrored and transmitted light at a surface."""
 
     diffuse: vec3
     mirrored: vec3
@@ -192,15 +192,15 @@ class Shares:
 
 @func
 def shares(surface: Surface, cosine: float, inside: bool) -> Shares:
-    """The weights of scattered, mirrored and transmitted light.
+    """Return the weights of scattered, mirrored and transmitted light.
 
-    With Fresnel, the mirrored share is taken off the whole and the rest is divided by the weights;
-    a part that is neither scattered nor let through (a metal's) is lost. Beyond the critical angle
-    whatever would be transmitted is mirrored, with Fresnel or without.
+    With Fresnel, the mirrored fraction is subtracted from the whole, and the weights divide the
+    rest; what is neither scattered nor transmitted (in a metal) is lost. Beyond the critical angle
+    all light that would be transmitted is mirrored, with and without Fresnel.
 
     Args:
-        surface: The surface where the ray meets it.
-        cosine: Of the angle between the ray and the normal, 0 to 1.
+        surface: The material where the ray hits.
+        cosine: Cosine of the angle between the ray and the normal, 0 to 1.
         inside: Whether the ray comes from the inside.
     """
     eta = 1.0 / surface.ior if inside else surface.ior
@@ -221,24 +221,24 @@ def shares(surface: Surface, cosine: float, inside: bool) -> Shares:
 
 @func
 def brightest(color: vec3) -> float:
-    """The largest of the three."""
+    """Return the largest of the three components."""
     return max(color.r, color.g, color.b)
 
 
 @func
 def highlight(surface: Surface, n: vec3, view: vec3, light: vec3, widened: float) -> float:
-    """How a rough surface mirrors a light: relative to a white diffuse one, square on.
+    """Return the highlight of a light, relative to a white diffuse surface that faces the light.
 
     The microfacet distribution of Trowbridge and Reitz ("GGX") with the height-correlated masking
-    of Smith. A light that fills an angle widens the lobe; a point without size in a smooth mirror
-    shows nothing.
+    of Smith. A light of non-zero angular size widens the lobe; a point light in a smooth mirror is
+    not visible.
 
     Args:
-        surface: The surface; its ``roughness`` counts.
+        surface: The material; only ``roughness`` is used.
         n: Unit normal.
         view: Unit direction to the eye.
         light: Unit direction to the light.
-        widened: Tangent of half the angle that the light fills.
+        widened: Tangent of half the angular size of the light.
 
     Source: Walter et al., "Microfacet Models for Refraction through Rough Surfaces" (2007); Heitz,
         "Understanding the Masking-Shadowing Function" (2014); Karis, "Real Shading in Unreal
@@ -254,7 +254,7 @@ def highlight(surface: Surface, n: vec3, view: vec3, light: vec3, widened: float
     n_view = max(dot(n, view), 1e-4)
     n_middle = clamp(dot(n, middle), 0.0, 1.0)
     spread = 1.0 - n_middle * n_middle * (1.0 - squared)
-    # The distribution times pi: a white diffuse surface shows 1 / pi of the light it gets.
+    # The distribution times pi: a white diffuse surface shows 1 / pi of the incident light.
     facets = squared / max(spread * spread, 1e-12)
     masked_view = n_light * sqrt(n_view * n_view * (1.0 - squared) + squared)
     masked_light = n_view * sqrt(n_light * n_light * (1.0 - squared) + squared)

@@ -1,4 +1,4 @@
-"""Normals of a field: exact, or by differences.
+"""Normals of a field: exact, or by finite differences.
 
 Input: a field and a point. Output: a unit vector, never NaN.
 """
@@ -7,29 +7,29 @@ from __future__ import annotations
 
 from distal.lang import Field3, dot, func, gradient, inversesqrt, max, select, vec2, vec3
 
-# How a normal is found; a choice fixed when compiled.
+# The methods; the choice is a constant at compile time.
 EXACT = 0  # the field's own derivative
 SIX_TAPS = 1  # central differences: six evaluations
-TETRAHEDRON = 2  # four evaluations, nearly as good
-FORWARD = 3  # three, and one at the point itself; for water, and for speed
+TETRAHEDRON = 2  # four evaluations, almost as precise
+FORWARD = 3  # forward differences, for water and for speed: three evaluations and one at the point
 
 
 @func
 def unit_or_up(v: vec3) -> vec3:
-    """The vector at length 1; straight up where it has no direction."""
+    """Return the vector scaled to length 1; the unit vector up if it has no direction."""
     squared = dot(v, v)
     return select(squared > 1e-30, v * inversesqrt(max(squared, 1e-30)), vec3(0.0, 1.0, 0.0))
 
 
 @func
 def exact_normal(distance: Field3, p: vec3) -> vec3:
-    """By the field's derivative."""
+    """Return the normal by the field's derivative."""
     return unit_or_up(gradient(distance, p))
 
 
 @func
 def six_tap_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
-    """By central differences."""
+    """Return the normal by central differences."""
     total = vec3(0.0)
     for axis in range(3):
         way = vec3(0.0)
@@ -40,7 +40,7 @@ def six_tap_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
 
 @func
 def tetrahedron_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
-    """By the field at the four corners of a tetrahedron.
+    """Return the normal by evaluating the field at the four corners of a tetrahedron.
 
     Source: Paul Malin's and Inigo Quilez's, "Normals for an SDF"
         (https://iquilezles.org/articles/normalsSDF/).
@@ -59,7 +59,7 @@ def tetrahedron_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
 
 @func
 def forward_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
-    """By forward differences."""
+    """Return the normal by forward differences."""
     e = vec2(step, 0.0)
     beyond = vec3(distance(p + e.xyy), distance(p + e.yxy), distance(p + e.yyx))
     return unit_or_up(beyond - distance(p))
@@ -67,13 +67,13 @@ def forward_normal(distance: Field3, p: vec3, step: float = 1e-3) -> vec3:
 
 @func
 def normal(distance: Field3, p: vec3, kind: int, step: float) -> vec3:
-    """The unit normal at a point.
+    """Return the unit normal at a point.
 
     Args:
         distance: Field.
         p: Point.
         kind: EXACT, SIX_TAPS, TETRAHEDRON or FORWARD.
-        step: How far away the differences are taken.
+        step: Step of the differences, in scene units.
     """
     if kind == SIX_TAPS:
         return six_tap_normal(distance, p, step)

@@ -1,8 +1,9 @@
-"""Patterns: numbers and colours that differ from place to place on a surface.
+"""Patterns: numbers and colours that vary over a surface.
 
-Input: ``p``, the point in the painted shape's own space, ``n``, the normal there, ``cell``,
-the index of the repetition it lies in, and the numbers of a pattern. Output: a share from 0
-(the first colour or material) to 1 (the second), or a linear colour. Knows no shapes and no lights.
+Input: ``p``, the point in the coordinates of the painted shape, ``n``, the normal there, ``cell``,
+the index of the repetition that contains the point, and the numbers of a pattern. Output: a weight
+from 0 (the first colour or material) to 1 (the second), or a linear colour. Does not depend on
+shapes or lights.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ from distal.render.declarations import ExtraParameter, pattern
 
 PI = 3.14159265358979
 CENTER = vec3(0.0)
-# A face that lies on the border of two cubes of a checker would flicker between both; all cubes are
-# moved by this share of one, in no direction that faces commonly have.
+# A face on the border of two cubes of a checker would flicker between both, so all cubes are moved
+# by these fractions of their size; faces rarely have this direction.
 OFF_THE_BORDER = vec3(1.31e-4, 1.73e-4, 1.57e-4)
 ALONG_X = vec3(1.0, 0.0, 0.0)
 BELOW = vec3(0.0, -1.0, 0.0)
@@ -47,7 +48,7 @@ THIRDS = vec3(0.0, 0.33, 0.67)
 def _sides(
     first: str = "A colour, a pattern, or a material.", second: str = "The other."
 ) -> tuple[ExtraParameter, ExtraParameter]:
-    """The colours or materials of a pattern that gives the share of the second."""
+    """Return the parameters for the two colours or materials of a pattern that returns a weight."""
     annotation = "Color | Varying | Material"
     return (
         ExtraParameter("a", "#fff", annotation, first),
@@ -66,7 +67,7 @@ def _has_a_way(start: tuple[float, ...], end: tuple[float, ...]) -> str | None:
 @pattern("checker", extras=_sides())
 @func
 def checker(p: vec3, size: float = 1.0) -> float:
-    """Cubes of two colours or materials in turn; on a flat floor, squares.
+    """Cubes of two alternating colours or materials; squares on a flat floor.
 
     Args:
         p: Point.
@@ -78,7 +79,7 @@ def checker(p: vec3, size: float = 1.0) -> float:
 
 @func
 def checker2(p: vec3, size: float = 1.0) -> float:
-    """Squares in turn, seen from above; the height counts for nothing.
+    """Alternating squares in the xz plane; the height has no effect.
 
     Args:
         p: Point.
@@ -91,12 +92,12 @@ def checker2(p: vec3, size: float = 1.0) -> float:
 @pattern("stripes", extras=_sides(), requires=_has_layers)
 @func
 def stripes(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
-    """Layers of two colours or materials in turn.
+    """Layers of two alternating colours or materials.
 
     Args:
         p: Point.
-        size: How thick one layer is.
-        direction: Across the layers.
+        size: Thickness of one layer.
+        direction: Direction perpendicular to the layers.
     """
     return floor(dot(p, normalize(direction)) / size) % 2.0
 
@@ -110,12 +111,12 @@ def stripes(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
 )
 @func
 def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
-    """One colour or material that becomes another along a line.
+    """A blend from one colour or material to another along a line.
 
     Args:
         p: Point.
-        start: Where the change begins.
-        end: Where it is complete.
+        start: Where the blend starts.
+        end: Where the blend is complete.
     """
     way = end - start
     return clamp(dot(p - start, way) / max(dot(way, way), 1e-12), 0.0, 1.0)
@@ -129,19 +130,19 @@ def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
 )
 @func
 def radial_gradient(p: vec3, center: vec3 = CENTER, radius: float = 1.0) -> float:
-    """One colour or material that becomes another with the distance from a point.
+    """A blend from one colour or material to another with the distance from a point.
 
     Args:
         p: Point.
-        center: Where it begins.
-        radius: Where the change is complete.
+        center: Where the blend starts.
+        radius: Distance at which the blend is complete.
     """
     return clamp(length(p - center) / radius, 0.0, 1.0)
 
 
 @func
 def cell_number(cell: vec3, seed: float, salt: int) -> float:
-    """A number from 0 to 1 for each cell, the same on every target: an integer hash."""
+    """Return a number from 0 to 1 for a cell by an integer hash, the same on every target."""
     place = ivec3(int(round(cell.x)), int(round(cell.y)), int(round(cell.z)))
     return fraction(lattice_hash(place, int(floor(16.0 * seed)) + salt))
 
@@ -153,9 +154,9 @@ def clouds(p: vec3, size: float = 1.0, octaves: int = 4) -> float:
 
     Args:
         p: Point.
-        size: How large the largest clouds are.
-        octaves: How many layers of clouds, each half as large and half as strong as the one before;
-            fixed when compiled.
+        size: Size of the largest clouds.
+        octaves: Number of layers of clouds, each half as large and half as strong as the one
+            before; a constant at compile time.
     """
     return 0.5 + 0.5 * fbm(p / size, octaves)
 
@@ -173,10 +174,10 @@ def palette(
 
     Args:
         t: A pattern that gives a number, or a number.
-        base: The colour in the middle.
-        amplitude: How far each part swings.
-        frequency: How often each part swings as t goes from 0 to 1.
-        phase: Where in its swing each part begins.
+        base: The mean colour.
+        amplitude: Amplitude of each component.
+        frequency: Number of periods of each component as t goes from 0 to 1.
+        phase: Phase of each component, as a fraction of a period.
 
     Source: Inigo Quilez, "Procedural color palette" (https://iquilezles.org/articles/palettes/).
     """
@@ -186,13 +187,13 @@ def palette(
 @pattern("by_cell")
 @func
 def by_cell(cell: vec3, seed: float = 0.0) -> vec3:
-    """A colour of its own for each repetition of a shape that is painted, then repeated.
+    """A different colour for each repetition of a shape that is painted first, then repeated.
 
-    It has any hue, and is neither pale nor dark.
+    The colour has any hue, and is neither pale nor dark.
 
     Args:
         cell: Index of the repetition.
-        seed: Any number; another gives other colours.
+        seed: Any number; another seed selects other colours.
     """
     hue = cell_number(cell, seed, 0)
     depth = cell_number(cell, seed, 1)
@@ -202,12 +203,12 @@ def by_cell(cell: vec3, seed: float = 0.0) -> vec3:
 
 @func
 def limb_darkening(n: vec3, view: vec3, amount: float = 0.6) -> float:
-    """How bright a glowing ball like the sun is: 1 in the middle, less towards the rim.
+    """Return the brightness of a glowing ball like the sun: 1 in the middle, less at the rim.
 
     Args:
         n: Unit normal.
         view: Unit direction to the eye.
-        amount: How much the rim lacks (the sun: about 0.6).
+        amount: By how much the rim is darker (the sun: about 0.6).
 
     Source: the linear law of Schwarzschild (1906).
     """
@@ -216,25 +217,25 @@ def limb_darkening(n: vec3, view: vec3, amount: float = 0.6) -> float:
 
 @func
 def image_planar(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
-    """A picture laid on along z; its middle is at the origin, ``size`` wide and high.
+    """A picture projected along z; its middle is at the origin, ``size`` wide and high.
 
     Args:
         p: Point.
         image: Picture.
-        size: How large it is.
+        size: Size of the picture, in scene units.
     """
     return sample(image, p.xy / size + 0.5).rgb
 
 
 @func
 def image_triplanar(p: vec3, n: vec3, image: Texture2D, size: float = 1.0) -> vec3:
-    """A picture laid on from all three sides, blended where faces turn from one to another.
+    """A picture projected along all three axes, blended by the direction of the normal.
 
     Args:
         p: Point.
         n: Unit normal.
         image: Picture.
-        size: How large it is.
+        size: Size of the picture, in scene units.
     """
     weight = abs(n)
     weight = weight * weight * weight * weight
@@ -252,7 +253,7 @@ def image_spherical(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
     Args:
         p: Point.
         image: Picture.
-        size: Share of the turn that it covers, and of the way from pole to pole.
+        size: Fraction of the full turn that it covers, and of the angle from pole to pole.
     """
     around = atan2(p.x, p.z) / (2.0 * PI)
     height = atan2(p.y, length(p.xz)) / PI
@@ -261,12 +262,12 @@ def image_spherical(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
 
 @func
 def image_cylindrical(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
-    """A picture around the upright axis, as a label around a tin.
+    """A picture around the upright axis, like a label on a tin.
 
     Args:
         p: Point.
         image: Picture.
-        size: Share of the turn that it covers; ``size`` units high.
+        size: Fraction of the full turn that it covers; also its height in scene units.
     """
     around = atan2(p.x, p.z) / (2.0 * PI)
     return sample(image, vec2(around, p.y) / size + 0.5).rgb
@@ -274,7 +275,7 @@ def image_cylindrical(p: vec3, image: Texture2D, size: float = 1.0) -> vec3:
 
 @func
 def cube_map(p: vec3, image: TextureCube) -> vec3:
-    """Six pictures seen from the shape's centre.
+    """Six pictures, seen from the centre of the shape.
 
     Args:
         p: Point.
@@ -286,11 +287,11 @@ def cube_map(p: vec3, image: TextureCube) -> vec3:
 @pattern("waves", extras=_sides(), requires=_has_layers)
 @func
 def waves(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
-    """Two colours or materials going smoothly from one to the other and back.
+    """A smooth alternation between two colours or materials.
 
     Args:
         p: Point.
-        size: From one crest to the next.
-        direction: Across the waves.
+        size: Distance from one crest to the next.
+        direction: Direction across the crests.
     """
     return 0.5 + 0.5 * sin(2.0 * PI * dot(p, normalize(direction)) / size)

@@ -1,6 +1,6 @@
-"""The numbers of a picture in the form that the renderers take.
+"""Convert the numbers of a scene to the structs that the renderers take.
 
-Input: the numbers of a scene, the picture's resolution. Output: structs for marching and
+Input: the numbers of a scene, the resolution of the picture. Output: structs for marching and
 shading.
 """
 
@@ -15,24 +15,45 @@ from distal.render.shade import Look
 
 @func
 def march_numbers(divisor: float, near: float, far: float, resolution: vec2) -> March:
-    """The threshold is a third of a pixel of a usual lens, and not below 32-bit precision."""
+    """Return the parameters of a march.
+
+    The threshold is a third of a pixel of a usual lens, but not below 32-bit precision.
+
+    Args:
+        divisor: Distances are divided by it to get a safe step.
+        near: Distance along the ray where rays begin.
+        far: Distance along the ray where rays end.
+        resolution: Size of the picture in pixels.
+    """
     return March(max(divisor, 1.0), near, far, clamp(0.25 / resolution.y, 1e-4, 1e-3))
 
 
 @func
 def stride_over(bounds: Bounds, stride: float, stride_growth: float) -> Stride:
-    """The steps over terrain, which is below the top of its box."""
+    """Return the steps of the hybrid march over terrain, which is below the top of its box.
+
+    Args:
+        bounds: Box of the terrain.
+        stride: The shortest first step, per unit of distance.
+        stride_growth: The factor by which this length grows with each step.
+    """
     return Stride(bounds.high.y, stride, stride_growth)
 
 
 @func
 def look(ambient_occlusion: float, fog: vec3, fog_density: float) -> Look:
-    """The numbers of shading."""
+    """Return the parameters of shading.
+
+    Args:
+        ambient_occlusion: Reach of ambient occlusion, in scene units; 0 for none.
+        fog: Linear color of the fog.
+        fog_density: Fraction of the light that fog takes, per scene unit.
+    """
     return Look(ambient_occlusion, fog, fog_density)
 
 
 @func
 def grown_bounds(bounds: Bounds) -> Bounds:
-    """A box with a margin for the rounding of 32 bits."""
+    """Return a box with a margin for 32-bit rounding errors."""
     room = 1e-3 + 1e-4 * max(bounds.high - bounds.low, 0.0)
     return Bounds(bounds.low - room, bounds.high + room)

@@ -1,8 +1,8 @@
-"""Direct light: what a point on a surface sends to the eye.
+"""Direct light: the light that a point on a surface sends to the eye.
 
-Input: a ray, the ``SurfacePoint`` that it met, lights and ambient light. Output: linear light. The
-lights are evaluated in a loop with one shadow march; there is none for a light behind the surface.
-Glass casts shadows as solids do: caustics need path tracing.
+Input: a ray, the ``SurfacePoint`` that it hit, lights and ambient light. Output: linear light. A
+loop evaluates the lights and contains one shadow march, which is skipped for a light behind the
+surface. Glass casts the shadow of an opaque solid, because caustics need path tracing.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from distal.render.march import March, crossing
 from distal.render.material import highlight
 from distal.render.trace import SurfacePoint, ray_offset
 
-SHARPEST = 0.003  # tangent of the smallest half angle a light fills: sharper is noise
-HURRY = 0.04  # smallest step of a shadow ray in its second half, as a share of the distance
+SHARPEST = 0.003  # smallest tangent of a light's half angle: sharper shadows would be noisy
+HURRY = 0.04  # smallest step of a shadow ray in its second half, as a fraction of the distance
 OCCLUSION_TAPS = 5
 
 
 @struct
 class Look:
-    """How surfaces are shaded besides their lights.
+    """The parameters of shading besides the lights.
 
     Attributes:
         occlusion: Reach of ambient occlusion, in scene units; 0 for none.
         fog_color: Linear color.
-        fog_density: Share of the light that fog takes, per scene unit.
+        fog_density: Fraction of the light that fog takes, per scene unit.
     """
 
     occlusion: float
@@ -41,10 +41,18 @@ class Look:
 def soft_shadow(
     field: Field3, origin: vec3, light: LightSample, bounds: Bounds, numbers: March, steps: int
 ) -> float:
-    """1 where all of a light arrives, 0 where none; rays that pass near a surface are dimmed.
+    """Return the visible fraction of a light: 1 in full light, 0 in full shadow.
 
-    The share of the light's disc that a straight edge hides, judged by the closest approach to the
-    ray on both sides of it (Inigo Quilez, "Soft shadows in raymarched SDFs").
+    It is the fraction of the light's disc that a straight edge leaves visible, estimated from the
+    closest approach of the ray to a surface (Inigo Quilez, "Soft shadows in raymarched SDFs").
+
+    Args:
+        field: Signed distance.
+        origin: Start of the shadow ray.
+        light: The light at the point.
+        bounds: Box around the surface.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps.
     """
     span = crossing(Ray(origin, light.direction), bounds)
     end = min(light.distance, min(span.y, numbers.far))
@@ -56,8 +64,8 @@ def soft_shadow(
             break
         d = field(origin + t * light.direction) / numbers.divisor
         open_share = min(open_share, d / (width * t))
-        # A ray that grazes a surface for half of its steps takes longer ones after that. Else it
-        # would end before what hides the light farther away: bright lines within shadows.
+        # A ray that grazes a surface takes longer steps after half of its steps. Otherwise it would
+        # end before it reaches an occluder farther away: bright lines in shadows.
         least = (HURRY if 2 * i > steps else 0.1 * width) * t + numbers.threshold
         t += clamp(abs(d), least, max(0.5, 0.25 * t))
     open_share = max(open_share, -1.0)
@@ -66,7 +74,7 @@ def soft_shadow(
 
 @func
 def ambient_occlusion(field: Field3, p: vec3, n: vec3, reach: float, divisor: float) -> float:
-    """The share of ambient light that reaches a point: from a few distances along the normal."""
+    """Return the fraction of ambient light that reaches a point, from samples along the normal."""
     hidden = 0.0
     share = 1.0
     for i in range(OCCLUSION_TAPS):
@@ -79,7 +87,7 @@ def ambient_occlusion(field: Field3, p: vec3, n: vec3, reach: float, divisor: fl
 
 @func
 def fogged(color: vec3, t: float, fog_color: vec3, fog_density: float) -> vec3:
-    """A color seen through fog of a density per scene unit, ``t`` units away."""
+    """Return a color seen through fog of a given density per scene unit, ``t`` units away."""
     return mix(fog_color, color, exp(-fog_density * t))
 
 
@@ -97,27 +105,27 @@ def direct_light(
     shadow_steps: int,
     hybrid: bool,
 ) -> vec3:
-    """What a surface emits and sends back from the lights, seen through fog; no reflections.
+    """Return the light that a surface emits and scatters from the lights, seen through fog.
 
-    A rough surface mirrors a blurred picture of its surroundings: that share comes from the ambient
-    light.
+    Reflections are not included, except blurred ones: a rough surface mirrors a blurred picture of
+    its surroundings, which is approximated by the ambient light.
 
     Args:
-        ray: The ray that met the surface.
-        point: Where it met it.
+        ray: The ray that hit the surface.
+        point: The surface at the hit.
         field: Signed distance.
-        lights: The light of a number, from 0, as a point receives it.
-        ambient: Light from all around on a white surface, by its normal.
+        lights: The light with a given index, from 0, at a point.
+        ambient: Light from all directions on a white surface, by its normal.
         bounds: Box around the surface.
-        numbers: The numbers of the march.
+        numbers: The parameters of the march.
         look: Ambient occlusion and fog.
-        light_count: How many lights there are.
-        shadow_steps: The largest number of steps of a shadow ray; 0 for no shadows.
+        light_count: Number of lights.
+        shadow_steps: Maximum number of steps of a shadow ray; 0 for no shadows.
         hybrid: Whether the hybrid march found the surface; a constant.
     """
     n = point.n
     view = -ray.direction
-    # Shadow rays begin above the surface; the light's direction is that at the surface.
+    # Shadow rays start above the surface, but the direction to the light is that at the surface.
     lifted = point.p + ray_offset(numbers, point.t, hybrid) * n
     around = point.shares.diffuse * ambient(n)
     if point.surface.roughness > 0.0:

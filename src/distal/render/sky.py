@@ -1,8 +1,7 @@
-"""Backgrounds: what a ray sees that meets nothing.
+"""Backgrounds: the light of a ray that hits nothing.
 
-Input: a unit direction and the numbers of a background. Output: linear light. The
-sky's parts as lights are here too: its sun, as a ``LightSample``; its diffuse light is
-``ambient.sky_ambient``.
+Input: a unit direction and the numbers of a background. Output: linear light. The sky's sun as a
+light (a ``LightSample``) is here too; the sky's diffuse light is ``ambient.sky_ambient``.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ DIAGONAL = vec3(1.0, 1.0, 1.0)
 
 @func
 def plain_background(direction: vec3, color: vec3 = BLACK) -> vec3:
-    """One colour everywhere."""
+    """The same colour in every direction."""
     return color
 
 
@@ -32,7 +31,7 @@ def gradient_background(
     bottom: vec3 = PALE,
     top: vec3 = BLUE,
 ) -> vec3:
-    """One colour straight down, another straight up, evenly between by height.
+    """One colour straight down and another straight up, blended linearly by height.
 
     Args:
         direction: Unit direction.
@@ -46,7 +45,7 @@ def gradient_background(
 def sky_sun(
     p: vec3, sun: vec3, sun_color: vec3, sun_intensity: float, sun_angle: float
 ) -> LightSample:
-    """The sky's sun as a light."""
+    """Return the sky's sun as a light."""
     return distant_light(p, sun, sun_intensity, sun_color, sun_angle)
 
 
@@ -80,21 +79,21 @@ def sky(
 
     Args:
         direction: Unit direction.
-        sun: To the sun; of any length.
+        sun: Direction to the sun; of any length.
         sun_color: The sun's colour.
-        sun_intensity: How bright a white matte surface shows that faces the sun.
-        sun_angle: How wide the sun looks, in radians.
+        sun_intensity: The value that a white matte surface shows if it faces the sun.
+        sun_angle: Angular size of the sun, in radians.
         zenith: Colour overhead.
         horizon: Colour along the horizon.
         ground: Colour below.
-        intensity: Brightness of all but the sun.
+        intensity: Brightness of everything but the sun.
     """
     air = mix(horizon, zenith, clamp(direction.y, 0.0, 1.0))
-    # A thousandth on either side keeps the horizon from flickering.
+    # A blend over a thousandth on either side keeps the horizon from flickering.
     base = mix(ground, air, smoothstep(-1e-3, 1e-3, direction.y)) * intensity
     along = dot(direction, normalize(sun))
     rim = cos(0.5 * sun_angle)
     disc = smoothstep(rim - 0.2 * (1.0 - rim), rim + 0.2 * (1.0 - rim), along)
     glow = max(along, 0.0) ** 64 * 0.25 + max(along, 0.0) ** 512 * 0.5
-    # The disc is shown far dimmer than it is, or every tone map would burn it out.
+    # The disc is shown much dimmer than it is; otherwise every tone map would clip it to white.
     return base + sun_color * (sun_intensity * (4.0 * disc + glow))

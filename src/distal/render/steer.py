@@ -1,7 +1,8 @@
-"""A camera moved by hand: around its target, nearer, sideways.
+"""Camera movement by a person: orbit around the target, zoom, pan.
 
 Input: the rays of any camera, and five numbers: how far a person orbited, dragged and zoomed.
-Output: the rays of the moved camera. Windows and pages keep the five numbers and know no camera.
+Output: the rays of the moved camera. Windows and pages keep the five numbers and do not depend on
+cameras.
 """
 
 from __future__ import annotations
@@ -35,11 +36,11 @@ _FAR = 1e6
 
 @struct
 class Rig:
-    """The motion of a camera: turned and scaled about a pivot, which is then moved.
+    """The motion of a camera: a rotation and scaling about a pivot, then a translation.
 
     Attributes:
-        pivot: What it turns around.
-        moved: Where the pivot is afterwards.
+        pivot: The point that the camera turns around.
+        moved: The pivot after the translation.
         turn: The rotation.
         zoom: Factor on distances from the pivot.
     """
@@ -52,7 +53,7 @@ class Rig:
 
 @func
 def in_depth(ray: Ray, eye: Ray, depth: float) -> vec3:
-    """Where a ray meets the plane that faces the camera, ``depth`` ahead of it."""
+    """Return where a ray meets the plane that faces the camera, ``depth`` ahead of it."""
     ahead = eye.origin + eye.direction * depth - ray.origin
     share = dot(ahead, eye.direction) / dot(ray.direction, eye.direction)
     return ray.origin + ray.direction * share
@@ -60,9 +61,9 @@ def in_depth(ray: Ray, eye: Ray, depth: float) -> vec3:
 
 @func
 def pivot_within(bounds: Bounds, camera: Callable[[vec2], Ray]) -> vec3:
-    """What a camera without a target turns around: the place in its view nearest to the middle.
+    """Return the pivot of a camera without a target: on its axis, nearest to the box's middle.
 
-    An axis along which the shapes have no end has its middle at 0.
+    For an axis along which the box is infinite, the middle is 0.
     """
     low = bounds.low
     high = bounds.high
@@ -85,16 +86,16 @@ def rig(
     zoom: float,
     pan: vec2,
 ) -> Rig:
-    """How a camera moves.
+    """Return the motion of a camera.
 
     Args:
         camera: The ray of a place in the picture.
-        pivot: What it turns around.
-        up: The axis of its turns.
-        yaw: How far the eye goes around the pivot, to the right as it sees it, in radians.
-        pitch: How far it rises.
-        zoom: Factor on its distance.
-        pan: How far what is seen has been dragged in the picture; 1 is half the picture's height.
+        pivot: The point that it turns around.
+        up: The axis of horizontal turns.
+        yaw: Angle of the orbit to the right, as the camera sees it, in radians.
+        pitch: Angle of the orbit upwards, in radians.
+        zoom: Factor on the distance from the pivot.
+        pan: How far the picture was dragged; 1 is half the picture's height.
     """
     eye = camera(vec2(0.0))
     depth = max(dot(pivot - eye.origin, eye.direction), _LEAST)
@@ -102,7 +103,7 @@ def rig(
     across = (in_depth(camera(vec2(_ASIDE, 0.0)), eye, depth) - middle) / _ASIDE
     upward = (in_depth(camera(vec2(0.0, _ASIDE)), eye, depth) - middle) / _ASIDE
     axis = normalize(up)
-    # Seen in a mirror, right is left: the eye still goes where the hand goes.
+    # A mirrored camera swaps right and left; the eye still follows the hand.
     side = select(dot(cross(eye.direction, axis), across) < 0.0, -1.0, 1.0)
     turn = axis_matrix(axis, yaw * side) @ axis_matrix(normalize(across) * side, -pitch)
     moved = pivot - turn @ (across * pan.x + upward * pan.y) * zoom
@@ -111,7 +112,7 @@ def rig(
 
 @func
 def steered_ray(uv: vec2, camera: Callable[[vec2], Ray], rig: Rig) -> Ray:
-    """The ray of a place in the picture after the camera has moved."""
+    """Return the ray of a place in the picture after the camera has moved."""
     ray = camera(uv)
     origin = rig.moved + rig.turn @ ((ray.origin - rig.pivot) * rig.zoom)
     return Ray(origin, rig.turn @ ray.direction)
@@ -119,5 +120,5 @@ def steered_ray(uv: vec2, camera: Callable[[vec2], Ray], rig: Rig) -> Ray:
 
 @func
 def elevation(camera: Callable[[vec2], Ray], up: vec3) -> float:
-    """The angle by which a camera stands above what it looks at, in radians."""
+    """Return the angle of a camera above its target, in radians."""
     return -asin(clamp(dot(camera(vec2(0.0)).direction, normalize(up)), -1.0, 1.0))

@@ -19,20 +19,20 @@ NAMES = ("none", "reinhard", "aces", "agx", "neutral")
 
 @func
 def reinhard(c: vec3) -> vec3:
-    """Each c becomes c / (1 + c) (Reinhard et al., "Photographic tone reproduction", 2002)."""
+    """Map each c to c / (1 + c) (Reinhard et al., "Photographic tone reproduction", 2002)."""
     return c / (1.0 + c)
 
 
 @func
 def aces(c: vec3) -> vec3:
-    """The film curve of ACES, fitted (Krzysztof Narkowicz, 2015), with exposure kept at 1."""
+    """The fitted film curve of ACES (Krzysztof Narkowicz, 2015), with exposure kept at 1."""
     x = c * 0.6
     return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0)
 
 
 @func
 def neutral(c: vec3) -> vec3:
-    """Khronos PBR Neutral: colors stay true up to 0.8, then roll off towards white."""
+    """Khronos PBR Neutral: keeps colors up to 0.8, then compresses them towards white."""
     start = 0.76
     desaturation = 0.15
     low = min(c.x, min(c.y, c.z))
@@ -78,13 +78,13 @@ def agx(c: vec3) -> vec3:
 
 @func
 def decode_srgb_power(c: vec3) -> vec3:
-    """AgX's own display curve (a plain power of 2.2) undone."""
+    """Invert AgX's own display curve, a plain power of 2.2."""
     return max(c, 0.0) ** 2.2
 
 
 @func
 def tone_mapped(c: vec3, tone_map: int) -> vec3:
-    """Linear light within 0 to 1, by one of ``NAMES``."""
+    """Map linear light to 0 to 1 with one of ``NAMES``."""
     if tone_map == REINHARD:
         return reinhard(c)
     if tone_map == ACES:
@@ -98,5 +98,5 @@ def tone_mapped(c: vec3, tone_map: int) -> vec3:
 
 @func
 def display(color: vec4, exposure: float, tone_map: int) -> vec4:
-    """Linear light, straight alpha, to display values."""
+    """Convert linear light with straight alpha to display values."""
     return vec4(encode_srgb(tone_mapped(max(color.xyz, 0.0) * exposure, tone_map)), color.w)

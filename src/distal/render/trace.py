@@ -1,8 +1,9 @@
-"""From a ray to what it meets: the one place where a march, a normal and a material come together.
+"""Trace a ray to a surface; the only place that combines a march, a normal and a material.
 
-Input: a ray, a field, the material at each point, and the numbers of the march. Output: a ``Hit``
-(how far the ray went) or a ``SurfacePoint`` (the surface there, ready for shading). Direct light,
-mirrors, glass, views, layers and the probe all start here. Does not depend on lights or cameras.
+Input: a ray, a field, the material at each point, and the parameters of the march. Output: a
+``Hit`` (how far the ray went) or a ``SurfacePoint`` (the surface there, ready for shading). Direct
+light, mirrors, glass, views, layers and the probe all start here. Does not depend on lights or
+cameras.
 """
 
 from __future__ import annotations
@@ -20,15 +21,15 @@ from distal.render.normals import normal
 
 @struct
 class SurfacePoint:
-    """The surface that a ray met.
+    """The surface at the end of a ray.
 
     Attributes:
         t: Distance along the ray, in scene units.
-        inside: Whether the ray began inside a solid.
+        inside: Whether the ray started inside a solid.
         p: The point on the surface.
         n: The unit normal there, on the side that the ray came from.
         surface: The material there.
-        shares: How much of the light is scattered, mirrored and let through.
+        shares: The weights of scattered, mirrored and transmitted light.
     """
 
     t: float
@@ -55,10 +56,10 @@ def first_surface(
         field: Signed distance.
         ray: Ray.
         bounds: Box around the surface.
-        numbers: The numbers of the march.
-        steps: The largest number of steps.
-        hybrid: Whether to march as over terrain and water; a constant.
-        stride: How the hybrid march steps.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps.
+        hybrid: Whether to use the march for terrain and water; a constant.
+        stride: The steps of that march.
     """
     if hybrid:
         return march_heightfield(field, ray, bounds, numbers, stride, steps)
@@ -67,13 +68,13 @@ def first_surface(
 
 @func
 def hit_point(ray: Ray, hit: Hit) -> vec3:
-    """The point where a ray ended."""
+    """Return the point where a ray ended."""
     return ray.origin + hit.t * ray.direction
 
 
 @func
 def point_before(ray: Ray, hit: Hit, numbers: March) -> vec3:
-    """The point just before the end of a ray, where normals are evaluated.
+    """Return the point just before the end of a ray, where normals are evaluated.
 
     Many fields have no gradient on the surface itself in 32 bits (a signed length of the vector to
     the nearest edge, for example).
@@ -85,13 +86,13 @@ def point_before(ray: Ray, hit: Hit, numbers: March) -> vec3:
 def facing_normal(
     field: Field3, ray: Ray, hit: Hit, numbers: March, normals: int, normal_step: float
 ) -> vec3:
-    """The unit normal where a ray ended, on the side that the ray came from.
+    """Return the unit normal where a ray ended, on the side that the ray came from.
 
     Args:
         field: Signed distance.
         ray: Ray.
         hit: Where it ended.
-        numbers: The numbers of the march.
+        numbers: The parameters of the march.
         normals: EXACT, SIX_TAPS, TETRAHEDRON or FORWARD of ``normals``; a constant.
         normal_step: Step of the differences at distance 1 and nearer; it grows with the distance,
             as the size of a pixel and the rounding error do.
@@ -102,7 +103,7 @@ def facing_normal(
 
 @func
 def ray_offset(numbers: March, t: float, hybrid: bool) -> float:
-    """How far above a surface new rays begin: beyond the error of a march, above or below."""
+    """Return the height above a surface at which new rays start, beyond the error of a march."""
     error = 1.0 + ENOUGH if hybrid else 1.0
     return (1.0 + error) * numbers.threshold * t + 1e-4
 
@@ -117,17 +118,17 @@ def surface_point(
     normals: int,
     normal_step: float,
 ) -> SurfacePoint:
-    """The surface that ``first_surface`` found, with its normal and its material.
+    """Return the surface that ``first_surface`` found, with its normal and material.
 
-    A function of its own, so that rays that meet nothing compute neither.
+    This is a separate function, so that rays that hit nothing compute neither.
 
     Args:
         ray: Ray.
         hit: Where it ended, at a surface.
         field: Signed distance.
         surface: The material at a point.
-        numbers: The numbers of the march.
-        normals: How normals are found; a constant of ``normals``.
+        numbers: The parameters of the march.
+        normals: The method for normals; a constant of ``normals``.
         normal_step: As for ``facing_normal``.
     """
     inside = hit.side < 0.0

@@ -37,7 +37,7 @@ EMPTY = vec3(0.08, 0.08, 0.1)
 
 @func
 def heat(x: float) -> vec3:
-    """0 to 1 as dark blue, green, yellow, red: even steps look even."""
+    """Map 0 to 1 to dark blue, green, yellow, red; equal differences look about equal."""
     t = clamp(x, 0.0, 1.0)
     red = smoothstep(0.35, 0.75, t)
     green = smoothstep(0.05, 0.45, t) - 0.85 * smoothstep(0.65, 1.0, t)
@@ -47,7 +47,7 @@ def heat(x: float) -> vec3:
 
 @func
 def isolines(d: float, spacing: float) -> vec3:
-    """A distance: warm colors outside, cool ones inside, with a line for every ``spacing``."""
+    """Color a distance: warm outside, cool inside, with a line at every multiple of ``spacing``."""
     tint = vec3(0.95, 0.6, 0.3) if d > 0.0 else vec3(0.4, 0.65, 0.95)
     color = tint * (1.0 - exp(-3.0 * abs(d)))
     color *= 0.85 + 0.15 * cos(6.283185307 * d / spacing)
@@ -56,7 +56,7 @@ def isolines(d: float, spacing: float) -> vec3:
 
 @func
 def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """The normal's x, y, z as red, green, blue."""
+    """Show the normal's x, y, z as red, green, blue."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
@@ -65,7 +65,7 @@ def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
 
 @func
 def view_depth(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """Distance: near is bright; the brightness halves at 20/3 units."""
+    """Show the distance: near is bright; the brightness halves at 20/3 units."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(vec3(0.0), 0.0)
@@ -82,20 +82,20 @@ def view_steps(
     hybrid: bool = False,
     stride: Stride = STRIDE,
 ) -> vec4:
-    """The cost of a ray: how often the field was evaluated, as a share of the limit."""
+    """Show the cost of a ray: the number of field evaluations as a fraction of the limit."""
     hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
     return vec4(heat(float(hit.steps) / float(steps)), 1.0)
 
 
 @func
 def view_coordinate(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """Where the ray goes: its direction as a color."""
+    """Show the direction of the ray as a color."""
     return vec4(0.5 + 0.5 * ray.direction, 1.0)
 
 
 @func
 def view_signal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """The distance along the ray as a gray value, before any color."""
+    """Show the distance along the ray as a gray value."""
     hit = march(field, ray, bounds, numbers, steps)
     return vec4(vec3(exp(-0.2 * hit.t) if hit.found else 0.0), 1.0)
 
@@ -104,7 +104,7 @@ def view_signal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: 
 def view_slope(
     ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int, slope: float
 ) -> vec4:
-    """|gradient| on the surface, of the field's Lipschitz bound (slope); magenta above it."""
+    """Show |gradient| on the surface, relative to the Lipschitz bound (slope); magenta above it."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
@@ -123,7 +123,7 @@ def view_material(
     numbers: March,
     steps: int,
 ) -> vec4:
-    """The material's own color, without light; emission is added."""
+    """Show the material's color plus its emission, without light."""
     hit = march(field, ray, bounds, numbers, steps)
     if not hit.found:
         return vec4(EMPTY, 0.0)
@@ -133,7 +133,7 @@ def view_material(
 
 @func
 def view_distance(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
-    """The field on the plane through the origin that faces the camera."""
+    """Show the field on the plane through the origin that faces the camera."""
     t = -dot(ray.origin, ray.direction) / max(dot(ray.direction, ray.direction), 1e-6)
     return vec4(isolines(field(ray.origin + t * ray.direction), 0.1), 1.0)
 
@@ -142,7 +142,15 @@ def view_distance(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps
 def view_slice(
     ray: Ray, field: Field3, slice_normal: vec3, slice_offset: float, far: float
 ) -> vec4:
-    """The field's lines of equal distance on a plane."""
+    """Show the field's lines of equal distance on a plane.
+
+    Args:
+        ray: Ray.
+        field: Signed distance.
+        slice_normal: Unit normal of the plane.
+        slice_offset: Distance of the plane from the origin.
+        far: Distance along the ray where rays end.
+    """
     facing = dot(ray.direction, slice_normal)
     t = (slice_offset - dot(ray.origin, slice_normal)) / facing if abs(facing) > 1e-6 else -1.0
     if t < 0.0 or t > far:

@@ -1,7 +1,6 @@
-"""Video: a moving picture, rendered frame by frame and written as one file or as many.
+"""Video: render an animated picture frame by frame and write it as one file or as many.
 
-Input: anything that can be viewed, and how long it is shown. Output: mp4, webm, gif, apng, webp or
-numbered PNG files.
+Input: a viewable object and a duration. Output: mp4, webm, gif, apng, webp or numbered PNG files.
 """
 
 from __future__ import annotations

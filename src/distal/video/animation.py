@@ -1,7 +1,7 @@
-"""Animated pictures: GIF, APNG and WebP of frames in files.
+"""Write animated pictures, GIF, APNG or WebP, from frames in files.
 
-Input: the frames' PNG files, in order. Output: one file. Only a few frames are in
-memory at a time. Knows nothing of scenes.
+Input: the PNG files of the frames, in order. Output: one file. Only a few frames are in memory at
+a time. Does not depend on scenes.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from distal.video.segments import whole_or_nothing
 from distal.video.texts import with_texts
 
 Progress = Callable[[int], Any]
-# One palette for all frames and error diffusion. Measured on the raymarcher, 320x240, 40 frames,
-# dB of the blurred difference (what an eye sees of a dither) and kB: this 57.7, 377; Bayer 48.6,
-# 427; Pillow with one palette 52.3, 749; Pillow with a palette for each frame 59.7, 425, whose
-# still parts change color from frame to frame.
+# One palette for all frames, and error diffusion. Measured on the raymarcher, 320x240, 40 frames:
+# dB of the blurred difference (dithering as the eye sees it) and kB: this 57.7, 377; Bayer 48.6,
+# 427; Pillow with one palette 52.3, 749; Pillow with a palette per frame 59.7, 425, but colors of
+# still parts then change from frame to frame.
 _DITHER: Final = "dither=sierra2_4a:diff_mode=rectangle"
 
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """What is to be animated.
+    """The frames of an animated picture and how they are shown.
 
     Attributes:
         files: PNG files of one size, in order.
-        rate: Frames a second.
-        quality: Of webp: 0 to 100, or "lossless".
-        loop: Whether it is repeated without end; else played once.
-        texts: Metadata: title, comment and the like.
+        rate: Frames per second.
+        quality: For webp: 0 to 100, or "lossless".
+        loop: Whether it repeats forever; otherwise it is played once.
+        texts: Metadata: title, comment and others.
     """
 
     files: Sequence[Path]
@@ -49,26 +49,26 @@ class Animation:
     texts: Mapping[str, str]
 
     def times(self, ticks: int) -> list[int]:
-        """When each frame begins, and when the last ends, in a clock of so many ticks a second.
+        """Return when each frame begins and the last one ends, in a clock of ``ticks`` per second.
 
-        Each is the nearest tick, so that no error adds up: frames of one video may differ by one
-        tick in how long they are shown.
+        Each time is rounded to the nearest tick, so errors do not add up; the durations of frames
+        may differ by one tick.
         """
         exact = (i * ticks / self.rate for i in range(len(self.files) + 1))
         return [math.floor(time + Fraction(1, 2)) for time in exact]
 
 
 def animate(made: Animation, path: Path, format: VideoFormat, progress: Progress) -> None:
-    """Write one file of all frames.
+    """Write one file with all frames.
 
     Args:
         made: The frames, and how they are shown.
-        path: Where to write; not yet the place where others look.
+        path: The file to write, usually a temporary one.
         format: gif, apng or webp.
         progress: Called with the number of finished frames.
 
     Raises:
-        SaveError: A frame cannot be read, or the file not be written.
+        SaveError: A frame cannot be read, or the file cannot be written.
     """
     write = {"gif": _gif, "apng": _apng, "webp": _webp}[format.name]
     with whole_or_nothing(path):
@@ -101,7 +101,7 @@ def _gif(made: Animation, path: Path, progress: Progress) -> None:
 
 
 def _palette(made: Animation) -> Any:
-    """The 255 colors that suit all frames best, and one for what stays as it was."""
+    """Return the palette: the best 255 colors for all frames, and one for unchanged pixels."""
     graph = library().filter.Graph()
     source = _source(graph, _frame(made.files[0], 0))
     generate, end = graph.add("palettegen", "stats_mode=full"), graph.add("buffersink")
@@ -123,7 +123,7 @@ def _source(graph: Any, frame: Any) -> Any:
 
 
 def _pulled(end: Any) -> Iterator[Any]:
-    """The frames that a graph has ready."""
+    """Yield the frames that a graph has finished."""
     av = library()
     while True:
         try:
@@ -133,7 +133,7 @@ def _pulled(end: Any) -> Iterator[Any]:
 
 
 def _apng(made: Animation, path: Path, progress: Progress) -> None:
-    # The format holds a delay as a fraction: nothing is rounded.
+    # The format stores a delay as a fraction, so nothing is rounded.
     count = len(made.files)
     options = {"plays": "0" if made.loop else "1", "final_delay": str(1 / made.rate)}
     muxing = _Muxing("apng", "apng", 1 / made.rate, {"pred": "mixed"}, options)
@@ -144,9 +144,9 @@ def _webp(made: Animation, path: Path, progress: Progress) -> None:
     exact = made.quality == LOSSLESS
     how = {"lossless": "1"} if exact else {"quality": f"{made.quality:g}"}
     options = {"loop": "0" if made.loop else "1"}
-    # Not libwebp_anim, which keeps blocks that hardly changed since the frame before: where light
-    # changes slowly, ghosts of old frames stay, and files were no smaller (the raymarcher, 160x120,
-    # 8 frames at quality 80: 13.1 kB against 12.0).
+    # Not libwebp_anim, which keeps blocks that changed little since the previous frame: where light
+    # changes slowly, parts of old frames remain visible, and files were not smaller (the
+    # raymarcher, 160x120, 8 frames at quality 80: 13.1 kB against 12.0).
     muxing = _Muxing("webp", "libwebp", Fraction(1, 1000), how, options)
     frames = (frame.reformat(format="bgra", threads=1) for frame in _frames(made))
     _mux(frames, path, muxing, made.times(1000), progress)
@@ -164,7 +164,15 @@ class _Muxing:
 def _mux(
     frames: Iterator[Any], path: Path, how: _Muxing, times: Sequence[int], progress: Progress
 ) -> None:
-    """Encode frames into a file, each beginning at its time."""
+    """Encode frames into a file, each starting at its time.
+
+    Args:
+        frames: The frames, in order.
+        path: The file.
+        how: The container, the encoder and their options.
+        times: The start of each frame and the end of the last, in ticks of the clock.
+        progress: Called with the number of finished frames.
+    """
     container = library().open(str(path), "w", format=how.container, options=dict(how.options))
     stream: Any = None
     with container:
@@ -179,7 +187,7 @@ def _mux(
             frame.pts, frame.time_base = times[i], how.clock
             frame.duration = times[i + 1] - times[i]
             packets = stream.encode(frame)
-            if how.encoder == "libwebp":  # it forgets how long the last frame is shown
+            if how.encoder == "libwebp":  # it does not set the duration of the last frame
                 for packet in packets:
                     packet.duration = frame.duration
             container.mux(packets)
@@ -194,7 +202,7 @@ def _tag(context: Any) -> None:
 
 
 def _frames(made: Animation) -> Iterator[Any]:
-    """The frames in one format: with alpha if any has it."""
+    """Yield the frames in one pixel format: with alpha if any frame has it."""
     alpha = any(_mode(file) == "RGBA" for file in made.files)
     for i, file in enumerate(made.files):
         yield _frame(file, i, alpha=alpha)
@@ -206,7 +214,7 @@ def _mode(file: Path) -> str:
 
 
 def _frame(file: Path, index: int, *, alpha: bool = False) -> Any:
-    """A frame of a PNG file."""
+    """Read a frame from a PNG file."""
     try:
         with Image.open(file) as picture:
             levels = np.array(picture.convert("RGBA" if alpha else "RGB"))

@@ -1,7 +1,7 @@
-"""Frames into the pieces of a video, while others are rendered.
+"""Encode frames into the segments of a video while other frames are rendered.
 
-Input: pictures by their numbers, in order. Output: whole pieces. Frames are made
-ready on the threads that render, and encoded on one of their own.
+Input: pictures with their indices, in order. Output: complete segments. Frames are converted on the
+threads that render, and encoded on a separate thread.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from distal.video.segments import PIECE_SUFFIX, Piece
 
 
 class Encoding:
-    """Encodes frames as they come, piece by piece, on one thread.
+    """Encodes frames in order, segment by segment, on one thread.
 
     Args:
-        pieces: The files that are wanted, with the numbers of their frames, in order.
-        codec: How they are encoded.
+        pieces: The segment files to write, with the indices of their frames, in order.
+        codec: The codec.
         size: Width and height in pixels.
-        rate: Frames a second.
-        kept: Where each frame is left as a picture besides.
+        rate: Frames per second.
+        kept: Where to write each frame as a picture too; None for nowhere.
     """
 
     def __init__(
@@ -41,17 +41,17 @@ class Encoding:
     ) -> None:
         self._pieces = iter(pieces.items())
         self._codec = codec
-        self._converters = threading.local()  # each keeps tables that are one thread's
+        self._converters = threading.local()  # a converter has tables for use by a single thread
         self._size, self._rate = size, rate
         self._kept = kept
         self._piece: Piece | None = None
         self._last = -1
 
     def ready(self, index: int, picture: Picture) -> tuple[int, Any, Picture | None]:
-        """A frame as it waits; made where it was rendered, while its pixels are in the cache.
+        """Convert a frame for the queue, on the thread that rendered it, while it is in the cache.
 
-        A frame of 8 bits is a tenth of its picture: converted at once it costs 0.8 ms less of a
-        processor, at 640x480.
+        A frame of 8 bits is a tenth of the size of its picture; immediate conversion saves 0.8 ms
+        of processor time at 640x480.
         """
         if not hasattr(self._converters, "own"):
             self._converters.own = Converter(self._codec)
@@ -73,16 +73,16 @@ class Encoding:
             self._piece = None
 
     def abandon(self) -> None:
-        """Leave nothing of a piece that is not whole."""
+        """Remove an incomplete segment."""
         if self._piece is not None:
             self._piece.abandon()
 
 
 def encoder_threads() -> int:
-    """Half the processors: rendering needs the others, and one alone lags behind many."""
+    """Return half the processors: rendering needs the others, and one alone would be too slow."""
     return max(1, min(8, usable_threads() // 2))
 
 
 def piece_name(frames: range) -> str:
-    """The file of a piece, by its first and last frame."""
+    """Return the file name of a segment, made of its first and last frame."""
     return f"{frames[0]:06d}-{frames[-1]:06d}{PIECE_SUFFIX}"

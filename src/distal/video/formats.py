@@ -1,8 +1,8 @@
-"""Which kinds of moving pictures there are, and how each is encoded.
+"""The video formats, and the codec settings of each.
 
-Input: an output's path, a quality, a size, a frame rate. Output: a ``Codec``, the
-settings an encoder takes, or one line that says why it cannot be. Knows nothing of scenes; PyAV is
-imported when it is first needed.
+Input: an output path, a quality, a size, a frame rate. Output: a ``Codec``, the settings for an
+encoder, or an error of one line if the format cannot store them. Does not depend on scenes; PyAV is
+imported when first needed.
 """
 
 from __future__ import annotations
@@ -18,29 +18,29 @@ from distal.devices.features import host_features
 from distal.images.atomic_files import SaveError
 from distal.packages import PackageError, imported
 
-# A quality is a number from 0 to 100; these are its names.
+# Names for qualities; a quality is a number from 0 to 100.
 QUALITIES: Final[Mapping[str, float]] = {"low": 60.0, "medium": 70.0, "high": 80.0}
 LOSSLESS: Final = "lossless"
-# GIF counts in hundredths of a second, and viewers show a frame of 1/100 s for 1/10 s.
+# GIF counts in hundredths of a second, and viewers show a delay of 1/100 s as 1/10 s.
 GIF_FASTEST: Final = 50
 _NUMBERED: Final = re.compile(r"%(0\d+|)d")
 
 
 class VideoError(ValueError):
-    """An option of a video is invalid, or this kind of file cannot have it; in one line."""
+    """An option of a video is invalid or not supported by the format; the message is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class VideoFormat:
-    """A kind of file.
+    """A video format.
 
     Attributes:
         name: Its suffix without the dot; "frames" for numbered pictures.
-        encoded: Whether frames are encoded as they come, in segments; else they are kept as PNG
-            files first.
-        loops: Whether the file itself says how often it is played.
-        lossy: Whether a quality can be chosen.
-        largest: Pixels of its longest side.
+        encoded: Whether frames are encoded while rendering, in segments; otherwise they are first
+            written as PNG files.
+        loops: Whether the file stores how often it is played.
+        lossy: Whether it has a quality option.
+        largest: Maximum of width and height in pixels.
     """
 
     name: str
@@ -62,13 +62,13 @@ FRAMES: Final = VideoFormat("frames")
 
 @dataclass(frozen=True, slots=True)
 class Codec:
-    """How pictures of one size become the packets of one stream.
+    """The settings for encoding pictures into a video stream.
 
     Attributes:
         encoder: FFmpeg's name of the encoder.
-        pixels: The pixel format that is encoded.
-        options: The encoder's own settings.
-        exact: Whether the pixels are stored as they are, in RGB.
+        pixels: The pixel format of the stream.
+        options: Options of the encoder.
+        exact: Whether the pixels are stored unchanged, in RGB.
     """
 
     encoder: str
@@ -78,10 +78,10 @@ class Codec:
 
 
 def format_of(path: Path) -> VideoFormat:
-    """What is written to a path.
+    """Return the format for a path.
 
     Raises:
-        SaveError: The suffix is unknown, or a sequence's name has no place for the number.
+        SaveError: The suffix is unknown, or the name of a sequence has no place for the number.
     """
     suffix = path.suffix.lower()
     if suffix == ".png":
@@ -105,16 +105,16 @@ def _check_pattern(path: Path) -> None:
 
 
 def numbered(pattern: Path, index: int) -> Path:
-    """The file of a frame."""
+    """Return the file of a frame."""
     name = _NUMBERED.sub(lambda field: f"{index:{field[1]}d}", pattern.name)
     return pattern.with_name(name)
 
 
 def read_quality(quality: str | float, format: VideoFormat) -> float | str:
-    """A quality from 0 to 100, or "lossless".
+    """Return a quality as a number from 0 to 100, or "lossless".
 
     Raises:
-        VideoError: There is no such quality, or this kind of file has none to choose.
+        VideoError: There is no such quality, or the format does not support it.
     """
     if isinstance(quality, str) and quality == LOSSLESS:
         if format.name == "gif":
@@ -134,10 +134,15 @@ def read_quality(quality: str | float, format: VideoFormat) -> float | str:
 
 
 def check_size(size: tuple[int, int], format: VideoFormat, quality: float | str) -> None:
-    """Refuse a size that a kind of file cannot have.
+    """Check that the format supports a size.
+
+    Args:
+        size: Width and height in pixels.
+        format: The format.
+        quality: A number from 0 to 100, or "lossless".
 
     Raises:
-        VideoError: With the nearest size that it can have.
+        VideoError: It does not; the message has the nearest size that it supports.
     """
     width, height = size
     if max(size) > format.largest:
@@ -145,7 +150,7 @@ def check_size(size: tuple[int, int], format: VideoFormat, quality: float | str)
             f"{format.name} has at most {format.largest} pixels a side, not {max(size)}"
         )
     if format.encoded and quality != LOSSLESS and (width % 2 or height % 2):
-        # Players for everyone show 4:2:0 only, in which two pixels share a color.
+        # Common players support only 4:2:0, in which two pixels share a color.
         even = f"{width + width % 2}x{height + height % 2}"
         raise VideoError(
             f"{format.name} has even sides, {width}x{height} has not; the nearest is {even}, "
@@ -154,10 +159,10 @@ def check_size(size: tuple[int, int], format: VideoFormat, quality: float | str)
 
 
 def check_rate(rate: Fraction, format: VideoFormat) -> None:
-    """Refuse a frame rate that a kind of file cannot have.
+    """Check that the format supports a frame rate.
 
     Raises:
-        VideoError: It is too high for the file's clock.
+        VideoError: It is too high for the clock of the format.
     """
     if format.name == "gif" and rate > GIF_FASTEST:
         raise VideoError(
@@ -172,7 +177,7 @@ def check_rate(rate: Fraction, format: VideoFormat) -> None:
 
 
 def codec_of(format: VideoFormat, quality: float | str) -> Codec:
-    """How frames are encoded for mp4 and webm."""
+    """Return the codec settings for mp4 and webm."""
     if format.name == "mp4":
         if quality == LOSSLESS:
             options = {"preset": "veryfast", "qp": "0", "x264-params": _x264("")}
@@ -184,12 +189,12 @@ def codec_of(format: VideoFormat, quality: float | str) -> Codec:
     return Codec("libvpx-vp9", "yuv420p", {"crf": _crf(quality, 64.0, 63.0), "b": "0", **_VP9})
 
 
-# Rendering wants the processors too: a frame may cost the encoder little. Measured at 640x480 and
-# crf 18 on one thread, the raymarcher and the sea, ms of processor time, kB and dB a frame:
+# Rendering needs the processors too, so encoding must be cheap. Measured at 640x480 and crf 18 on
+# one thread, the raymarcher and the sea, ms of processor time, kB and dB per frame:
 # veryfast 3.4, 2.0, 48.1 and 4.0, 8.3, 40.3; superfast 2.0, 4.8, 51.7 and 2.5, 12.8, 42.2;
 # this 1.2, 2.0, 46.8 and 1.6, 7.8, 39.8 (with partitions and a lookahead of 10: 1.6, 1.9, 47.6 and
-# 1.9, 8.3, 40.2). Scenes move smoothly: what makes files small is the
-# lookahead (mbtree), not a thorough search for motion.
+# 1.9, 8.3, 40.2). Scenes move smoothly, so files are made small by the lookahead (mbtree), not by a
+# thorough motion search.
 _H264: Final = (
     "subme=0:me=dia:weightp=0:bframes=1:b-adapt=0:rc-lookahead=5:scenecut=0:partitions=none"
 )
@@ -198,23 +203,23 @@ _VP9: Final = {"deadline": "realtime", "cpu-used": "5", "row-mt": "1"}
 
 
 def _x264(params: str) -> str:
-    """The encoder's own parameters, on this processor."""
+    """Return x264's own parameters for this processor."""
     said = ["open-gop=0"] + ([params] if params else [])
     if host_features() >= {"avx512f", "avx2"}:
-        # Its AVX-512 code gave other bytes for the same frames in 1 to 15 of 100 runs (x264 165,
-        # 96x64), its AVX2 code never, 8 % faster: what goes on must equal what went before.
+        # x264's AVX-512 code gave other bytes for the same frames in 1 to 15 of 100 runs (x264 165,
+        # 96x64), its AVX2 code never, and 8 % faster. A continued run must give the same bytes.
         said.append("asm=avx2")
     return ":".join(said)
 
 
 def _crf(quality: float | str, worst: float, largest: float) -> str:
-    """The constant rate factor: two steps of quality for one of it; 80 is 18 in H.264."""
+    """Return the constant rate factor: 1 per two steps of quality; quality 80 is 18 in H.264."""
     assert not isinstance(quality, str)
     return f"{min(largest, worst - quality / 2.0):g}"
 
 
 def library() -> Any:
-    """PyAV.
+    """Import PyAV.
 
     Raises:
         SaveError: It is missing or broken.

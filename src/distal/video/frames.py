@@ -1,7 +1,7 @@
-"""Frames as PNG files: written whole, known again.
+"""Frames as PNG files that a later run can use again.
 
-Input: pictures and where they go. Output: files that carry a key of what they
-depend on, so that a later run keeps those that it would make alike.
+Input: pictures and their destinations. Output: files that contain a key, a hash of everything that
+the frame depends on. A later run keeps files with the right key.
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ KEY: Final = "distal:frame"
 
 
 class Frames:
-    """The files of a sequence's frames.
+    """The files of the frames of a sequence.
 
     Args:
         files: The file of each frame.
-        times: The time of each in seconds.
-        moving: What renders them. Its device counts: pictures of two devices differ a little.
+        times: The time of each frame in seconds.
+        moving: Renders the frames. Its device is part of the key, because the pictures of two
+            devices differ slightly.
     """
 
     def __init__(
@@ -39,11 +40,11 @@ class Frames:
         self._times = times
 
     def is_there(self, index: int) -> bool:
-        """Whether the frame's file holds what would be rendered."""
+        """Return whether the file of a frame exists and has the right key."""
         try:
             with Image.open(self.files[index]) as picture:
                 return picture.info.get(KEY) == self._key(index)
-        except Exception:  # Pillow raises of every kind on broken files
+        except Exception:  # Pillow raises many kinds of exceptions for broken files
             return False
 
     def write(self, index: int, picture: Picture) -> None:
@@ -62,7 +63,7 @@ class Frames:
 
 
 def make_folder(folder: Path) -> None:
-    """Make the folder of frames, and those above it.
+    """Make the folder of the frames and its parent folders.
 
     Raises:
         SaveError: It cannot be made.

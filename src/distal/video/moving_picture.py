@@ -1,8 +1,7 @@
-"""A picture as a function of time, and what its frames depend on.
+"""An animated picture: a picture as a function of time.
 
-Input: anything that is a picture, a view, parameters. Output: pictures by their
-number and time, and a fingerprint: moving pictures of one fingerprint have the same frames. Knows
-no file.
+Input: a viewable object, a view, parameters. Output: pictures by index and time, and a fingerprint:
+animated pictures with the same fingerprint have the same frames. Does not depend on files.
 """
 
 from __future__ import annotations
@@ -39,9 +38,9 @@ class MovingPicture:
     """A picture as a function of time.
 
     Attributes:
-        name: What the author calls it.
-        options: How each frame is rendered; time and index are those of the first.
-        fingerprint: Equal for moving pictures with the same frames.
+        name: The author's name of it.
+        options: How to render each frame; time and index are those of the first frame.
+        fingerprint: Equal for animated pictures with the same frames.
         source_hash: Hash of the text of the files that contain its scene code.
     """
 
@@ -64,12 +63,12 @@ class MovingPicture:
         return self.options.params
 
     def picture(self, index: int, time: float, size: tuple[int, int] | None = None) -> Picture:
-        """The picture of a time.
+        """Render the picture at a time.
 
         Args:
-            index: The frame's number.
+            index: The index of the frame.
             time: Seconds.
-            size: Width and height in pixels; its own without it.
+            size: Width and height in pixels; None for the picture's own size.
         """
         options = replace(self.options, size=size or self.size, time=time, index=index)
         return (
@@ -83,23 +82,24 @@ class MovingPicture:
         )
 
     def warn_if_black(self, picture: Picture, time: float) -> None:
-        """Warn of a first picture that shows nothing, as a still would."""
+        """Warn if the first picture is black, as rendering a still picture does."""
         if self._scene is not None and self._view == COLOR:
             warn_of_black(self._scene, picture, self.parameters, time)
 
 
 def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) -> MovingPicture:
-    """The moving picture that an object shows.
+    """Return the animated picture of an object.
 
     Args:
         obj: A scene, a shape or an ``@image``.
-        options: How each frame is rendered. The stage of a lone shape is as large as the shape is
-            at this time and for these parameters.
+        options: How to render each frame. The default scene of a single shape fits the size of
+            the shape at this time and for these parameters.
         view: One of its views.
+        samples: Rays per pixel of a scene.
         samples: Rays for each pixel of a scene.
 
     Raises:
-        LoadError: It is no picture.
+        LoadError: The object is not a picture.
         VideoError: There is no such view or parameter, or no such number of samples.
     """
     shown = viewable(obj, options.params, options.time)
@@ -121,7 +121,7 @@ def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) ->
 
 
 def _image(shown: Viewable, view: str, samples: int) -> tuple[Image | Composed, dict[str, Any]]:
-    """One program that gives display values: a second pass over each frame costs more."""
+    """Return one program that computes display values; a second pass per frame would be slower."""
     try:
         if checked_samples(samples) > 1 and shown.scene is None:
             raise VideoError(f"samples are for scenes and shapes; '{shown.name}' is an @image")
@@ -133,7 +133,7 @@ def _image(shown: Viewable, view: str, samples: int) -> tuple[Image | Composed, 
 
 
 def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dict[str, Any]:
-    """The parameters that the view reads; one that only another view reads may be given too."""
+    """Return the parameters that the view reads; values for other parameters are allowed too."""
     read = {
         u.source.name: u.source
         for u in lowered.module.uniforms
@@ -157,11 +157,11 @@ def _fingerprint(lowered: Lowered, settings: Mapping[str, Any]) -> str:
 
 
 def _bytes(data: Any) -> bytes:
-    """What a texture or a buffer holds; of a file its content."""
+    """Return the data of a texture or a buffer; for a file, its content."""
     if isinstance(data, str | Path):
         try:
             return Path(data).read_bytes()
-        except OSError:  # rendering reports what is wrong with it
+        except OSError:  # rendering reports the error
             return str(data).encode()
     try:
         array = np.asarray(data)

@@ -1,8 +1,8 @@
-"""Several kinds of work at once: items are made, in order, while others take those that are made.
+"""Run two kinds of work at the same time: items are made in order while other threads take them.
 
-Input: a function that makes, one that takes. Output: each item is given to a
-function that runs on threads of its own; a few wait in between, so that memory stays flat. Knows
-nothing of pictures.
+Input: a function that makes items, a function that takes them. Output: each item is passed to the
+second function, on separate threads. Few items wait in between, so memory use is constant. Does not
+depend on pictures.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from typing import Final, Generic, TypeVar
 
 Item = TypeVar("Item")
 Given = TypeVar("Given")
-# How many may wait: one on the way out and one on the way in, and two for an uneven pace.
+# Maximum number of waiting items: one for each side, and two more for uneven speed.
 WAITING: Final = 4
-_LOOK_S: Final = 0.1  # how long a failure on the other side may stay unseen
+_LOOK_S: Final = 0.1  # the longest time before an error of the other side is noticed
 
 
 class Taker(Generic[Item]):
-    """Gives items to threads; the first failure of theirs comes back to who puts the next."""
+    """Passes items to threads; ``put`` or ``finish`` raises the first error of a thread."""
 
     def __init__(self, take: Callable[[Item], None], workers: int) -> None:
         self._take = take
         self._queue: queue.Queue[Item | None] = queue.Queue(WAITING)
         self._failure: BaseException | None = None
         self._ended = threading.Event()
-        # Daemons: an encoder in the middle of a frame does not hold up an interpreter that ends.
+        # Daemon threads, so that an encoder in the middle of a frame does not delay the exit.
         self._threads = [threading.Thread(target=self._run, daemon=True) for _ in range(workers)]
         for thread in self._threads:
             thread.start()
 
     def put(self, item: Item | None) -> None:
-        """Pass on an item; waits while too many are underway."""
+        """Pass on an item; wait while too many are in the queue."""
         while True:
             if self._failure is not None:
                 raise self._failure
@@ -47,7 +47,11 @@ class Taker(Generic[Item]):
                 continue
 
     def finish(self) -> None:
-        """Wait until all is taken."""
+        """Wait until all items are taken.
+
+        Raises:
+            BaseException: The first error of a thread.
+        """
         for _ in self._threads:
             self.put(None)
         self._join()
@@ -55,14 +59,14 @@ class Taker(Generic[Item]):
             raise self._failure
 
     def abandon(self) -> None:
-        """Drop what waits; what is being worked on ends."""
+        """Drop waiting items; work on current items is finished."""
         self._ended.set()
         self._join()
 
     def _join(self) -> None:
         for thread in self._threads:
             while thread.is_alive():
-                thread.join(_LOOK_S)  # in turns, so that ctrl-C is heard everywhere
+                thread.join(_LOOK_S)  # with a timeout, so that ctrl-C is handled on every platform
 
     def _run(self) -> None:
         while not self._ended.is_set():
@@ -83,7 +87,7 @@ class Taker(Generic[Item]):
 
 @contextmanager
 def taking(take: Callable[[Item], None], workers: int = 1) -> Iterator[Taker[Item]]:
-    """Work on items beside the block; at its end all are done, or the first failure is raised."""
+    """Take items on threads during the block; its end waits for them or raises the first error."""
     taker = Taker(take, workers)
     try:
         yield taker
@@ -96,9 +100,15 @@ def taking(take: Callable[[Item], None], workers: int = 1) -> Iterator[Taker[Ite
 def made_ahead(
     make: Callable[[Given], Item], given: Iterable[Given], count: int, stop: Callable[[], object]
 ) -> Generator[Item, None, None]:
-    """What ``make`` makes of each, in order, ``count`` of them being made at once.
+    """Yield ``make`` of each item, in order, computing several at the same time.
 
-    Close it when it is left early: then ``stop`` is called, which should end what is being made.
+    If the generator is closed early, ``stop`` is called.
+
+    Args:
+        make: Makes an item.
+        given: The arguments for ``make``.
+        count: How many items to make at the same time.
+        stop: Should end the work on items that are being made.
     """
     waiting: deque[Future[Item]] = deque()
     with ThreadPoolExecutor(count) as pool:
@@ -119,7 +129,7 @@ def made_ahead(
 def _result(future: Future[Item]) -> Item:
     while True:
         try:
-            return future.result(_LOOK_S)  # in turns, so that ctrl-C is heard everywhere
+            return future.result(_LOOK_S)  # with a timeout, so that ctrl-C is handled everywhere
         except TimeoutError:
             if future.done():
                 return future.result()

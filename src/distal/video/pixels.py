@@ -1,7 +1,7 @@
-"""Pixels as encoders take them.
+"""Convert pixels for encoders.
 
-Input: display-encoded float pixels, top row first. Output: frames of 8 bits in RGB,
-or in BT.709's Y'CbCr with its tags. Knows nothing of files.
+Input: display-encoded float pixels, top row first. Output: 8-bit frames in RGB, or in BT.709's
+Y'CbCr with its color tags. Does not depend on files.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from distal.images.png import quantise
 from distal.video.formats import Codec, library
 
-# ITU-T H.273: the codes of BT.709's primaries, transfer and matrix; sRGB's transfer; RGB itself.
+# ITU-T H.273: the codes for BT.709's primaries, transfer and matrix; for sRGB's transfer; for RGB.
 BT709: Final = 1
 SRGB: Final = 13
 RGB: Final = 0
@@ -22,7 +22,7 @@ LIMITED, FULL = 1, 2  # FFmpeg's names for 16 to 235 and 0 to 255
 
 
 class Converter:
-    """Makes an encoder's frames of pictures; one for each thread, since it keeps its tables."""
+    """Converts pictures to frames for an encoder; one for each thread, because it caches tables."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
@@ -30,12 +30,12 @@ class Converter:
         reformatter = self._av.video.reformatter
         self._reformatter = reformatter.VideoReformatter()
         ways = reformatter.Interpolation
-        # Colors from all pixels. Exact rounding would take half as long again (0.71 ms instead of
-        # 0.46 at 640x480) and move colors by 0.06 of a level; brightness is the same.
+        # Chroma from all pixels. Exact rounding would take half as long again (0.71 ms instead of
+        # 0.46 at 640x480) and change colors by 0.06 of a level; brightness would be the same.
         self._way = ways.BILINEAR | ways.FULL_CHR_H_INP
 
     def frame(self, array: NDArray[np.float32]) -> Any:
-        """The frame of a picture; what is transparent shows its color."""
+        """Return the frame of a picture; alpha is ignored."""
         levels = quantise(array)
         made = self._av.VideoFrame.from_numpy_buffer(levels, "rgba")
         if self._codec.exact:
@@ -54,7 +54,7 @@ class Converter:
 
 
 def tag(context: Any, codec: Codec) -> None:
-    """Tell a stream's reader which colors its numbers mean."""
+    """Set the color tags of a stream."""
     context.color_primaries = BT709
     context.color_trc = SRGB if codec.exact else BT709
     context.colorspace = RGB if codec.exact else BT709

@@ -1,8 +1,8 @@
-"""``scene.video(…)``: a sequence rendered and written, from beginning to end.
+"""``scene.video(…)``: render and write a sequence.
 
-Input: a picture that moves, a path, how long and how fast. Output: the file, or
-numbered pictures. Frames are rendered on the caller's thread while others encode them; what is
-finished is kept, and the same call continues from there. ``formats`` says how files are encoded.
+Input: an animated picture, a path, a duration and a frame rate. Output: the file, or numbered
+pictures. Frames are rendered on several threads while others encode them. Finished parts are kept,
+and the same call continues from there. ``formats`` describes how files are encoded.
 """
 
 from __future__ import annotations
@@ -48,11 +48,11 @@ from distal.video.store import Store, Tell
 from distal.video.timing import Timing, timing
 
 Item = TypeVar("Item")
-# Called with (frames done, all frames, "rendering" or "encoding").
+# Called with (finished frames, all frames, "rendering" or "encoding").
 Progress = Callable[[int, int, str], Any]
-# Larger frames are rendered one by one: each takes 16 bytes a pixel.
+# Larger frames are rendered one at a time: each takes 16 bytes per pixel.
 MOST_PIXELS_AT_ONCE: Final = 2**24
-# A loop whose ends differ by more jumps: three steps of 255 on average.
+# A loop jumps if its ends differ by more than this: three steps of 255 on average.
 _JUMP: Final = 3.0 / 255.0
 
 
@@ -62,12 +62,12 @@ class FinishedSequence:
 
     Attributes:
         path: The file, or the pattern of the files.
-        frames: How many.
-        rendered: How many of them were rendered now; the others were there.
+        frames: Number of frames.
+        rendered: Number of frames rendered by this call; the others already existed.
         size: Width and height in pixels.
-        rate: Frames a second.
-        bytes: Of the file, or of all files.
-        seconds: What it took.
+        rate: Frames per second.
+        bytes: Size of the file, or of all files.
+        seconds: Duration of the call.
     """
 
     path: Path
@@ -108,7 +108,7 @@ def video(
     cancel: Cancel | None = None,
     tell: Tell | None = None,
 ) -> FinishedSequence:
-    """Render a picture that moves, and write it.
+    """Render an animated picture and write it.
 
     Frame i of ``round(duration * fps)`` shows the time ``start + i / fps``: with a duration of one
     period the last frame is one step before the first.
@@ -116,30 +116,30 @@ def video(
     Args:
         obj: A scene, a shape or an ``@image``.
         path: Ends in .mp4, .webm, .gif, .apng or .webp, or is like ``frames/%05d.png``, whose
-            folder is made.
+            folder is created.
         duration: Seconds.
-        fps: Frames a second: 30, 29.97 or "30000/1001".
+        fps: Frames per second: 30, 29.97 or "30000/1001".
         size: Width and height in pixels; even for mp4 and webm unless they are lossless.
         start: The time of the first frame in seconds.
         params: Values of parameters by name.
-        view: What to show; see ``Scene.render``.
-        samples: Rays for each pixel of a scene.
-        loop: Whether gif, apng and webp are repeated without end; else played once.
+        view: The view to show; see ``Scene.render``.
+        samples: Rays per pixel of a scene.
+        loop: Whether gif, apng and webp repeat forever; otherwise they are played once.
         quality: "low", "medium", "high", a number from 0 to 100, or "lossless".
-        device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
-            "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
-        threads: CPU threads that render; all when None.
-        keep_frames: A folder for every frame as a PNG file besides; it is made.
-        fresh: Render all again, even where an earlier call was broken off.
-        progress: Called with the frames done, all frames, and what is being done with them.
-        cancel: An event, or a function without arguments, that ends the work early; it is called by
-            the threads that render.
-        tell: Called with a line of text: where an interrupted run continues, why it starts again.
+        device: The device to render on: "auto" (a hardware GPU, else the CPU), "cpu", "gpu",
+            "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
+        threads: Number of CPU threads for rendering; None for all.
+        keep_frames: A folder to which every frame is also written as a PNG file; it is created.
+        fresh: Render all frames again, even after an interrupted call.
+        progress: Called with the finished frames, all frames, and the kind of work.
+        cancel: An event, or a function without arguments, that stops the work early; it is called
+            by the threads that render.
+        tell: Called with a line of text, for example that an interrupted run continues.
 
     Raises:
         SaveError: The file cannot be written, or PyAV is missing.
-        VideoError: An option is invalid, or this kind of file cannot have it.
-        CompileError: The scene is wrong; what is whole by then is kept.
+        VideoError: An option is invalid or not supported by the format.
+        CompileError: The scene has mistakes; parts that are complete by then are kept.
     """
     begin = time.perf_counter()
     output = Path(path)
@@ -201,7 +201,7 @@ class _RecordingJob:
     stop: threading.Event
 
     def run(self, keep: Path | None) -> tuple[int, int]:
-        """Make the file: the number of frames rendered, and the bytes written."""
+        """Make the file; return the number of frames rendered and the bytes written."""
         if self.format is FRAMES:
             return self._numbered()
         kept = None
@@ -268,7 +268,7 @@ class _RecordingJob:
 
     def _write_frames(self, frames: Frames) -> int:
         wanted = [i for i in range(self.timing.count) if self.fresh or not frames.is_there(i)]
-        # Measured: 13 ms for a PNG of 640x480 against 6 ms for rendering it on two processors.
+        # Measured: 13 ms for a PNG of 640x480, and 6 ms for rendering it on two processors.
         workers = max(1, min(4, usable_threads()))
         self._render(wanted, lambda i, made: (i, made), lambda item: frames.write(*item), workers)
         return len(wanted)
@@ -280,7 +280,14 @@ class _RecordingJob:
         take: Callable[[Item], None],
         workers: int,
     ) -> None:
-        """Render frames and make them ready, while threads take them."""
+        """Render frames and convert them, while other threads take them.
+
+        Args:
+            wanted: The indices of the frames.
+            ready: Converts a frame, on the thread that rendered it.
+            take: Takes a converted frame.
+            workers: How many threads take frames.
+        """
         indices = list(wanted)
         count = self.timing.count
         done = count - len(indices)
@@ -302,16 +309,17 @@ class _RecordingJob:
                 self.progress(done, count, "rendering")
 
     def _at_once(self) -> int:
-        """How many frames are rendered at once.
+        """Return how many frames are rendered at the same time.
 
-        While one waits for its last part, or becomes eight bits, the next keeps processors busy.
-        On two of them a video of 640x480 took 1.45 times as long as rendering alone, now 1.25.
+        While one frame waits for its last part, or is converted to 8 bits, the next keeps
+        processors busy. On two processors a video of 640x480 took 1.45 times as long as rendering
+        alone, now 1.25.
         """
         width, height = self.moving.size
         return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
 
     def compare_ends(self) -> None:
-        """Say it when a loop jumps: the picture one period later is another."""
+        """Report a loop that jumps: the picture one period later is different."""
         width, height = self.moving.size
         shrink = max(1, max(width, height) // 160)
         size = (max(1, width // shrink), max(1, height // shrink))
@@ -330,7 +338,7 @@ class _RecordingJob:
     # What is written down
 
     def _manifest(self) -> dict[str, Any]:
-        """What the pieces depend on; the duration is none of it, so that it may grow."""
+        """Return everything that segments depend on; not the duration, so that it may grow."""
         made = {
             "distal": __version__,
             "program": self.moving.fingerprint,
@@ -347,7 +355,7 @@ class _RecordingJob:
         return plain
 
     def texts(self) -> dict[str, str]:
-        """The file's own metadata."""
+        """Return the metadata of the file."""
         comment = {
             "software": f"distal {__version__}",
             "source": self.moving.name,
@@ -380,7 +388,7 @@ class _RecordingJob:
 
 
 def _amount(count: int) -> str:
-    """Bytes as people say them."""
+    """Format a number of bytes for people."""
     if count >= 10**6:
         return f"{count / 1e6:.1f} MB"
     return f"{count / 1e3:.1f} kB" if count >= 1000 else f"{count} bytes"

@@ -1,8 +1,8 @@
-"""Pieces of a video: encoded one by one, joined without encoding again.
+"""Segments of a video: encode them separately, and join them without encoding again.
 
-Input: pictures; later the pieces' paths. Output: a file for each piece, whole or
-not there, and one file of all. Each piece begins with a key frame and needs no other. Knows nothing
-of scenes and of who decides where a piece ends.
+Input: pictures; later the paths of segments. Output: a file for each segment, which appears when
+complete, and one file of all segments. Each segment begins with a key frame and does not refer to
+others. Does not depend on scenes or on where segments end.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from distal.images.atomic_files import SaveError, move_into_place
 from distal.video.formats import Codec, VideoFormat, library
 from distal.video.pixels import tag
 
-# MP4 takes the packets of both codecs and any clock; Matroska's counts milliseconds only.
+# MP4 can store the packets of both codecs with any clock; Matroska's clock counts milliseconds.
 PIECE_SUFFIX: Final = ".mp4"
 
 
 class Piece:
-    """One piece while it is encoded.
+    """A segment that is being encoded.
 
     Args:
-        path: Its file once it is complete.
-        codec: How it is encoded.
+        path: Its file when it is complete.
+        codec: The codec.
         size: Width and height in pixels.
-        rate: Frames a second.
-        threads: How many the encoder uses.
+        rate: Frames per second.
+        threads: Number of threads of the encoder.
     """
 
     def __init__(
@@ -51,22 +51,22 @@ class Piece:
         self._stream = stream
 
     def add(self, frame: Any) -> None:
-        """Encode the next picture, as a ``Converter`` made it."""
+        """Encode the next frame, as converted by a ``Converter``."""
         frame.pts, frame.time_base = self._count, 1 / self._rate
         self._count += 1
         with writing(self._path):
             self._container.mux(self._stream.encode(frame))
 
     def finish(self) -> None:
-        """Encode what is still waiting, and let the file appear."""
+        """Encode the remaining frames, and move the file to its path."""
         with writing(self._path):
             self._container.mux(self._stream.encode(None))
             self._container.close()
             move_into_place(self._partial, self._path)
 
     def abandon(self) -> None:
-        """Leave nothing."""
-        with suppress(Exception):  # an encoder that was broken off may complain
+        """Remove the incomplete file."""
+        with suppress(Exception):  # an interrupted encoder may raise an error
             self._container.close()
         with suppress(OSError):
             self._partial.unlink()
@@ -79,19 +79,19 @@ def join(
     rate: Fraction,
     texts: Mapping[str, str],
 ) -> None:
-    """One file of all pieces, its packets as they are.
+    """Join segments to one file; their packets are copied.
 
     Args:
-        pieces: Each one's file and its number of frames, in order.
-        path: Where the file appears when it is whole; in the folder of the pieces.
+        pieces: The file and the number of frames of each segment, in order.
+        path: The file to write, in the folder of the segments.
         format: mp4 or webm.
-        rate: Frames a second.
-        texts: The container's metadata.
+        rate: Frames per second.
+        texts: Metadata of the container.
 
     Raises:
-        SaveError: A piece cannot be read or the file not be written.
+        SaveError: A segment cannot be read, or the file cannot be written.
     """
-    # Without this flag Matroska's files carry a random number: one video would be two files.
+    # Without this flag Matroska files contain a random number, so equal videos would differ.
     options = {"fflags": "+bitexact"}
     if format.name == "mp4":
         options["movflags"] = "+faststart"
@@ -101,7 +101,7 @@ def join(
             out.metadata.update(texts)
             _copy(pieces, out, rate)
         except BaseException:
-            with suppress(Exception):  # the first error is reported, not that the end is missing
+            with suppress(Exception):  # report the first error, not the one of closing
                 out.close()
             raise
         out.close()
@@ -122,7 +122,7 @@ def _copy(pieces: Sequence[tuple[Path, int]], out: Any, rate: Fraction) -> None:
 
 
 def _read(file: Path, first: int, count: int, rate: Fraction) -> tuple[Any, list[Any]]:
-    """A piece and its packets; one that is damaged goes, so that it is made again."""
+    """Open a segment and read its packets; delete a damaged one, so that it is encoded again."""
     packets = []
     with suppress(OSError, library().FFmpegError):
         source = library().open(str(file))
@@ -138,9 +138,9 @@ def _read(file: Path, first: int, count: int, rate: Fraction) -> tuple[Any, list
 
 
 def _shifted(source: Any, first: int, rate: Fraction) -> Iterator[Any]:
-    """A piece's packets, counted in frames from the video's beginning."""
+    """Yield the packets of a segment, with times counted in frames from the start of the video."""
     for packet in source.demux(video=0):
-        if packet.pts is None or packet.dts is None:  # the end's empty packet
+        if packet.pts is None or packet.dts is None:  # the empty packet at the end
             continue
         clock = packet.time_base * rate
         packet.pts = first + round(packet.pts * clock)
@@ -151,16 +151,16 @@ def _shifted(source: Any, first: int, rate: Fraction) -> Iterator[Any]:
 
 
 def partial(path: Path) -> Path:
-    """The name of a file that is not whole yet."""
+    """Return the name of a file that is not complete yet."""
     return path.with_name(f"{path.stem}.partial{path.suffix}")
 
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Tell failures of the file system and of FFmpeg in one line."""
+    """Convert errors of the file system and of FFmpeg to a ``SaveError`` of one line."""
     try:
         yield
-    except OSError as error:  # FFmpeg's errors of files are these too
+    except OSError as error:  # includes FFmpeg's errors about files
         raise SaveError(f"cannot write {path}: {error.strerror or error}") from error
     except library().FFmpegError as error:
         raise SaveError(f"cannot write {path}: {error}") from error
@@ -168,7 +168,7 @@ def writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def whole_or_nothing(path: Path) -> Iterator[None]:
-    """Tell failures as ``writing`` does, and leave nothing: half a file may fill a disk."""
+    """Convert errors as ``writing`` does, and delete the incomplete file, which may be large."""
     try:
         with writing(path):
             yield

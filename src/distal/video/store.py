@@ -1,7 +1,8 @@
-"""What is kept of a video while it is made, so that broken-off work goes on where it ended.
+"""The folder with the finished parts of a video, so that an interrupted run can continue.
 
-Input: an output's path, and what its frames depend on. Output: a folder beside the
-output, with a manifest, that holds whole pieces only. Knows nothing of how they are made.
+Input: the path of the output, and everything that its frames depend on. Output: a folder in the
+folder of the output, with a manifest and complete parts only. Does not depend on how parts are
+made.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from distal.images.atomic_files import SaveError, check_destination, move_into_p
 
 try:
     import fcntl
-except ImportError:  # Windows: two that write one output are not kept apart there
+except ImportError:  # Windows: two processes that write the same output are not detected
     fcntl = None  # type: ignore[assignment]
 
 MANIFEST: Final = "manifest.json"
@@ -37,12 +38,12 @@ class Store:
         self._lock: IO[Any] | None = None
 
     def open(self, manifest: Mapping[str, Any], fresh: bool, tell: Tell) -> None:
-        """Make the folder, or go on with it if it belongs to the same video.
+        """Create the folder, or continue with it if it belongs to the same video.
 
         Args:
-            manifest: What the frames depend on, as JSON values.
+            manifest: Everything that the frames depend on, as JSON values.
             fresh: Start again in any case.
-            tell: Called with the reason why work starts again.
+            tell: Called with the reason if the work starts again.
 
         Raises:
             SaveError: The folder cannot be made, or another process uses it.
@@ -52,7 +53,8 @@ class Store:
             if self.folder.is_symlink():
                 raise SaveError(f"cannot write {self.folder}: it is a link")
             self.folder.mkdir(exist_ok=True)
-            # Nothing here is a link by our hand: what it leads to would be written or emptied.
+            # distal creates no links here; writing or deleting through one would change files
+            # elsewhere.
             for path in self.folder.iterdir():
                 if path.is_symlink():
                     path.unlink()
@@ -77,16 +79,20 @@ class Store:
             raise
 
     def path(self, name: str) -> Path:
-        """The file of a piece."""
+        """Return the file of a part."""
         return self.folder / name
 
     def items(self) -> list[Path]:
-        """The whole pieces, and frames, that are there."""
+        """Return the complete segments and frames in the folder."""
         names = (MANIFEST, LOCK)
         return [p for p in self.folder.iterdir() if p.name not in names and p.name[0] != "."]
 
     def appear(self, made: Path) -> None:
-        """Move the finished video to its place and drop the folder."""
+        """Move the finished video to its path and delete the folder.
+
+        Raises:
+            SaveError: The video cannot be moved.
+        """
         try:
             move_into_place(made, Path(os.path.realpath(self.output)))
         except OSError as error:
@@ -95,7 +101,7 @@ class Store:
         self.close()
 
     def close(self) -> None:
-        """Let others use the folder; an empty one goes."""
+        """Release the folder for other processes; delete it if it is empty."""
         if self._lock is None:
             return
         with suppress(OSError):
@@ -134,7 +140,7 @@ class Store:
 
 
 def _changed(known: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
-    """What differs, in words."""
+    """Describe the differences of two manifests."""
     changes = []
     for name, value in wanted.items():
         if known.get(name) == value:

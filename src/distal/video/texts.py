@@ -1,7 +1,7 @@
-"""Texts inside animated pictures: what FFmpeg's writers of them leave out.
+"""Write texts into animated pictures, which FFmpeg's writers do not do.
 
-Input: a finished GIF, APNG or WebP, and texts. Output: the same file with them:
-a comment extension, iTXt chunks, an EXIF chunk. Pixels are not touched.
+Input: a finished GIF, APNG or WebP, and texts. Output: the same file with the texts in a comment
+extension, iTXt chunks or an EXIF chunk. Pixels are not changed.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def with_texts(path: Path, format: VideoFormat, texts: Mapping[str, str]) -> Non
 
 
 def _gif(source: BinaryIO, target: BinaryIO, texts: Mapping[str, str]) -> None:
-    """A comment extension behind the palette (GIF89a, section 24): blocks of 255 bytes at most."""
+    """Insert a comment extension after the palette (GIF89a, section 24): blocks of <= 255 bytes."""
     header = source.read(13)
     flags = header[10]
     palette = source.read(3 << ((flags & 7) + 1)) if flags & 0x80 else b""
@@ -50,7 +50,7 @@ def _gif(source: BinaryIO, target: BinaryIO, texts: Mapping[str, str]) -> None:
 
 
 def _png(source: BinaryIO, target: BinaryIO, texts: Mapping[str, str]) -> None:
-    """SRGB and iTXt chunks behind IHDR (PNG specification, 11.3.2.5 and 11.3.3.4)."""
+    """Insert sRGB and iTXt chunks after IHDR (PNG specification, 11.3.2.5 and 11.3.3.4)."""
     target.write(source.read(8 + 25))  # the signature and IHDR
     target.write(_chunk(b"sRGB", b"\0"))  # perceptual, the intent for pictures
     for key, text in texts.items():
@@ -65,9 +65,9 @@ def _chunk(name: bytes, body: bytes) -> bytes:
 
 
 def _webp(file: BinaryIO, texts: Mapping[str, str]) -> None:
-    """An EXIF chunk at the end (WebP container specification, "Extended File Format")."""
+    """Append an EXIF chunk (WebP container specification, "Extended File Format")."""
     head = file.read(30)
-    if head[12:16] != b"VP8X":  # one frame alone: the simple format has no room for it
+    if head[12:16] != b"VP8X":  # a single frame: the simple format cannot store it
         return
     _replace_frames(file)
     exif = Image.Exif()
@@ -85,7 +85,7 @@ def _webp(file: BinaryIO, texts: Mapping[str, str]) -> None:
 
 
 def _replace_frames(file: BinaryIO) -> None:
-    """Mark frames as taking the place of what is there: FFmpeg's would be laid over it by alpha."""
+    """Mark frames as not blended; otherwise viewers would blend them over the previous frame."""
     at = 12
     while len(head := _read_at(file, at, 8)) == 8:
         (size,) = struct.unpack_from("<I", head, 4)
@@ -102,5 +102,5 @@ def _read_at(file: BinaryIO, at: int, count: int) -> bytes:
 
 
 def _together(texts: Mapping[str, str]) -> str:
-    """All in one comment, where a file holds only one."""
+    """Join all texts to one comment, for formats with a single comment."""
     return texts.get("comment") or json.dumps(dict(texts), sort_keys=True)

@@ -1,7 +1,7 @@
-"""How the frames of a sequence lie in time.
+"""The times of the frames of a sequence.
 
-Input: a start, a duration, a frame rate, as people write them. Output: exact counts
-and times. Fractions throughout: 30000/1001 is no decimal number.
+Input: a start, a duration, a frame rate, as people write them. Output: exact counts and times.
+Fractions are used everywhere, because 30000/1001 is not a decimal number.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from typing import Final
 from distal.ir.limits import LARGEST_TIME
 from distal.video.formats import VideoError
 
-# More is a mistake of units: three hours at 90 frames a second are fewer.
+# More frames are a mistake in units: three hours at 90 frames per second are fewer.
 MOST_FRAMES: Final = 1_000_000
 PIECE_S: Final = 2
-# Numbers further from 1 are a mistake, and as fractions they would fill the memory: 1e999999999.
+# Longer numbers are a mistake, and as fractions could fill the memory, such as 1e999999999.
 _MOST_DIGITS: Final = 40
-# Broadcast rates as people write them.
+# Broadcast rates in the short form that people write.
 _BROADCAST: Final = {
     "23.976": Fraction(24000, 1001),
     "23.98": Fraction(24000, 1001),
@@ -33,13 +33,13 @@ _BROADCAST: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """When each frame is.
+    """The times of the frames.
 
     Attributes:
         start: Time of the first frame in seconds.
-        duration: Seconds; the period of what loops, since the frame after the last would be the
-            first again.
-        rate: Frames a second.
+        duration: Seconds; for a loop its period, because the frame after the last would equal the
+            first.
+        rate: Frames per second.
     """
 
     start: Fraction
@@ -52,26 +52,26 @@ class Timing:
         return max(1, math.floor(self.duration * self.rate + Fraction(1, 2)))
 
     def time(self, index: int) -> float:
-        """The time of a frame in seconds."""
+        """Return the time of a frame in seconds."""
         return float(self.start + index / self.rate)
 
     @property
     def pieces(self) -> list[range]:
-        """The frames of each two seconds."""
+        """The frames of each segment of two seconds."""
         step = max(1, round(PIECE_S * self.rate))
         return [range(i, min(i + step, self.count)) for i in range(0, self.count, step)]
 
 
 def timing(start: object, duration: object, rate: object) -> Timing:
-    """The timing of a video, checked.
+    """Return the timing of a video, checked.
 
     Args:
-        start: Seconds of the first frame.
+        start: Time of the first frame in seconds.
         duration: Seconds.
-        rate: Frames a second, as for ``frame_rate``.
+        rate: Frames per second, as for ``frame_rate``.
 
     Raises:
-        VideoError: A value is no number, or out of range.
+        VideoError: A value is not a number, or is out of range.
     """
     made = Timing(_seconds("start", start), _seconds("duration", duration), frame_rate(rate))
     if made.duration <= 0:
@@ -91,10 +91,10 @@ def timing(start: object, duration: object, rate: object) -> Timing:
 
 
 def frame_rate(rate: object) -> Fraction:
-    """Frames a second: 30, "30000/1001", or 29.97, which means the same.
+    """Return frames per second as a fraction: 30, "30000/1001", or 29.97 for the same.
 
     Raises:
-        VideoError: It is no number above 0.
+        VideoError: It is not a number, or is out of range.
     """
     text = _plain(rate)
     if text in _BROADCAST:
@@ -121,7 +121,7 @@ def _seconds(name: str, value: object) -> Fraction:
 
 
 def _fraction(value: object) -> Fraction | None:
-    """The number as it is written: 0.1 is a tenth."""
+    """Return a number exactly as it is written: 0.1 is a tenth; None if it is not a number."""
     if isinstance(value, Fraction):
         return value
     text = _plain(value)

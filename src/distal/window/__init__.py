@@ -1,5 +1,5 @@
-"""The native window: a scene shown live, steered by hand, and loaded again when its file is saved.
+"""The native window: shows a scene live, moves its camera, and reloads its file when it is saved.
 
-Input: a loaded scene and where it came from. Output: a window, until it is closed.
-``session`` is what a person has done so far, and knows no display; ``app`` joins it to one.
+Input: a loaded scene and its file. Output: a window, until it is closed. ``session`` is the state
+of the interaction, without a display; ``app`` connects it to a display.
 """

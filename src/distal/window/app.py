@@ -1,7 +1,7 @@
-"""The window: connects a person's input, the frames and what is on the screen.
+"""The window: connects user input, rendered frames and the screen.
 
 Input: events of a canvas, timers, finished jobs of the worker. Output: jobs for the worker,
-drawings. Each part has a module of its own; this one decides the request in which they run.
+drawings. The parts are in modules of their own; this module determines when each of them runs.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from distal.window.surface import WindowSurface
 
 _NOTE_S: Final = 4.0
-_FIGURES_S: Final = 0.25  # digits that change faster cannot be read
-_SLOW_S: Final = 0.4  # after which a note says what the window waits for
+_FIGURES_S: Final = 0.25  # digits that change faster are not readable
+_SLOW_S: Final = 0.4  # after this time a note says what the window waits for
 _REPEAT_AFTER_S: Final = 0.35
 _REPEAT_S: Final = 1 / 15
 _EXPECTED: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
@@ -45,12 +45,12 @@ _EXPECTED: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError,
 
 @dataclass(frozen=True, slots=True)
 class SceneSource:
-    """Where the scene came from, so that it can be loaded again.
+    """The file of the scene, for reloading it.
 
     Attributes:
-        path: What ``distal.load`` takes.
-        name: Which object of the file.
-        files: The files that took part.
+        path: The path for ``distal.load``.
+        name: The name of the object in the file; None for the default.
+        files: The file and the modules that it imported.
     """
 
     path: str
@@ -59,7 +59,7 @@ class SceneSource:
 
     @property
     def title(self) -> str:
-        """What a person calls it: most scenes are named "scene" in their files."""
+        """The title of the window: the file's name, because most scenes are named "scene"."""
         stem = Path(self.path.removeprefix(EXAMPLE_PREFIX)).stem
         return printable(stem if self.name is None else f"{stem}:{self.name}")
 
@@ -100,17 +100,17 @@ class Application:
     # The loop
 
     def start(self) -> None:
-        """Begin, once the loop runs."""
+        """Start the window; called when the event loop runs."""
         self._canvas.request_draw(self._draw)
         self._loop.call_later(PERIOD_S, self._look_at_files)
         self._resize()
 
     def stop(self, patience_s: float) -> bool:
-        """End the worker; whether it ended in time."""
+        """Stop the worker; return whether it ended within ``patience_s`` seconds."""
         return self._worker.stop(patience_s)
 
     def wake(self) -> None:
-        """Update everything once; called whenever something has happened."""
+        """Update everything once; called after every event."""
         if self._canvas.get_closed():
             return
         now = time.monotonic()
@@ -141,7 +141,7 @@ class Application:
         self._wake_at = at
 
         def wake() -> None:
-            if self._wake_at == at:  # else another came first
+            if self._wake_at == at:  # otherwise an earlier wake-up replaced this one
                 self.wake()
 
         self._loop.call_later(max(seconds, 0.001), wake)
@@ -188,7 +188,7 @@ class Application:
         )
 
     def _waiting_note(self, now: float) -> str | None:
-        """What the window waits for: "" until it is slow, None where nothing is being done."""
+        """Return what the window waits for: "" while it is still fast, None if it does not wait."""
         if not self._worker.waiting:
             self._busy_since = None
             return None
@@ -225,12 +225,12 @@ class Application:
         self._note, self._note_until = text, time.monotonic() + _NOTE_S
 
     def _report(self, error: BaseException) -> str:
-        """A mistake's text; it is also printed on the terminal, once."""
+        """Return the text of an error; also print it on the terminal, once."""
         if isinstance(error, _EXPECTED):
             text = str(error)
         else:
             text = f"{type(error).__name__}: {error}"
-            traceback.print_exception(error)  # a fault of ours
+            traceback.print_exception(error)  # a bug in distal
         if isinstance(error, LoadError | SaveError | DeviceError):
             text = f"error: {text}"
         text = printable_lines(text)
@@ -351,12 +351,12 @@ class Application:
 
     def _wheeled(self, event: dict[str, Any]) -> None:
         is_pinch = "Control" in event["modifiers"]
-        notches = interaction.notches_of(event["dy"], 0, is_pinch)  # in pixels
+        notches = interaction.notches_of(event["dy"], 0, is_pinch)  # dy is in pixels
         self._session.wheel(notches, time.monotonic())
         self.wake()
 
     def _save(self) -> None:
-        """Save what is wanted now, as sharp as the window is large."""
+        """Save the current picture at the size of a frame in the window."""
         session, size = self._session, self._frame_size()
         shot, viewable = session.shot(time.monotonic()), session.viewable
         device, title = self._scheduler.renderer.device, self._source.title

@@ -1,7 +1,7 @@
-"""Parameters as rows that a person can move: a slider is one, a color is three.
+"""Controls of parameters as table rows: a slider is one row, a color is three.
 
-Input: parameters and their values. Output: for each row its words, where its bar
-stands, and the parameter's value after a move. Knows no window.
+Input: parameters and their values. Output: for each row its text, the position of its bar, and the
+parameter's value after a move. Does not depend on windows.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ _CODE_STEP: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class Dial:
-    """One row: a parameter, or one part of it.
+    """The control in one row: for a parameter, or for one component of it.
 
     Attributes:
-        parameter: Whose value it moves.
-        part: Which of a color's or a point's numbers; None where the value has no parts.
+        parameter: The parameter.
+        part: The index of a color's or a point's component; None if the value has no components.
     """
 
     parameter: Parameter
@@ -35,14 +35,14 @@ class Dial:
 
     @property
     def label(self) -> str:
-        """What a person reads."""
+        """The text of the row."""
         if self.part is None:
             return self.parameter.label
         names = "rgb" if self.parameter.kind is ParameterKind.COLOR else "xyz"
         return f"{self.parameter.label} {names[self.part]}"
 
     def words(self, value: Value) -> str:
-        """The value as a person reads it."""
+        """Return the value as text."""
         match self.parameter.kind:
             case ParameterKind.TOGGLE:
                 return "on" if value else "off"
@@ -59,7 +59,7 @@ class Dial:
                 assert_never(self.parameter.kind)
 
     def share(self, value: Value) -> float | None:
-        """The position of its bar, from 0 to 1; None for what has no ends."""
+        """Return the position of the bar, from 0 to 1; None for a control without ends."""
         number = self._number(value)
         match self.parameter.kind:
             case ParameterKind.SLIDER | ParameterKind.INTEGER:
@@ -76,7 +76,7 @@ class Dial:
                 assert_never(self.parameter.kind)
 
     def placed(self, value: Value, share: float) -> Value:
-        """The value with the bar at a share from 0 to 1; as it is where there is no bar."""
+        """Return the value for a position of the bar from 0 to 1; unchanged if there is no bar."""
         share = min(max(share, 0.0), 1.0)
         match self.parameter.kind:
             case ParameterKind.SLIDER | ParameterKind.INTEGER:
@@ -93,7 +93,13 @@ class Dial:
                 assert_never(self.parameter.kind)
 
     def moved(self, value: Value, steps: int, *, finely: bool = False) -> Value:
-        """The value so many steps up or down; ends are ends, but choices go around."""
+        """Return the value ``steps`` positions away; choices wrap around, others stop at ends.
+
+        Args:
+            value: The current value.
+            steps: Number of positions.
+            finely: Whether to move by smaller steps.
+        """
         match self.parameter.kind:
             case ParameterKind.SLIDER | ParameterKind.INTEGER:
                 return self._slid(self._number(value), steps, finely)
@@ -111,7 +117,7 @@ class Dial:
                 assert_never(self.parameter.kind)
 
     def _slid(self, number: float, steps: int, finely: bool) -> Value:
-        """So many positions on; finely: tenths of them, where the slider has no steps."""
+        """Move by positions; ``finely`` by tenths of them, if the slider has no steps."""
         low, high, step, log = self._range
         if finely and step is None:
             parts = interaction.POSITIONS * _FINER
@@ -132,11 +138,11 @@ class Dial:
 
     def _with_part(self, value: Value, number: float) -> Value:
         assert isinstance(value, tuple) and self.part is not None
-        rounded = round(number, 9)  # ten steps of a tenth are one
+        rounded = round(number, 9)  # so that ten steps of a tenth add up to one
         return tuple(rounded if i == self.part else v for i, v in enumerate(value))
 
     def _with_code(self, value: Value, code: int) -> Value:
-        """The color with one of its parts as a display's code from 0 to 255."""
+        """Return the color with one component changed to a display code from 0 to 255."""
         assert isinstance(value, tuple)
         light = light_of(min(max(code, 0), _LAST_CODE))
         return tuple(light if i == self.part else v for i, v in enumerate(value))
@@ -162,7 +168,7 @@ class Dial:
 
 
 def dials(parameters: Sequence[Parameter]) -> list[Dial]:
-    """A row for each number that can be moved, in the order of the parameters."""
+    """Return a control for each number that can be moved, in the order of the parameters."""
     rows: list[Dial] = []
     for parameter in parameters:
         if isinstance(parameter.default, tuple):

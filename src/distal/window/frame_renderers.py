@@ -1,7 +1,7 @@
-"""Renders frames: on the CPU as pixels, on a GPU as a texture that never leaves it.
+"""Render frames: on the CPU as pixels, on a GPU as a texture that stays there.
 
-Input: what is shown, a ``Shot``, a size. Output: a ``RenderedFrame`` of display values. Runs in the
-worker's thread; knows no window.
+Input: a viewable object, a ``Shot``, a size. Output: a ``RenderedFrame`` of display values. Runs in
+the worker's thread; does not depend on windows.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.scene.viewing.viewable import Viewable
 
-# Display values as they are; a surface that encodes reads them decoded (``surface``).
+# Stores display values unchanged. For a surface that encodes, ``surface`` reads them decoded.
 TEXTURE_FORMAT: Final = "rgba8unorm"
 _SMALLEST: Final = (8, 8)
 
@@ -35,10 +35,10 @@ class RenderedFrame:
     """A frame of display values.
 
     Attributes:
-        pixels: uint8, (height, width, 4), the top row first; None where it is a texture.
-        texture: A texture of wgpu; None where it is pixels.
-        seconds: How long rendering it took, compiling left out.
-        share: How much of it was rendered: below 1 it was cancelled, and there is no picture.
+        pixels: uint8, (height, width, 4), top row first; None if the frame is a texture.
+        texture: A texture of wgpu; None if the frame is pixels.
+        seconds: The rendering time without compilation.
+        share: The fraction that was rendered; below 1 it was cancelled, and there is no picture.
     """
 
     pixels: NDArray[np.uint8] | None = None
@@ -51,19 +51,25 @@ class FrameRenderer(Protocol):
     """Renders frames on one device.
 
     Attributes:
-        device: Its name, as ``render`` takes it.
+        device: Its name, as for ``render``.
     """
 
     device: str
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
-        """Compile what a shot needs, so that mistakes show before anything is replaced."""
+        """Compile what a shot needs, so that errors are found before anything is replaced."""
         ...
 
     def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
-        """A frame of that width and height in pixels.
+        """Render a frame.
+
+        Args:
+            viewable: The object to show.
+            shot: Time, parameters, view and camera.
+            size: Width and height in pixels.
+            cancel: Set to stop the rendering early.
 
         Raises:
             CompileError: The scene code has mistakes.
@@ -73,12 +79,12 @@ class FrameRenderer(Protocol):
 
 
 def render_options(shot: Shot, size: tuple[int, int], device: str) -> RenderOptions:
-    """How a shot is rendered.
+    """Return the options for rendering a shot.
 
     Args:
-        shot: What is shown.
+        shot: Time, parameters, view and camera.
         size: Width and height in pixels.
-        device: What renders.
+        device: The device that renders.
     """
     return RenderOptions(
         size=size,
@@ -91,12 +97,18 @@ def render_options(shot: Shot, size: tuple[int, int], device: str) -> RenderOpti
 
 
 def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
-    """What a shot shows, with everything that its file says about it."""
+    """Render a shot as a picture with complete metadata.
+
+    Args:
+        viewable: The object to show.
+        shot: Time, parameters, view and camera.
+        options: The options for rendering, of ``render_options``.
+    """
     return viewable.render(options, view=shot.view, steering=shot.steering)
 
 
 class PixelRenderer:
-    """Renders pixels on any device that renders into memory."""
+    """Renders pixels, on any device that renders to memory."""
 
     def __init__(self, device: str) -> None:
         self.device = device
@@ -108,7 +120,7 @@ class PixelRenderer:
     def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
-        """A frame; ended early, how far it came and what that took."""
+        """Render a frame; if cancelled, return the finished fraction and the time."""
         done = 0.0
         begin = time.perf_counter()
 
@@ -133,7 +145,13 @@ class TextureRenderer:
     """Draws into textures of a GPU, by its fragment path."""
 
     def __init__(self, device: str, gpu: Any, adapter: str | None) -> None:
-        """``gpu`` is the device of wgpu that the executor draws with."""
+        """Make a renderer.
+
+        Args:
+            device: The name of the device, as for ``render``.
+            gpu: The device of wgpu that the executor draws with.
+            adapter: The adapter of the device; None for the best one.
+        """
         self.device = device
         self._gpu = gpu
         self._adapter = adapter
@@ -152,9 +170,9 @@ class TextureRenderer:
     def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
-        """A frame; a GPU ends what it has begun."""
+        """Render a frame; ``cancel`` has no effect, because a GPU finishes what it has begun."""
         self.prepare(viewable, shot)
-        # The window shows one while the other is drawn, and never needs a third.
+        # Two textures are enough: the window shows one while the other is drawn.
         texture = self._textures.pop(0) if len(self._textures) > 1 else None
         if texture is None or texture.size[:2] != size:
             texture = self._texture(size)
@@ -173,9 +191,9 @@ class TextureRenderer:
         self._wait_for(texture)
 
     def _wait_for(self, texture: Any) -> None:
-        """Until it is drawn: frames must not pile up in the driver, and figures must be true.
+        """Wait until a texture is drawn, so that frames do not queue up and timings are right.
 
-        One texel is read; wgpu 0.32 for Python breaks when the queue itself is waited for.
+        It reads one texel; in wgpu 0.32 for Python, waiting for the queue itself fails.
         """
         if self._texel is None:
             self._texel = self._gpu.create_buffer(size=256, usage="COPY_DST|MAP_READ")

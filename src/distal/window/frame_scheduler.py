@@ -1,7 +1,7 @@
-"""Decides which frame is rendered next, and at which resolution.
+"""Decide which frame is rendered next, and at which resolution.
 
-Input: shots, sizes, finished frames. Output: jobs for the worker, the frame to show, the figures.
-Knows neither window nor keys.
+Input: shots, sizes, finished frames. Output: jobs for the worker, the frame to show, the frame
+rate. Does not depend on windows or keys.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from distal.scene.viewing.viewable import Viewable
 
 _LEAST_GAP_S: Final = 1 / 60
-_FIGURES_S: Final = 1.0  # frames are counted over the last second
+_FIGURES_S: Final = 1.0  # the frame rate is measured over the last second
 
 
 @dataclass(frozen=True, slots=True)
 class FrameRequest:
-    """A frame that is wanted, being rendered, or shown.
+    """A frame that is requested, being rendered, or shown.
 
     Attributes:
-        viewable: What it shows.
+        viewable: The object to show.
         shot: Time, parameters, view and camera.
         size: Width and height of the window's picture in pixels.
-        share: The part of them that is rendered.
+        share: The fraction of width and height that is rendered.
     """
 
     viewable: Viewable
@@ -42,23 +42,23 @@ class FrameRequest:
 
     @property
     def pixels(self) -> tuple[int, int]:
-        """Width and height that are rendered."""
+        """Width and height of the rendered frame in pixels."""
         width, height = self.size
         return max(round(width * self.share), 1), max(round(height * self.share), 1)
 
     def shows_the_same(self, other: FrameRequest) -> bool:
-        """Whether they differ in their resolution at most."""
+        """Return whether two requests differ at most in their resolution."""
         mine, its = (self.viewable, self.shot, self.size), (other.viewable, other.shot, other.size)
         return mine == its
 
 
 class FrameScheduler:
-    """Renders one frame at a time, of what is wanted when it begins.
+    """Renders one frame at a time, always the latest request.
 
     Attributes:
         shown: The last frame that was finished.
         failed: The request that could not be rendered; it is not tried again.
-        made: What was rendered for ``shown``.
+        made: The rendered frame of ``shown``.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class FrameScheduler:
 
     @property
     def frames_per_s(self) -> float:
-        """How many frames the last second saw."""
+        """The number of frames in the last second."""
         now = time.monotonic()
         recent = [moment for moment in self._times if now - moment < _FIGURES_S]
         if len(recent) < 2:
@@ -96,17 +96,17 @@ class FrameScheduler:
     def request_frame(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], *, is_moving: bool
     ) -> float | None:
-        """Render a frame if what is shown is another.
+        """Start to render a frame if it differs from the one that is shown.
 
         Args:
-            viewable: What is to be seen.
+            viewable: The object to show.
             shot: Time, parameters, view and camera.
             size: Width and height of the window's picture in pixels.
-            is_moving: Whether a frame is wanted soon rather than sharp.
+            is_moving: Whether a fast frame is preferred to a sharp one.
 
         Returns:
-            Seconds after which to call again; None where the call after a finished frame is soon
-            enough, or nothing is left to do.
+            Seconds after which to call again; None if the call after the next finished frame is
+            early enough, or if nothing is left to do.
         """
         if self.shown is not None and (
             self.shown.viewable is not viewable or self.shown.shot.view != shot.view
@@ -138,7 +138,7 @@ class FrameScheduler:
         return True
 
     def _cancel_for(self, request: FrameRequest, *, is_moving: bool) -> None:
-        """Cancel a frame that is not wanted any more; a coarse one is left to finish."""
+        """Cancel a frame that is not needed any more; a frame of low resolution is finished."""
         current = self._in_progress
         assert current is not None
         if current.shows_the_same(request):

@@ -1,8 +1,8 @@
-"""What the pointer's motion means: for a camera, and for an ``@image``'s ``frame.mouse``.
+"""Interpret pointer motion: for a camera, and for an ``@image``'s ``frame.mouse``.
 
-Input: distances in parts of the picture's height, places in parts of the picture. Output:
-five numbers of a ``Steering``, or Shadertoy's four of the mouse. Knows no camera: what
-the numbers do is scene code; ``scene/viewing/interaction.py`` says how far a hand moves them.
+Input: distances as fractions of the picture's height, places as fractions of the picture. Output:
+the five numbers of a ``Steering``, or Shadertoy's four of the mouse. Does not depend on cameras:
+scene code interprets the numbers; ``scene/viewing/interaction.py`` defines their scale.
 """
 
 from __future__ import annotations
@@ -14,7 +14,14 @@ from distal.scene.viewing import interaction
 
 
 def orbited(steering: Steering, right: float, down: float, elevation: float = 0.0) -> Steering:
-    """The scene turned under the hand; ``elevation`` is the camera's own."""
+    """Return the steering after the scene was turned by a drag.
+
+    Args:
+        steering: The steering before.
+        right: Distance to the right, as a fraction of the picture's height.
+        down: Distance downwards, likewise.
+        elevation: The elevation of the author's camera, in radians.
+    """
     return replace(
         steering,
         yaw=interaction.turned(steering.yaw, right),
@@ -23,25 +30,31 @@ def orbited(steering: Steering, right: float, down: float, elevation: float = 0.
 
 
 def panned(steering: Steering, right: float, down: float) -> Steering:
-    """The scene dragged sideways by as much as the pointer."""
+    """Return the steering after the scene was dragged sideways by the distance of the pointer.
+
+    Args:
+        steering: The steering before.
+        right: Distance to the right, as a fraction of the picture's height.
+        down: Distance downwards, likewise.
+    """
     x, y = steering.pan
     return replace(steering, pan=(interaction.dragged(x, right), interaction.dragged(y, -down)))
 
 
 def zoomed(steering: Steering, notches: float) -> Steering:
-    """The eye farther away by so many notches of a wheel; nearer where they are negative."""
+    """Return the steering after turning the wheel; positive notches move the eye away."""
     return replace(steering, zoom=interaction.notched(steering.zoom, notches))
 
 
 @dataclass(frozen=True, slots=True)
 class Mouse:
-    """The pointer as an ``@image`` sees it, in shares of the window from its lower left.
+    """The pointer for an ``@image``, in fractions of the window from its lower left.
 
     Attributes:
-        at: Where it was last while the button was down.
-        pressed: Where the button went down.
-        down: Whether it is down.
-        fresh: Whether it went down since the last frame.
+        at: The last place while the button was down.
+        pressed: The place where the button was pressed.
+        down: Whether the button is down.
+        fresh: Whether it was pressed since the last frame.
     """
 
     at: tuple[float, float] = (0.0, 0.0)
@@ -50,14 +63,15 @@ class Mouse:
     fresh: bool = False
 
     def nudged(self, right: float, up: float) -> Mouse:
-        """For the keyboard: a press and release beside where it was."""
+        """Return a click beside the last place, for use by the keyboard."""
         place = on_picture(self.at[0] + right, self.at[1] + up)
         return Mouse(place, place, down=False, fresh=True)
 
     def pixels(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
-        """Shadertoy's four: the place, and where it was pressed, negative once that is over.
+        """Return Shadertoy's four numbers: the place, and where the button was pressed.
 
-        The third number is positive while the button is down, the fourth only in the first frame.
+        The third number is positive while the button is down, else negative; the fourth is positive
+        only in the first frame of a press.
         """
         width, height = size
         x, y = self.pressed[0] * width, self.pressed[1] * height
@@ -70,5 +84,5 @@ class Mouse:
 
 
 def on_picture(x: float, y: float) -> tuple[float, float]:
-    """The nearest place on the picture."""
+    """Return the nearest place on the picture."""
     return interaction.clamped(x, 0.0, 1.0), interaction.clamped(y, 0.0, 1.0)

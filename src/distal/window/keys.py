@@ -1,7 +1,7 @@
-"""Which key does what in a window.
+"""The actions of keys in a window.
 
-Input: a key or a typed character. Output: an action's name. The table of keys is
-``scene/viewing/key_bindings.py``, which pages share. Does nothing itself.
+Input: a key or a typed character. Output: the name of an action. The table of keys is
+``scene/viewing/key_bindings.py``, which pages also use. Performs no action itself.
 """
 
 from __future__ import annotations
@@ -41,23 +41,23 @@ class Action(Enum):
     QUIT = "quit"
 
 
-# Typed characters, not keys: brackets are elsewhere on every keyboard. Space is a key.
+# Typed characters, not keys, because brackets have other keys on other keyboards. Space is a key.
 _KEYS: Final = {
     key: Action(binding.action)
     for binding in BINDINGS
     for key in (*binding.keys, *binding.window_keys)
 }
-# Those that go on while the key is held; a typed character is repeated by the system.
+# Actions that repeat while the key is held; the system itself repeats typed characters.
 REPEATED: Final = frozenset({Action.LEFT, Action.RIGHT, Action.UP, Action.DOWN})
 
 
 def action_of_key(key: str) -> Action | None:
-    """What a key with a name means; "ArrowLeft", " "."""
+    """Return the action of a key by its name, such as "ArrowLeft" or " "."""
     return _KEYS.get(key) if len(key) > 1 or key == " " else None
 
 
 def action_of_character(character: str) -> Action | None:
-    """What a typed character means."""
+    """Return the action of a typed character."""
     if character == " ":
         return None
     return _KEYS.get(character, _KEYS.get(character.lower()))

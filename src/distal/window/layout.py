@@ -1,7 +1,7 @@
 """The layout of the window, in its own units (not pixels), y down.
 
-Input: the window's size. Output: rectangles, for drawing and for finding what a pointer is on.
-Draws nothing.
+Input: the size of the window. Output: rectangles, for drawing and for finding what is under the
+pointer. Draws nothing.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _BAR_TIME_WIDTH: Final = 76.0
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """A place on the window."""
+    """A rectangle on the window."""
 
     x: float
     y: float
@@ -31,21 +31,21 @@ class Rectangle:
     height: float
 
     def holds(self, x: float, y: float) -> bool:
-        """Whether a point is in it."""
+        """Return whether a point is in it."""
         return 0 <= x - self.x < self.width and 0 <= y - self.y < self.height
 
     def share(self, x: float) -> float:
-        """How far a point is from its left, 0 to 1."""
+        """Return the position of ``x`` between the left (0) and right (1) side, clamped."""
         return min(max((x - self.x) / max(self.width, 1.0), 0.0), 1.0)
 
 
 def time_bar(width: float, height: float) -> Rectangle:
-    """The strip along the bottom."""
+    """Return the time bar along the bottom of a window."""
     return Rectangle(0.0, height - BAR_HEIGHT, width, BAR_HEIGHT)
 
 
 def time_track(width: float, height: float) -> Rectangle:
-    """The part of the strip that the time moves along."""
+    """Return the part of the time bar along which the time moves."""
     strip = time_bar(width, height)
     left = MARGIN + _BAR_TIME_WIDTH
     return Rectangle(left, strip.y, max(width - left - MARGIN, 1.0), strip.height)
@@ -53,12 +53,12 @@ def time_track(width: float, height: float) -> Rectangle:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The rows of parameters: as many as the window holds, around the chosen one.
+    """The table of parameters: as many rows as fit in the window, around the chosen one.
 
     Attributes:
-        frame: The whole.
-        first: The first row that is shown.
-        count: How many are shown.
+        frame: The rectangle of the table.
+        first: The index of the first visible row.
+        count: The number of visible rows.
     """
 
     frame: Rectangle
@@ -67,7 +67,14 @@ class Table:
 
     @staticmethod
     def of(width: float, height: float, rows: int, chosen: int) -> Table:
-        """The table of so many rows in a window of that size."""
+        """Return the table for a number of rows in a window.
+
+        Args:
+            width: Width of the window.
+            height: Height of the window.
+            rows: Number of all rows.
+            chosen: The index of the chosen row.
+        """
         room = height - TABLE_TOP - BAR_HEIGHT - MARGIN - 2 * TABLE_PADDING
         count = max(min(rows, int(room // ROW)), min(rows, 1))
         first = min(max(chosen - count // 2, 0), rows - count)
@@ -80,26 +87,26 @@ class Table:
         return Table(frame, first, count)
 
     def row(self, number: int) -> Rectangle:
-        """The place of one of all rows."""
+        """Return the rectangle of a row, by its index among all rows."""
         inside = self.frame.width - 2 * TABLE_PADDING
         top = self.frame.y + TABLE_PADDING + (number - self.first) * ROW
         return Rectangle(self.frame.x + TABLE_PADDING, top, inside, ROW)
 
     def track(self, number: int) -> Rectangle:
-        """The place of a row's bar."""
+        """Return the rectangle of a row's bar."""
         row = self.row(number)
         left = row.x + row.width * LABEL_SHARE
         return Rectangle(left, row.y, row.width * (1 - LABEL_SHARE - VALUE_SHARE), row.height)
 
     def handle(self, rows: int) -> Rectangle:
-        """A mark at the right edge: which part of all rows is shown."""
+        """Return the scroll mark at the right edge, which shows the visible part of all rows."""
         whole = self.frame.height - 2 * TABLE_PADDING
         top = self.frame.y + TABLE_PADDING + whole * self.first / rows
         right = self.frame.x + self.frame.width
         return Rectangle(right - 3.0, top, 2.0, whole * self.count / rows)
 
     def row_at(self, x: float, y: float) -> int | None:
-        """The row that a point is on."""
+        """Return the index of the row at a point; None if there is none."""
         if not self.frame.holds(x, y):
             return None
         number = self.first + int((y - self.frame.y - TABLE_PADDING) // ROW)

@@ -1,7 +1,7 @@
-"""Fonts for what is written over the picture.
+"""Fonts for the text over the picture.
 
-Input: a size in pixels, texts. Output: fonts, and the widths of texts. The
-machine's own DejaVu or its like where one is found, else the one that Pillow brings.
+Input: a size in pixels, texts. Output: fonts, and the widths of texts. Uses a system font such as
+DejaVu if one is found, else the font of Pillow.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ _FIXED: Final = ("DejaVuSansMono.ttf", "consola.ttf", "Menlo.ttc", "LiberationMo
 
 @lru_cache(maxsize=32)
 def plain_font(size_px: int) -> Font:
-    """For words."""
+    """Return a proportional font."""
     return _first(_PLAIN, size_px)
 
 
 @lru_cache(maxsize=32)
 def fixed_font(size_px: int) -> Font:
-    """For source code; where no font of one width is found, letters are in columns all the same."""
+    """Return a monospaced font; if there is none, the caller places letters in columns."""
     return _first(_FIXED, size_px)
 
 
@@ -33,18 +33,18 @@ def _first(names: tuple[str, ...], size_px: int) -> Font:
     for name in names:
         try:
             return ImageFont.truetype(name, size_px)
-        except OSError:  # not on this machine
+        except OSError:  # the font is not installed
             continue
     return ImageFont.load_default(size_px)
 
 
 def width(font: Font, text: str) -> float:
-    """How wide a text is, in pixels."""
+    """Return the width of a text in pixels."""
     return float(font.getlength(text))
 
 
 def shortened(font: Font, text: str, room: float) -> str:
-    """The text, or as much of its beginning as there is room for."""
+    """Return the text, cut at the end to a width of ``room`` pixels."""
     if width(font, text) <= room:
         return text
     while text and width(font, text + "…") > room:
@@ -53,7 +53,7 @@ def shortened(font: Font, text: str, room: float) -> str:
 
 
 def shortened_inside(font: Font, text: str, room: float) -> str:
-    """The text, or its beginning and its end: names of one family differ at their ends."""
+    """Return the text, cut in the middle to fit: similar names often differ at their ends."""
     kept = len(text)
     made = text
     while kept > 2 and width(font, made) > room:

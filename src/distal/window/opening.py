@@ -1,7 +1,6 @@
-"""Opens a window on a scene and keeps it until it is closed.
+"""Open a window on a scene and run it until it is closed.
 
-Input: what ``distal.load`` gave and where it came from, a device. Output: an exit
-code.
+Input: an object from ``distal.load`` and its file, a device. Output: an exit code.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from distal.window.app import Application, SceneSource
 from distal.window.screen import check_display, open_canvas, open_surface
 from distal.window.session import Session
 
-# How long the end of a running compilation is waited for.
+# How long to wait for a running compilation at the end, in seconds.
 _PATIENCE_S: Final = 0.5
 
 
@@ -31,25 +30,25 @@ def view(
     scale: float = 1.0,
     paused: bool = False,
 ) -> tuple[int, bool]:
-    """Show what was loaded until the window is closed.
+    """Show a loaded object until the window is closed.
 
     Args:
-        obj: What ``distal.load(path, name)`` gave.
-        path: Where it came from, to load it again when it is saved.
-        name: Which object of the file.
-        options: Size (the window's, in its own units), first time, parameters, and device, where
-            "auto" is resolved already.
-        first_view: The view to begin with.
-        scale: Pixels that are rendered for each of the window's, along a side.
-        paused: Whether the time is paused at first.
+        obj: The result of ``distal.load(path, name)``.
+        path: Its path, for reloading it.
+        name: The name of the object in the file; None for the default.
+        options: Size (of the window, in its own units), initial time, parameters, and device,
+            where "auto" is already resolved.
+        first_view: The initial view.
+        scale: Rendered pixels per pixel of the window, along each side.
+        paused: Whether the time is paused at the start.
 
     Returns:
-        The exit code, 0 or 130, and whether everything has ended: what is still being compiled
-        cannot be stopped, and the process should end without waiting for it.
+        The exit code, 0 or 130, and whether the worker has ended: a running compilation cannot
+        be stopped, and the process should exit without waiting for it.
 
     Raises:
-        CompileError, LoadError: It cannot be shown.
-        DeviceError: No window can be opened here, or the device is missing.
+        CompileError, LoadError: The object cannot be shown.
+        DeviceError: No window can be opened, or the device is missing.
         ValueError: There is no such view.
     """
     check_display()
@@ -79,19 +78,19 @@ def view(
 
 
 def _run(application: Application, canvas: Any, loop: Any) -> bool:
-    """Run until the window is closed; whether that was ctrl-C."""
+    """Run the event loop until the window is closed; return whether ctrl-C closed it."""
     interrupted = False
 
     def interrupt(_signal: int, _frame: object) -> None:
         nonlocal interrupted
-        if interrupted:  # a second ctrl-C: something does not end
+        if interrupted:  # a second ctrl-C: closing the window did not work
             raise KeyboardInterrupt
         interrupted = True
-        # Not closed here: this may be in the middle of drawing on it.
+        # Not closed here, because the signal may arrive while the canvas is being drawn.
         loop.call_soon_threadsafe(canvas.close)
 
     def begin() -> None:
-        # The loop has set its own by now, which would report it on the terminal.
+        # Replaces the handler that the loop has just set, which would print a message.
         signal.signal(signal.SIGINT, interrupt)
         application.start()
 

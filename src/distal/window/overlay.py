@@ -1,8 +1,8 @@
-"""What is drawn over the picture: figures, parameters, help, a mistake, the time.
+"""Draw the overlay over the picture: status, parameters, help, errors, the time bar.
 
-Input: what a person is to read, as plain values, and the window's size and pixel ratio.
-Output: small pictures and their places, in pixels; a part that did not change is the
-same object again. Knows no window and no GPU.
+Input: the content as plain values, and the window's size and pixel ratio. Output: small pictures
+with their positions in pixels; an unchanged part is the same object as before. Does not depend on
+windows or GPUs.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class Panel:
     """A small picture over the large one.
 
     Attributes:
-        x: Pixels from the window's left.
-        y: Pixels from its top.
+        x: Pixels from the left of the window.
+        y: Pixels from the top of the window.
         pixels: uint8, (height, width, 4), straight alpha.
     """
 
@@ -50,18 +50,18 @@ class Panel:
 
 
 class Overlay:
-    """Draws the overlay's content; keeps each part while its text is the same."""
+    """Draws the overlay's content; keeps the panel of a part while its content is the same."""
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[Hashable, Panel]] = {}
 
     def panels(self, read: OverlayContent, size: tuple[int, int], ratio: float) -> list[Panel]:
-        """The parts, the lowest first.
+        """Return the panels, the lowest first.
 
         Args:
-            read: What is to be read.
-            size: The window in pixels.
-            ratio: Pixels for each unit of the layout.
+            read: The content.
+            size: The window's size in pixels.
+            ratio: Pixels per unit of the layout.
         """
         if min(size) < 8:
             return []
@@ -94,7 +94,7 @@ class Overlay:
 
 
 def _clipped(panel: Panel, size: tuple[int, int]) -> Panel:
-    """The part of a panel that is on a window of that many pixels."""
+    """Clip a panel to a window of the given size in pixels."""
     left, top = max(panel.x, 0), max(panel.y, 0)
     pixels = panel.pixels[top - panel.y : size[1] - panel.y, left - panel.x : size[0] - panel.x]
     if left >= size[0] or top >= size[1]:
@@ -104,7 +104,7 @@ def _clipped(panel: Panel, size: tuple[int, int]) -> Panel:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """The window in units of the layout, and pixels for each unit."""
+    """The size of the window in units of the layout, and the pixels per unit."""
 
     width: float
     height: float
@@ -119,7 +119,7 @@ class _Place:
 
 
 class _Canvas:
-    """A panel while it is drawn; coordinates are those of the layout."""
+    """A panel that is being drawn; coordinates are those of the layout."""
 
     def __init__(
         self,
@@ -148,7 +148,7 @@ class _Canvas:
         room: float | None = None,
         anchor: str = "lm",
     ) -> None:
-        """Words from a place on, halfway up a line whose middle is given."""
+        """Draw a text at ``x``, vertically centered on ``middle``."""
         font = plain_font(self.place.text_px)
         if room is not None:
             text = shortened(font, text, self.place.px(room))
@@ -157,7 +157,7 @@ class _Canvas:
     def box(
         self, x: float, y: float, width: float, height: float, color: tuple[int, ...], radius: float
     ) -> None:
-        """A filled box, put over what is there by its alpha."""
+        """Draw a filled box, blended by its alpha."""
         left, top = self._local(x, y)
         right, bottom = left + self.place.px(width) - 1, top + self.place.px(height) - 1
         if right < left or bottom < top:
@@ -209,7 +209,7 @@ def _time(time: tuple[float, float, float], is_paused: bool, place: _Place) -> P
 
 
 def _sign(canvas: _Canvas, x: float, middle: float, is_paused: bool) -> None:
-    """Two bars while the time is paused, a triangle while it runs."""
+    """Draw two bars while the time is paused, a triangle while it runs."""
     if is_paused:
         canvas.box(x, middle - 5, 3, 10, _DIM, 0)
         canvas.box(x + 5, middle - 5, 3, 10, _DIM, 0)
@@ -245,7 +245,7 @@ def _rows(rows: tuple[ParameterRow, ...], chosen: int, place: _Place) -> Panel:
         right = place_of.x + place_of.width
         canvas.text(right, middle, row.words, color, room=room, anchor="rm")
     if table.count < len(rows):
-        # Which part of all rows is shown.
+        # The scroll mark.
         part = table.handle(len(rows))
         canvas.box(part.x, part.y, part.width, part.height, _DIM, part.width / 2)
     return canvas.panel()
@@ -254,7 +254,7 @@ def _rows(rows: tuple[ParameterRow, ...], chosen: int, place: _Place) -> Panel:
 def _help(place: _Place) -> Panel:
     left = max(_text_width(line.keys, place) for line in HELP)
     across = left + max(_text_width(line.meaning, place) for line in HELP) + 52
-    # A small window shows the beginning: lines that lie over each other are no help.
+    # In a small window only the first lines are shown; overlapping lines would not be readable.
     line = min(21.0, max((place.height - 24) / len(HELP), _TEXT_SIZE + 2.0))
     shown = HELP[: max(int((place.height - 20) // line), 1)]
     down = line * len(shown) + 20
@@ -279,7 +279,7 @@ def _note(text: str, place: _Place) -> Panel:
 
 
 def _trouble(text: str, place: _Place) -> Panel:
-    """The text in columns, so that a caret is under what it means; long lines are folded."""
+    """Draw an error in columns, so that carets are at the right place; long lines are wrapped."""
     font = fixed_font(place.text_px)
     cell = width(font, "M")
     line_px = round(place.text_px * 1.45)
@@ -315,14 +315,14 @@ _CARETS: Final = re.compile(r" *\| *(\^+)")
 
 
 def _fitted(lines: list[str], columns: int) -> list[str]:
-    """Lines of at most so many columns: words go on below, source stays over its caret."""
+    """Fit lines to a width: prose is wrapped; a source line is cut so that its caret is visible."""
     fitted: list[str] = []
     shift = 0
     for line, below in zip(lines, [*lines[1:], ""], strict=True):
         carets = _CARETS.fullmatch(below)
         is_source = _GUTTER.match(line) is not None
         if carets is not None:
-            # The line moves to the left until the place that is meant can be seen.
+            # Scroll the source line until the marked place is visible.
             shift = max(min(carets.end(1), carets.start(1) + columns // 2) - columns + 2, 0)
         if is_source and (carets is not None or _CARETS.fullmatch(line)):
             fitted.append(_windowed(line, shift, columns))
@@ -334,7 +334,7 @@ def _fitted(lines: list[str], columns: int) -> list[str]:
 
 
 def _windowed(line: str, shift: int, columns: int) -> str:
-    """A line behind its gutter, from a column on, as far as it fits."""
+    """Return a line with its gutter, scrolled by ``shift`` columns and cut to ``columns``."""
     found = _GUTTER.match(line)
     gutter = found.group() if found is not None else ""
     rest = line[len(gutter) :]

@@ -1,7 +1,7 @@
-"""The text over the picture as plain values: equal ones look the same.
+"""The text over the picture as plain values; equal values look the same.
 
-Input: a ``Session``, and text about frames and mistakes. Output: an ``OverlayContent``.
-Knows nothing of how it is drawn.
+Input: a ``Session``, and text about frames and errors. Output: an ``OverlayContent``. Does not
+depend on how it is drawn.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from distal.window.session import Session
 
 @dataclass(frozen=True, slots=True)
 class ParameterRow:
-    """The line of a parameter.
+    """The row of a parameter.
 
     Attributes:
         label: The parameter's label.
-        words: Its value.
+        words: Its value as text.
         share: The position of its bar from 0 to 1, or None.
-        is_moved: Whether it is not at its default.
+        is_moved: Whether it differs from its default.
     """
 
     label: str
@@ -33,13 +33,13 @@ class OverlayContent:
     """All text over a picture.
 
     Attributes:
-        status: One line about what is seen, and how fast it is.
+        status: One line about the view and its speed.
         rows: The parameters; None while they are hidden.
-        chosen: Which row keys move.
-        time: Seconds, and the ends of the strip; None where nothing depends on them.
+        chosen: The index of the row that keys move.
+        time: Seconds, and the ends of the time bar; None if the picture does not depend on time.
         is_paused: Whether the time is paused.
-        help: Whether the keys are explained.
-        trouble: A mistake's text, or "".
+        help: Whether the help is shown.
+        trouble: The text of an error, or "".
         note: A short message, or "".
     """
 
@@ -56,13 +56,13 @@ class OverlayContent:
 def overlay_content(
     session: Session, now: float, *, status: str = "", trouble: str = "", note: str = ""
 ) -> OverlayContent:
-    """The text to show now; a mistake is shown even where the overlay is hidden.
+    """Return the text to show now; an error is shown even if the overlay is hidden.
 
     Args:
-        session: What the person has done.
-        now: The reading of a steady clock, in seconds.
-        status: One line about what is seen, and how fast it is.
-        trouble: A mistake's text, or "".
+        session: The state of the interaction.
+        now: The reading of a monotonic clock, in seconds.
+        status: One line about the view and its speed.
+        trouble: The text of an error, or "".
         note: A short message, or "".
     """
     if not session.shows_overlay:
@@ -78,7 +78,7 @@ def overlay_content(
             )
             for dial in session.dials
         )
-    # Hundredths: what is written, and finer than a pixel of the strip.
+    # Hundredths: the precision of the text, and finer than a pixel of the time bar.
     seconds = round(session.clock.time(now), 2)
     return OverlayContent(
         status=status,

@@ -1,11 +1,11 @@
-"""Notices that a scene's files were saved, and loads it again.
+"""Detect that the files of a scene were saved, and reload the scene.
 
-Input: paths, and what is looked at. Output: whether files have changed, and are not being written
-any more; a scene that is compiled and ready to replace the old one.
+Input: paths, and the current shot. Output: whether files have changed and are completely written; a
+scene that is compiled and ready to replace the old one.
 
-The times of files are read four times a second, which costs a few microseconds for each and
-works on every file system; notices of the operating system do not reach shared folders, and an
-editor that saves by renaming needs the folder watched as well.
+The times of files are read four times a second. That costs a few microseconds per file and works
+on every file system. Notifications of the operating system do not work on shared folders, and for
+an editor that saves by renaming they would also need a watch on the folder.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Signature: TypeAlias = "tuple[tuple[int, ...] | None, ...]"
 
 
 class FileWatcher:
-    """Watches a set of files, and folders whose lists of names may change."""
+    """Watches a set of files, and of folders whose entries may change."""
 
     def __init__(self, files: Iterable[Path]) -> None:
         self._paths: tuple[Path, ...] = ()
@@ -40,10 +40,10 @@ class FileWatcher:
         self.watch(files)
 
     def watch(self, files: Iterable[Path]) -> None:
-        """FileWatcher these from now on.
+        """Watch these files from now on.
 
-        A file that was watched before keeps its last known state: what was saved while the scene
-        was being loaded is not missed.
+        A file that was already watched keeps its last known state, so that a save during loading is
+        detected.
         """
         known = dict(zip(self._paths, self._known, strict=True))
         self._paths = tuple(dict.fromkeys(files))
@@ -51,9 +51,9 @@ class FileWatcher:
         self._last = self._known
 
     def has_changed(self) -> bool:
-        """Whether something was saved since this was last true, and nothing in the last period.
+        """Return whether something was saved since this last returned True, and is now unchanged.
 
-        A file that is still being written changes from one question to the next: it is waited for.
+        A file that is still being written changes between two calls; then the result is False.
         """
         state = tuple(map(_state, self._paths))
         at_rest, self._last = state == self._last, state
@@ -64,7 +64,7 @@ class FileWatcher:
 
 
 def _state(path: Path) -> tuple[int, ...] | None:
-    """What changes when a file is saved, or replaced, or a folder gets another name; None: gone."""
+    """Return values that change when a file is saved or replaced, or a folder's entries change."""
     try:
         found = os.stat(path)
     except OSError:
@@ -74,12 +74,12 @@ def _state(path: Path) -> tuple[int, ...] | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReloadedScene:
-    """A scene that was loaded again, and can be shown.
+    """A reloaded scene that is ready to be shown.
 
     Attributes:
         viewable: The scene.
         animated: Whether its picture depends on the time.
-        files: The files that took part.
+        files: The file and the modules that it imported.
     """
 
     viewable: Viewable
@@ -88,10 +88,16 @@ class ReloadedScene:
 
 
 def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) -> ReloadedScene:
-    """Load a scene and compile what is looked at.
+    """Load a scene again and compile it for the current shot.
+
+    Args:
+        path: The path for ``distal.load``.
+        name: The name of the object in the file; None for the default.
+        shot: The current shot.
+        maker: Compiles and renders the frames.
 
     Raises:
-        LoadError, CompileError: There is a mistake; whatever was loaded before still works.
+        LoadError, CompileError: There is a mistake; the scene that was loaded before still works.
         DeviceError: The device was lost.
     """
     obj = checked_picture(load(path, name))
@@ -103,16 +109,16 @@ def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) ->
     parameters = tuple(sorted(values.items()))
     steering = (shot.steering or STILL) if shown.steers else None
     maker.prepare(shown, replace(shot, parameters=parameters, view=view, steering=steering))
-    # Asked for here, so that the window's thread finds it computed.
+    # Computed and cached here, so that the window's thread does not have to wait.
     _ = shown.elevation
     return ReloadedScene(shown, shown.animated, origin.files)
 
 
 def files_in(error: BaseException, scene: Path) -> list[Path]:
-    """What has to change before a mistake can be gone, besides the files that are known.
+    """Return the files that must change before an error can disappear, besides the known ones.
 
-    A module that fails is no part of any scene that was loaded; one that is missing is found by
-    its folder, whose list of names changes when it comes.
+    A module that fails to load belongs to no loaded scene. A missing module is detected by its
+    folder, whose entries change when the module is created.
     """
     folder = scene.resolve().parent
     names = [folder]

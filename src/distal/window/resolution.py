@@ -1,29 +1,29 @@
-"""Chooses the resolution at which a frame is finished in time.
+"""Choose a resolution at which frames are finished in time.
 
-Input: how long frames took. Output: the share of the window's width and height that the next one
-has. Reads no clock.
+Input: rendering times of frames. Output: the fraction of the window's width and height for the next
+frame. Does not read a clock.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
-# While something moves a frame should come within this; twenty in a second look fluid.
+# The longest time for a frame while something moves; twenty frames per second look smooth.
 BUDGET_S: Final = 0.05
 SHARES: Final = (1.0, 0.5, 0.25, 0.125)
-# A sharper share must be finished well in time, or two would alternate.
+# A higher resolution must be finished well in time; otherwise two resolutions would alternate.
 _ROOM: Final = 0.75
 
 
 class ResolutionChooser:
-    """Learns how long a pixel takes, and chooses the share of the window's size."""
+    """Measures the rendering time per pixel and chooses the fraction of the window's size."""
 
     def __init__(self) -> None:
         self._seconds_per_pixel: float | None = None
         self._share = SHARES[-1]
 
     def learn(self, seconds: float, pixels: float) -> None:
-        """Record how long a frame, or a part of one, took."""
+        """Record the rendering time of a frame, or of a part of one."""
         if pixels < 1:
             return
         found = seconds / pixels
@@ -31,13 +31,13 @@ class ResolutionChooser:
         self._seconds_per_pixel = found if known is None else 0.5 * (found + known)
 
     def forget(self) -> None:
-        """Start again for another scene or view."""
+        """Reset the measurement, for another scene or view."""
         self._seconds_per_pixel, self._share = None, SHARES[-1]
 
     def share(self, size: tuple[int, int], *, is_moving: bool) -> float:
-        """The next frame's part of the window's size.
+        """Return the fraction of the window's width and height for the next frame.
 
-        A first frame is coarse: how long a sharp one takes is not known yet.
+        The first frame has the lowest resolution, because the time per pixel is not known yet.
         """
         if self._seconds_per_pixel is None:
             return SHARES[-1]

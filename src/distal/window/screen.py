@@ -1,7 +1,7 @@
-"""Opens a native window, with a device of wgpu to draw on it; or says in a line why there is none.
+"""Open a native window with a device of wgpu to draw on it, or report in one line why it failed.
 
-Input: a size, a device's name. Output: canvas, surface, maker. The only module
-that knows glfw.
+Input: a size, the name of a device. Output: canvas, surface, renderer. The only module that uses
+glfw.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LARGEST_SIDE: Final = 8192
 
 
 def check_display() -> None:
-    """Refuse a machine without a display, before any work is done.
+    """Raise an error on a machine without a display, before any work is done.
 
     Raises:
         DeviceError: There is no display.
@@ -47,25 +47,25 @@ def check_display() -> None:
 
 
 def _words_of_glfw(message: str) -> str:
-    """What glfw says, without its number: "(65550) b'X11: …'"."""
+    """Return the message of a glfw error like "(65550) b'X11: …'", without its number."""
     found = re.fullmatch(r"\(\d+\) b?(['\"])(.*)\1", message)
     return found[2] if found else message
 
 
 def open_canvas(size: tuple[int, int], title: str) -> Any:
-    """A window of that size in its own units."""
+    """Open a window with a size in its own units."""
     return RenderCanvas(
         size=size, title=title, update_mode="ondemand", max_fps=60, present_method="screen"
     )
 
 
 def open_surface(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer]:
-    """What draws on a canvas, and what makes frames for it.
+    """Return the surface of a canvas and the renderer for its frames.
 
     Raises:
         DeviceError: There is no adapter, or it cannot draw on this window.
     """
-    # Asked first: without any driver wgpu does not fail on a window, it ends the process.
+    # Checked first: without any driver, wgpu does not raise for a window but ends the process.
     if not adapters():
         raise DeviceError(f"{_NO_WINDOW}: no graphics driver; {_MEND}")
     if device.startswith("gpu"):
@@ -87,10 +87,10 @@ def _on_gpu(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer]:
 
 
 def _any_device(canvas: Any) -> Any:
-    """Any device that draws on a window: it only puts finished frames there."""
+    """Return any device that can draw on the window; it is only used to show finished frames."""
     wgpu = wgpu_module()
-    # Mesa complains on stderr without one; any folder that exists will do, now that glfw has
-    # found its display.
+    # Without this variable Mesa prints a warning; any existing folder works, because glfw has
+    # already found its display.
     os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
     try:
         adapter = wgpu.gpu.request_adapter_sync(canvas=canvas)
@@ -108,8 +108,8 @@ def _first_line(error: BaseException) -> str:
 
 
 def set_full_screen(canvas: Any, back_to: tuple[int, ...] | None) -> tuple[int, ...] | None:
-    """Fill the screen, or go back to the place and size from before; what to go back to then."""
-    window = canvas._window  # rendercanvas has no word for this
+    """Fill the screen, or restore the former position and size; return what to restore later."""
+    window = canvas._window  # rendercanvas has no public access to this
     if back_to is not None:
         glfw.set_window_monitor(window, None, *back_to, 0)  # type: ignore[arg-type, call-arg, unused-ignore]
         return None

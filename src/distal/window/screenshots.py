@@ -1,6 +1,6 @@
-"""What the pictures that are saved of a window are called.
+"""Choose names for pictures that are saved from a window.
 
-Input: a folder, a scene's title, a ``Shot``. Output: a file's name that is free.
+Input: a folder, the title of a scene, a ``Shot``. Output: the name of a file that does not exist.
 """
 
 from __future__ import annotations
@@ -11,7 +11,13 @@ from distal.window.session import Shot
 
 
 def free_name(folder: Path, title: str, shot: Shot) -> Path:
-    """A file's name after the scene and the time that no file has yet."""
+    """Return a file name made of the scene's title and time that does not exist yet.
+
+    Args:
+        folder: The folder of the file.
+        title: The title of the scene.
+        shot: The shot to save.
+    """
     plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in title)[:60]
     stem = f"{plain or 'picture'}-{shot.time:.2f}s"
     if shot.view != "color":

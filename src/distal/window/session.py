@@ -1,8 +1,8 @@
-"""The state of a window: time, camera, parameters, view and what the pointer holds.
+"""The state of a window: time, camera, parameters, view and the current drag.
 
-Input: a ``Viewable``, actions of keys, the pointer, readings of a steady clock. Output: a ``Shot``:
-two that are equal look the same, so no frame is drawn twice. Knows no display, no device and no
-thread.
+Input: a ``Viewable``, actions of keys, pointer events, readings of a monotonic clock. Output: a
+``Shot``. Equal shots look the same, so no frame is drawn twice. Does not depend on displays,
+devices or threads.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from distal.window.layout import Table, time_bar, time_track
 if TYPE_CHECKING:
     from distal.scene.viewing.viewable import Viewable
 
-# How long after the last touch a picture counts as moving: a wheel's notches come in bursts.
+# How long after the last input a picture counts as moving; notches of a wheel come in bursts.
 _SETTLING_S: Final = 0.25
 _LEFT, _RIGHT, _MIDDLE = 1, 2, 3
-# Where an arrow points, right and up.
+# The directions of the arrow keys: right and up.
 _ARROWS: Final = {
     Action.LEFT: (-1, 0),
     Action.RIGHT: (1, 0),
@@ -39,14 +39,14 @@ _ARROWS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """All that a frame depends on, but its size.
+    """Everything that a frame depends on, except its size.
 
     Attributes:
         time: Seconds.
         parameters: Name and value of each parameter that is not at its default.
-        view: How it is looked at.
-        steering: How the camera was moved; None where there is none.
-        mouse: What an ``@image`` knows of the pointer.
+        view: The name of the view.
+        steering: The movement of the camera; None if there is no movable camera.
+        mouse: The pointer for an ``@image``.
     """
 
     time: float
@@ -57,12 +57,12 @@ class Shot:
 
     @property
     def index(self) -> int:
-        """The number of the frame: by time, so that a paused one can be made again."""
+        """The number of the frame, computed from the time, so that it can be rendered again."""
         return int(interaction.index_at(self.time))
 
 
 class Grab(Enum):
-    """What the pressed pointer holds."""
+    """What the pointer drags."""
 
     ORBIT = auto()
     PAN = auto()
@@ -72,19 +72,19 @@ class Grab(Enum):
 
 
 class Session:
-    """The state behind a window.
+    """The state of the interaction in a window.
 
     Attributes:
-        viewable: What is shown.
-        clock: Its time.
-        steering: How its camera was moved.
+        viewable: The object to show.
+        clock: The scene's time.
+        steering: The movement of the camera.
         values: The parameters that a person moved, by name.
-        view: How it is looked at.
-        dials: The rows of its parameters.
-        chosen: The row that keys move.
+        view: The name of the view.
+        dials: The controls of the parameters.
+        chosen: The index of the row that keys move.
         size: The window's width and height in its own units.
-        shows_parameters: Whether the rows are seen.
-        shows_help: Whether the help is seen.
+        shows_parameters: Whether the parameters are visible.
+        shows_help: Whether the help is visible.
         shows_overlay: Whether anything is drawn over the picture.
     """
 
@@ -116,9 +116,12 @@ class Session:
         self.adopt(viewable, now)
 
     def adopt(self, viewable: Viewable, now: float, *, animated: bool | None = None) -> None:
-        """Show something else under the same view, time, camera and parameters, if still valid.
+        """Show another object with the same view, time, camera and parameters, if still valid.
 
-        ``animated`` is the viewable's own, where it is known: asking takes a while.
+        Args:
+            viewable: The object to show.
+            now: The reading of the clock, in seconds.
+            animated: Whether its picture depends on the time; None computes it, which is slow.
         """
         self.viewable = viewable
         self.animated = viewable.animated if animated is None else animated
@@ -129,30 +132,30 @@ class Session:
             self.view = viewable.views[0]
         if not viewable.steers:
             self.steering = STILL
-        # What the pointer held may be gone.
+        # The object of the drag may no longer exist.
         self._grab = None
         self.clock.run(self._wants_time and self.animated, now)
 
     @property
     def playing(self) -> bool:
-        """Whether the picture changes by itself."""
+        """Whether the time runs."""
         return self.clock.running
 
     @property
     def time_range(self) -> tuple[float, float]:
-        """The ends of the strip along the bottom, in seconds."""
+        """The ends of the time bar, in seconds."""
         return interaction.first_time(self._begin, None), self._last_time
 
     def is_moving(self, now: float) -> bool:
-        """Whether a hand is at it: then frames are wanted soon rather than sharp."""
+        """Return whether a person is interacting; then fast frames are preferred to sharp ones."""
         return self._grab is not None or now < self._moving_until
 
     def settles_in(self, now: float) -> float:
-        """Seconds until the picture no longer counts as moving."""
+        """Return the seconds until the picture no longer counts as moving."""
         return max(self._moving_until - now, 0.0)
 
     def shot(self, now: float) -> Shot:
-        """What is to be seen now."""
+        """Return the current shot."""
         time = self.clock.time(now)
         if self._grab is not Grab.TIME:
             self._last_time = interaction.last_time(time, self._begin, None)
@@ -165,23 +168,29 @@ class Session:
         )
 
     def frame_begun(self) -> None:
-        """A frame knows of the press: it is fresh no more."""
+        """Record that a frame has shown the press of the button, which is then no longer fresh."""
         if self.mouse.fresh:
             self.mouse = replace(self.mouse, fresh=False)
 
     def value(self, dial: Dial) -> Value:
-        """The value of a row's parameter."""
+        """Return the value of a control's parameter."""
         return self.values.get(dial.parameter.name, dial.parameter.default)
 
     @property
     def table(self) -> Table:
-        """The place of the rows."""
+        """The layout of the table of parameters."""
         return Table.of(*self.size, len(self.dials), self.chosen)
 
     # Keys
 
     def act(self, action: Action, now: float, *, shift: bool = False) -> None:
-        """Perform the action of a key; those of the window itself do nothing here."""
+        """Perform the action of a key; actions of the window itself are ignored.
+
+        Args:
+            action: The action.
+            now: The reading of the clock, in seconds.
+            shift: Whether the shift key is held.
+        """
         match action:
             case Action.PAUSE:
                 self._pause(now)
@@ -219,7 +228,7 @@ class Session:
             self.clock.run(self._wants_time, now)
 
     def _arrow(self, action: Action, now: float, shift: bool) -> None:
-        """Where the parameters are seen, arrows are theirs, as those of a page's slider are."""
+        """Perform an arrow key: it moves parameters while they are visible, as on a page."""
         right, up = _ARROWS[action]
         self._moving_until = now + _SETTLING_S
         if self.shows_parameters and self.shows_overlay and self.dials:
@@ -232,7 +241,7 @@ class Session:
         way, rise = right * interaction.ARROW, up * interaction.ARROW
         if not self.viewable.steers:
             self.mouse = self.mouse.nudged(way, rise)
-        # The arrow is where the eye goes, and the hand would drag the other way.
+        # An arrow is the direction of the eye; a drag moves in the opposite direction.
         elif shift:
             self.steering = panned(self.steering, -way, rise)
         else:
@@ -261,7 +270,7 @@ class Session:
         parameter = dial.parameter
         checked = parameter.check(value)
         if checked == parameter.default:
-            # Not moved any more: it follows the author's default when that is edited.
+            # Without a moved value, it follows the author's default when that is edited.
             self.values.pop(parameter.name, None)
         else:
             self.values[parameter.name] = checked
@@ -269,7 +278,15 @@ class Session:
     # The pointer
 
     def press(self, x: float, y: float, button: int, now: float, *, shift: bool = False) -> None:
-        """Take hold of what is under the pointer."""
+        """Start to drag what is under the pointer.
+
+        Args:
+            x: Position of the pointer, in units of the window from its left.
+            y: Position of the pointer, from the top.
+            button: The number of the button.
+            now: The reading of the clock, in seconds.
+            shift: Whether the shift key is held.
+        """
         self._at = (x, y)
         self._grab = self._held(x, y, button, shift)
         if self._grab is Grab.MOUSE:
@@ -277,11 +294,11 @@ class Session:
             self.mouse = Mouse(place, place, down=True, fresh=True)
         elif self._grab in (Grab.TIME, Grab.DIAL):
             if self._grab is Grab.TIME:
-                self.clock.run(False, now)  # the time waits while a hand holds it
+                self.clock.run(False, now)  # the time is paused while it is dragged
             self.drag(x, y, now)
 
     def is_free(self, x: float, y: float) -> bool:
-        """Whether the pointer is on the picture, and not on what is drawn over it."""
+        """Return whether a point is on the picture, not on the overlay."""
         if not self.shows_overlay:
             return True
         on_bar = self.animated and time_bar(*self.size).holds(x, y)
@@ -305,12 +322,18 @@ class Session:
         if row is None:
             return None
         self.chosen = row
-        # A row that scrolls away from under the pointer is chosen, but not moved.
+        # If choosing the row scrolls it away from the pointer, its value is not moved.
         stays = self.table.first == table.first
         return Grab.DIAL if stays and table.track(row).holds(x, y) else None
 
     def drag(self, x: float, y: float, now: float) -> None:
-        """Move what is held."""
+        """Move what is being dragged.
+
+        Args:
+            x: Position of the pointer, in units of the window from its left.
+            y: Position of the pointer, from the top.
+            now: The reading of the clock, in seconds.
+        """
         height = max(self.size[1], 1.0)
         right, down = (x - self._at[0]) / height, (y - self._at[1]) / height
         self._at = (x, y)
@@ -332,7 +355,7 @@ class Session:
         self._moving_until = now + _SETTLING_S
 
     def release(self, now: float) -> None:
-        """Let go."""
+        """End the drag."""
         if self._grab is Grab.MOUSE:
             self.mouse = replace(self.mouse, down=False)
         if self._grab is Grab.TIME:
@@ -340,12 +363,18 @@ class Session:
         self._grab = None
 
     def double_click(self, x: float, y: float, now: float) -> None:
-        """The author's own camera; two clicks on an ``@image`` are two clicks."""
+        """Reset the camera to the author's; for an ``@image`` a double click has no effect.
+
+        Args:
+            x: Position of the pointer, in units of the window from its left.
+            y: Position of the pointer, from the top.
+            now: The reading of the clock, in seconds.
+        """
         if self.viewable.steers and self.is_free(x, y):
             self.act(Action.RESET_CAMERA, now)
 
     def wheel(self, notches: float, now: float) -> None:
-        """Go nearer or farther; positive is away."""
+        """Zoom; positive notches move the eye away."""
         if self.viewable.steers:
             self.steering = zoomed(self.steering, notches)
             self._moving_until = now + _SETTLING_S
@@ -356,7 +385,7 @@ class Session:
 
 
 def valid_values(parameters: Sequence[Parameter], values: Mapping[str, Value]) -> dict[str, Value]:
-    """The values that parameters of these names still take."""
+    """Return the values that are still valid for parameters with these names."""
     known = {parameter.name: parameter for parameter in parameters}
     return {
         name: value

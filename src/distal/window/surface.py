@@ -1,8 +1,8 @@
-"""Draws a frame, and the panels over it, on a window.
+"""Draw a frame, and the panels over it, on a window.
 
-Input: a canvas of rendercanvas, a device of wgpu, a frame, panels. Output: pixels
-on the screen that are exactly the frame's where the sizes agree. It has no formula of color:
-where a surface encodes what is written to it, textures have the format that is read decoded.
+Input: a canvas of rendercanvas, a device of wgpu, a frame, panels. Output: pixels on the screen,
+identical to the frame's if the sizes agree. Contains no color formula: if the surface encodes what
+is written to it, textures have the format that decodes when read.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ fn over(at: Corner) -> @location(0) vec4f {
 
 
 class WindowSurface:
-    """A window's surface, ready to be drawn on.
+    """The surface of a window, ready for drawing.
 
     Attributes:
-        format: The format that the surface has.
+        format: The format of the surface.
     """
 
     def __init__(self, canvas: Any, device: Any) -> None:
@@ -66,7 +66,7 @@ class WindowSurface:
         self._panels: dict[int, tuple[Panel, Any]] = {}
 
     def show(self, made: RenderedFrame) -> None:
-        """Take a frame as the picture from now on."""
+        """Use a frame as the picture from now on."""
         if made.texture is not None:
             self._frame = self._readable(made.texture)
             return
@@ -78,7 +78,7 @@ class WindowSurface:
         self._upload(self._frame, made.pixels)
 
     def draw(self, panels: Sequence[Panel]) -> None:
-        """Draw the picture over the whole window, and the panels over it, the first lowest."""
+        """Draw the picture over the whole window, and the panels over it, the lowest first."""
         target = self._context.get_current_texture()
         width, height = target.size[:2]
         textures = [(panel, self._panel_texture(panel)) for panel in panels]
@@ -95,23 +95,23 @@ class WindowSurface:
             fits = self._frame.size[:2] == (width, height)
             self._put(draws, self._whole, self._frame, self._exact if fits else self._smooth)
         for panel, texture in textures:
-            # The part of it that is on the window: a viewport may not reach beyond.
+            # A viewport must not extend beyond the window.
             draws.set_scissor_rect(0, 0, width, height)
             across, down = texture.size[:2]
             if panel.x + across > width or panel.y + down > height:
-                continue  # the window has shrunk since: the next drawing has panels that fit
+                continue  # the window was made smaller; panels of the next drawing will fit
             draws.set_viewport(panel.x, panel.y, across, down, 0, 1)
             self._put(draws, self._over, texture, self._exact)
         draws.end()
         self._device.queue.submit([encoder.finish()])
 
     def _configured(self) -> str:
-        """Configure the surface to take values as they are, where it can; the format it has."""
+        """Configure the surface to store values unchanged if it can; return its format."""
         preferred = str(self._context.get_preferred_format(self._device.adapter))
         for format in (preferred.removesuffix("-srgb"), preferred):
             try:
                 self._context.configure(device=self._device, format=format, alpha_mode="opaque")
-            except ValueError:  # this surface has only formats that encode
+            except ValueError:  # this surface supports only formats that encode
                 if format == preferred:
                     raise
                 continue
@@ -119,7 +119,7 @@ class WindowSurface:
         return format
 
     def _readable(self, texture: Any) -> Any:
-        """The texture, or its copy in the format that is read decoded."""
+        """Return the texture, or a copy in the format that decodes when read."""
         if texture.format == self._read_format:
             return texture
         width, height = texture.size[:2]

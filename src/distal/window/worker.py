@@ -1,7 +1,7 @@
-"""The one thread that loads, compiles and renders, so that the window never waits.
+"""A thread that loads, compiles and renders, so that the window never waits.
 
-Input: jobs, and what to do with their results. Output: results, handed to the
-window's own thread in the order of their jobs. Knows nothing of what jobs do.
+Input: jobs, and callbacks for their results. Output: calls of the callbacks in the window's thread,
+in the order of the jobs. Does not depend on what jobs do.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable
 from typing import Any, Final, TypeAlias
 
-# Called in the window's thread with a result, or with what was raised.
+# Called in the window's thread with a result, or with the exception that was raised.
 Done: TypeAlias = "Callable[[Any], None]"
 Job: TypeAlias = "Callable[[threading.Event], Any]"
 
@@ -20,34 +20,34 @@ _END: Final = None
 
 
 class Worker:
-    """Runs one job after the other.
+    """Runs jobs one after the other.
 
     Attributes:
-        waiting: How many jobs are not done.
+        waiting: Number of jobs that are not finished.
     """
 
     def __init__(self, post: Callable[[Callable[[], None]], None]) -> None:
-        """``post`` calls a function soon in the window's thread, from any thread."""
+        """Start the thread; ``post`` runs a function in the window's thread, from any thread."""
         self.waiting = 0
         self._post = post
         self._jobs: queue.SimpleQueue[tuple[Job, Done] | None] = queue.SimpleQueue()
         self._cancel = threading.Event()
         self._ended = False
-        # A daemon: a compiler cannot be interrupted.
+        # A daemon thread, because a compiler cannot be interrupted.
         self._thread = threading.Thread(target=self._run, name="distal-window", daemon=True)
         self._thread.start()
 
     def submit(self, job: Job, done: Done) -> None:
-        """Run a job when those before it are done. It is given the sign to end early."""
+        """Run a job after all earlier jobs. Its argument is the event that asks it to end early."""
         self.waiting += 1
         self._jobs.put((job, done))
 
     def cancel(self) -> None:
-        """Request that the running job ends early; it is free to finish."""
+        """Ask the running job to end early; it may also finish."""
         self._cancel.set()
 
     def stop(self, patience_s: float) -> bool:
-        """End the thread; whether it ended in time."""
+        """End the thread; return whether it ended within ``patience_s`` seconds."""
         self._ended = True
         self._cancel.set()
         self._jobs.put(_END)
@@ -58,11 +58,11 @@ class Worker:
         while (work := self._jobs.get()) is not _END:
             job, done = work
             self._cancel.clear()
-            if self._ended:  # set between the two: the sign must not be lost
+            if self._ended:  # set before ``clear`` above, which would lose the request
                 return
             try:
                 result = job(self._cancel)
-            except BaseException as error:  # whatever it is: the window reports it
+            except BaseException as error:  # the window reports every exception
                 result = error
             if not self._ended:
                 self._post(functools.partial(self._finish, done, result))
