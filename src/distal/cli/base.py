@@ -193,7 +193,11 @@ def load_picture(
 
 
 def check_view(seen: Viewable, view: str) -> None:
-    """Raise ``UsageError`` if there is no such view."""
+    """Check that there is such a view.
+
+    Raises:
+        UsageError: There is none.
+    """
     try:
         seen.image(view)
     except ValueError as error:
@@ -201,7 +205,11 @@ def check_view(seen: Viewable, view: str) -> None:
 
 
 def check_processor() -> None:
-    """Raise ``UsageError`` if the processor cannot run the code of the CPU device."""
+    """Check that the processor can run the code of the CPU device.
+
+    Raises:
+        UsageError: It cannot, or ``DISTAL_CPU`` names a level that it lacks.
+    """
     from distal.devices.features import chosen_level
 
     try:

@@ -184,7 +184,7 @@ def _packages() -> Iterator[MachineFact]:
 
 
 def _faults(modules: list[str]) -> dict[str, str]:
-    """Return the error of importing each module, in a subprocess, which an import may end."""
+    """Import modules in a subprocess, which an import may crash; return the error of each."""
     path = os.pathsep.join(filter(None, sys.path))
     found: dict[str, str] = {}
     while len(found) < len(modules):

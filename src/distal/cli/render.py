@@ -50,7 +50,11 @@ class ViewArguments:
     tone_map: str | None
 
     def refuse_for_image(self, name: str, layers: tuple[str, ...]) -> None:
-        """Raise ``UsageError`` if an option for scenes was given for an ``@image``."""
+        """Check that no option for scenes was given for an ``@image``.
+
+        Raises:
+            UsageError: One was given.
+        """
         given = {
             "--slice": self.plane,
             "--samples": self.samples,

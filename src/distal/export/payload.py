@@ -274,7 +274,7 @@ class PagePrograms:
 
 
 def _is_library(file: str) -> bool:
-    """Return whether a line is of distal, not the author's; these are half of all lines."""
+    """Return whether a line is part of distal: no author edits it, and half of all lines are."""
     path = PurePath(file)
     return path.is_relative_to(PACKAGE) and not path.is_relative_to(PACKAGE / "gallery")
 

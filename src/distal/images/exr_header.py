@@ -1,4 +1,4 @@
-"""Read the header of an OpenEXR file without the library, because the file may be malicious.
+"""Read the header of an OpenEXR file without the library; another program may have written it.
 
 Input: a file. Output: its size, the bits of its channels, its texts; or a ``ValueError`` that
 explains the fault. OpenEXR's C++ ends the process on some broken files, so no file is passed to it

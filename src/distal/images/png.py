@@ -48,7 +48,7 @@ def quantise(array: NDArray[np.float32], bits: int = 8) -> NDArray[Any]:
 
 
 def defined_levels(array: NDArray[np.float32], bits: int) -> NDArray[Any]:
-    """The reference implementation of ``quantise`` in NumPy; used for few values or without JIT."""
+    """The definition of ``quantise`` in NumPy; used for few values or without compiled code."""
     levels = np.empty(array.shape, np.uint8 if bits == 8 else np.uint16)
     most = float(2**bits - 1)
     # In bands, because a whole picture in doubles would need several times its own memory.

@@ -33,8 +33,8 @@ class LangFunction:
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """Return the value for numbers, vectors or arrays; for expressions, an expression.
 
-        Calls that only Python's own function accepts, such as ``round(x, 2)`` or
-        ``max(numbers, key=…)``, use that function.
+        If Python has a built-in of this name, it is called instead, as in ``round(x, 2)`` or
+        ``max(numbers, key=…)``; not for vectors, nor for several arguments with an array.
         """
         if any(map(is_symbolic, args)):
             if kwargs:
@@ -54,7 +54,7 @@ class LangFunction:
 
 
 def _means_python(args: tuple[Any, ...]) -> bool:
-    """Return whether a call of a name that is also a Python built-in means the Python built-in."""
+    """Return whether Python's built-in of the same name is meant: there are no vectors."""
     if any(isinstance(arg, VectorValue) for arg in args):
         return False
     return len(args) == 1 or not any(hasattr(arg, "dtype") for arg in args)

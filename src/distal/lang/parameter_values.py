@@ -47,7 +47,12 @@ def read_number(label: str, text: str, read: Callable[[str], object], expected: 
 
 
 def as_float(label: str, value: object) -> float:
-    """Convert a number to a finite 32-bit float; refuse a bool."""
+    """Convert a number to a finite 32-bit float.
+
+    Raises:
+        TypeError: The value is not a number, or is a bool.
+        ValueError: The number is not finite, or too large for 32 bits.
+    """
     value = _plain(value)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"'{label}' takes a number, not {_kind_of(value)}")
@@ -61,7 +66,12 @@ def as_float(label: str, value: object) -> float:
 
 
 def as_int(label: str, value: object) -> int:
-    """Convert a whole number to a 32-bit int; refuse a bool or a float."""
+    """Convert a whole number to a 32-bit int.
+
+    Raises:
+        TypeError: The value is not a whole number, or is a bool or a float.
+        ValueError: The number is too large for 32 bits.
+    """
     value = _plain(value)
     if isinstance(value, bool):
         raise TypeError(f"'{label}' takes a whole number, not {_kind_of(value)}")
@@ -75,7 +85,11 @@ def as_int(label: str, value: object) -> int:
 
 
 def as_bool(label: str, value: object) -> bool:
-    """Return a bool; refuse a number."""
+    """Return a bool unchanged.
+
+    Raises:
+        TypeError: The value is not a bool.
+    """
     value = _plain(value)
     if not isinstance(value, bool):
         raise TypeError(f"'{label}' takes True or False, not {_kind_of(value)}")
@@ -83,7 +97,17 @@ def as_bool(label: str, value: object) -> bool:
 
 
 def as_option(label: str, options: tuple[str, ...], value: object) -> int:
-    """Return the index of an option given by its name or index."""
+    """Return the index of an option.
+
+    Args:
+        label: The label for messages.
+        options: The names of all options.
+        value: The name or the index of an option.
+
+    Raises:
+        TypeError: The value is neither a text nor a whole number.
+        ValueError: There is no such option.
+    """
     if isinstance(value, str):
         if value not in options:
             raise ValueError(f"'{label}' takes one of {', '.join(options)}, not '{value:.40}'")
@@ -95,7 +119,12 @@ def as_option(label: str, options: tuple[str, ...], value: object) -> int:
 
 
 def as_color(label: str, value: object) -> tuple[float, ...]:
-    """Return linear red, green and blue of a color, given linear or as "#rrggbb" in sRGB."""
+    """Return linear red, green and blue of a color, given linear or as "#rrggbb" in sRGB.
+
+    Raises:
+        TypeError: The value is neither a text nor three numbers.
+        ValueError: The text is not a color, or a number is outside 0 to 1.
+    """
     if isinstance(value, str):
         return _decode_hex(label, value)
     numbers = as_point(label, value, (3,))
@@ -114,7 +143,17 @@ def _decode_hex(label: str, text: str) -> tuple[float, ...]:
 
 
 def as_point(label: str, value: object, sizes: tuple[int, ...]) -> tuple[float, ...]:
-    """Return a tuple of finite floats whose length is one of ``sizes``."""
+    """Return a tuple of finite floats.
+
+    Args:
+        label: The label for messages.
+        value: A sequence of numbers.
+        sizes: The allowed lengths.
+
+    Raises:
+        TypeError: The value is not a sequence of numbers.
+        ValueError: Its length is not allowed, or a number is not finite.
+    """
     value = _plain(value)
     expected = " or ".join(map(str, sizes))
     if isinstance(value, str) or not isinstance(value, Sequence):

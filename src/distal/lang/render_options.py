@@ -18,7 +18,7 @@ from distal.ir.limits import LARGEST_TIME
 
 LARGEST_SIDE_PX: Final = 16384
 
-# Called with the finished fraction, from 0 to 1.
+# Called with the finished share, from 0 to 1.
 Progress: TypeAlias = Callable[[float], Any]
 # Rendering stops when the event is set or the function returns True.
 Cancel: TypeAlias = Callable[[], bool] | threading.Event
@@ -30,15 +30,16 @@ class RenderOptions:
 
     Attributes:
         size: Width and height in pixels.
-        time: Seconds; ``frame.time`` of an ``@image``.
+        time: Time in seconds; ``frame.time`` of an ``@image``.
         params: Values of parameters by name; the others have their defaults.
-        device: The device to render on: "auto" (a hardware GPU, else the CPU), "cpu", "gpu",
-            "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
-        threads: How many CPU threads to use; None for all that the process may use.
-        progress: Called with the finished fraction, from 0 to 1.
-        cancel: An event, or a function without arguments, that stops the rendering early.
-        mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
-        index: ``frame.index``, the number of the frame; wraps at 32 bits.
+        device: The device to render on: "auto" (a hardware GPU if there is one, else the CPU),
+            "cpu", "gpu", "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
+        threads: Number of CPU threads; None uses all that the process may use.
+        progress: Called with the finished share, from 0 to 1.
+        cancel: An event, or a function without arguments, that ends the work early.
+        mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
+            as in Shadertoy.
+        index: ``frame.index``, the frame number; wraps at 32 bits.
         seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
         freeze: Compile all numbers as constants: slower to compile, a little faster to run.
         settings: Values of a scene's numbers by name, for this picture only.

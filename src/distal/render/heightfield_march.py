@@ -33,8 +33,8 @@ class Stride:
 
     Attributes:
         top: A height that the surface is below everywhere.
-        first: The shortest first step, per unit of distance to the start (at least 1).
-        growth: The factor by which this length grows with each step.
+        first: The shortest step at the start, for each unit of distance to the start (at least 1).
+        growth: The factor by which the shortest step grows with each step.
     """
 
     top: float = 1.0

@@ -35,7 +35,7 @@ from distal.render.declarations import ExtraParameter, pattern
 PI = 3.14159265358979
 CENTER = vec3(0.0)
 # A face on the border of two cubes of a checker would flicker between both, so all cubes are moved
-# by these fractions of their size; faces rarely have this direction.
+# by these fractions of their size, in a direction that is not along any common face.
 OFF_THE_BORDER = vec3(1.31e-4, 1.73e-4, 1.57e-4)
 ALONG_X = vec3(1.0, 0.0, 0.0)
 BELOW = vec3(0.0, -1.0, 0.0)

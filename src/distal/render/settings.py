@@ -34,8 +34,8 @@ def stride_over(bounds: Bounds, stride: float, stride_growth: float) -> Stride:
 
     Args:
         bounds: Box of the terrain.
-        stride: The shortest first step, per unit of distance.
-        stride_growth: The factor by which this length grows with each step.
+        stride: The shortest step at the start, for each unit of distance.
+        stride_growth: The factor by which the shortest step grows with each step.
     """
     return Stride(bounds.high.y, stride, stride_growth)
 

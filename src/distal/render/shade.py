@@ -44,7 +44,8 @@ def soft_shadow(
     """Return the visible fraction of a light: 1 in full light, 0 in full shadow.
 
     It is the fraction of the light's disc that a straight edge leaves visible, estimated from the
-    closest approach of the ray to a surface (Inigo Quilez, "Soft shadows in raymarched SDFs").
+    closest approach to the ray, outside or inside (Inigo Quilez, "Soft shadows in raymarched
+    SDFs").
 
     Args:
         field: Signed distance.

@@ -33,7 +33,7 @@ class Lowered:
         digest: Hash of the printed IR without the values of numbers: equal for functions that
             differ only in these.
         source_hash: Hash of the text of every file that contains its functions.
-        captured: Knows whether the captured constants have changed.
+        captured: Detects whether the captured constants have changed.
     """
 
     module: Module

@@ -36,7 +36,11 @@ class Taker(Generic[Item]):
             thread.start()
 
     def put(self, item: Item | None) -> None:
-        """Pass on an item; wait while too many are in the queue."""
+        """Pass on an item; wait while too many are in the queue.
+
+        Raises:
+            BaseException: The first error of a thread.
+        """
         while True:
             if self._failure is not None:
                 raise self._failure

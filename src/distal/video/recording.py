@@ -335,7 +335,7 @@ class _RecordingJob:
             what = "pictures have" if self.format is FRAMES else f"{self.format.name} has"
             self.tell(f"{what} no mark for loops: whoever plays it decides")
 
-    # What is written down
+    # Manifest and metadata
 
     def _manifest(self) -> dict[str, Any]:
         """Return everything that segments depend on; not the duration, so that it may grow."""

@@ -157,7 +157,11 @@ def partial(path: Path) -> Path:
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Convert errors of the file system and of FFmpeg to a ``SaveError`` of one line."""
+    """Convert errors of the file system and of FFmpeg to one line.
+
+    Raises:
+        SaveError: There was such an error in the block.
+    """
     try:
         yield
     except OSError as error:  # includes FFmpeg's errors about files

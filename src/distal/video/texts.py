@@ -26,7 +26,13 @@ _WEBP_NO_BLEND: Final = 0x02
 
 
 def with_texts(path: Path, format: VideoFormat, texts: Mapping[str, str]) -> None:
-    """Write the texts into the file."""
+    """Write texts into a file.
+
+    Args:
+        path: The file.
+        format: Its format: gif, apng or webp.
+        texts: The texts by key.
+    """
     if format.name == "webp":
         with open(path, "r+b") as file:
             _webp(file, texts)

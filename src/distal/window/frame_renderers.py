@@ -120,7 +120,14 @@ class PixelRenderer:
     def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
-        """Render a frame; if cancelled, return the finished fraction and the time."""
+        """Render a frame; if cancelled, return the finished fraction and the time.
+
+        Args:
+            viewable: The object to show.
+            shot: Time, parameters, view and camera.
+            size: Width and height in pixels.
+            cancel: Set to stop the rendering early.
+        """
         done = 0.0
         begin = time.perf_counter()
 
@@ -170,7 +177,14 @@ class TextureRenderer:
     def render(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> RenderedFrame:
-        """Render a frame; ``cancel`` has no effect, because a GPU finishes what it has begun."""
+        """Render a frame.
+
+        Args:
+            viewable: The object to show.
+            shot: Time, parameters, view and camera.
+            size: Width and height in pixels.
+            cancel: Has no effect, because a GPU finishes what it has begun.
+        """
         self.prepare(viewable, shot)
         # Two textures are enough: the window shows one while the other is drawn.
         texture = self._textures.pop(0) if len(self._textures) > 1 else None

@@ -44,7 +44,13 @@ def width(font: Font, text: str) -> float:
 
 
 def shortened(font: Font, text: str, room: float) -> str:
-    """Return the text, cut at the end to a width of ``room`` pixels."""
+    """Return a text, cut at its end to fit.
+
+    Args:
+        font: The font.
+        text: The text.
+        room: The available width in pixels.
+    """
     if width(font, text) <= room:
         return text
     while text and width(font, text + "…") > room:
@@ -53,7 +59,13 @@ def shortened(font: Font, text: str, room: float) -> str:
 
 
 def shortened_inside(font: Font, text: str, room: float) -> str:
-    """Return the text, cut in the middle to fit: similar names often differ at their ends."""
+    """Return a text, cut in its middle to fit, because similar names often differ at the end.
+
+    Args:
+        font: The font.
+        text: The text.
+        room: The available width in pixels.
+    """
     kept = len(text)
     made = text
     while kept > 2 and width(font, made) > room:

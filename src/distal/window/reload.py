@@ -115,7 +115,7 @@ def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) ->
 
 
 def files_in(error: BaseException, scene: Path) -> list[Path]:
-    """Return the files that must change before an error can disappear, besides the known ones.
+    """Return the files and folders that may have to change to fix an error, besides known ones.
 
     A module that fails to load belongs to no loaded scene. A missing module is detected by its
     folder, whose entries change when the module is created.

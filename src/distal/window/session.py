@@ -363,7 +363,7 @@ class Session:
         self._grab = None
 
     def double_click(self, x: float, y: float, now: float) -> None:
-        """Reset the camera to the author's; for an ``@image`` a double click has no effect.
+        """Reset the camera to the author's; for an ``@image`` this does nothing.
 
         Args:
             x: Position of the pointer, in units of the window from its left.
