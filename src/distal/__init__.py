@@ -1,7 +1,7 @@
 """distal: 3D scenes written as ordinary Python, compiled to every target.
 
-Each name is imported when it is first used. So ``import distal`` is fast, and compiling needs only
-the standard library.
+Each name is imported when it is first used, so that ``import distal`` is fast and compiling needs
+only the standard library.
 """
 
 from __future__ import annotations

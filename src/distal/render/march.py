@@ -1,6 +1,6 @@
-"""Sphere tracing: along a ray to the nearest surface.
+"""Sphere tracing: find the first surface along a ray.
 
-Input: a ray, a field, a box and the numbers of a march. Output: a ``Hit``. The field guarantees
+Input: a ray, a field, a box and the parameters of a march. Output: a ``Hit``. The field guarantees
 that there is no surface within a ball around each point. A step goes across this ball and on to
 where the next ball would touch it if the surface ahead were flat (Bálint and Valasek, "Accelerating
 Sphere Tracing", 2018). If the two balls do not touch, the step is taken back (Keinert et al.,

@@ -72,7 +72,7 @@ def bind(
 def choose_types(
     header: FunctionSignature, values: Sequence[Any], dtype: np.dtype[Any]
 ) -> tuple[tuple[Type, ...], list[Any]] | None:
-    """Return parameter types that accept every value, and the values as ``lanes``; else None.
+    """Return parameter types that accept every value, and the converted values; else None.
 
     For a generic parameter, the types of its type variable are tried in order.
 
