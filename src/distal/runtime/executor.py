@@ -190,7 +190,6 @@ class PythonExecutor:
         Args:
             function: The function to call.
             args: Values by position.
-            args: Values by position.
             kwargs: Values by name.
             params: Values of parameters by name; the others have their defaults.
             time: Seconds.

@@ -96,7 +96,6 @@ def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) ->
             the shape at this time and for these parameters.
         view: One of its views.
         samples: Rays per pixel of a scene.
-        samples: Rays for each pixel of a scene.
 
     Raises:
         LoadError: The object is not a picture.
