@@ -1,4 +1,4 @@
-"""From a decorated Python function to typed IR, with every mistake shown at the author's line.
+"""Translate decorated Python functions to typed IR, and report every error at the author's line.
 
 The packages depend downwards: ``lowering`` -> ``types`` -> ``signatures`` -> the modules of this
 folder (values, scopes, source, problems). Only ``python_expressions`` is above ``lowering``.

@@ -1,7 +1,7 @@
-"""Whether the Python objects that a lowered program captured are still the same.
+"""Check whether the Python objects that a lowered program captured are still the same.
 
-Scene code captures constants when it is lowered. Calling it again may skip the lowering only while
-every name its functions use means the same object as then; a notebook rebinds names all the time.
+Scene code captures constants when it is lowered. A later call can skip the lowering only if every
+name that its functions use still refers to the same object. A notebook often rebinds names.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class _Missing:
 
 
 _MISSING: Final = _Missing()
-# What never changes, so that being the same object is enough.
+# Immutable values: an identity comparison is enough.
 _UNCHANGING: Final = (
     *(bool, int, float, str, bytes, type(None), type, Enum, _Missing),
     *(VectorValue, MatrixValue, Parameter, Expression, Composed),
@@ -35,7 +35,7 @@ _UNCHANGING: Final = (
 
 
 class Captured:
-    """The objects behind the names of some functions, as they are now.
+    """The objects that the names used by some functions refer to, recorded at construction.
 
     Attributes:
         overloads: The functions.
@@ -43,13 +43,13 @@ class Captured:
 
     def __init__(self, overloads: Iterable[Overload]) -> None:
         self.overloads = tuple(overloads)
-        # The library's own functions stay as they are; a scene is made of hundreds of them.
+        # Functions of the library do not change, and a scene uses hundreds of them: skip them.
         self._authors = tuple(o for o in self.overloads if not _is_library(o))
         self._objects = tuple(self._now())
         self._lasting = all(map(_lasts, self._objects))
 
     def is_fresh(self) -> bool:
-        """Whether all of them are the same still; False where that is not known."""
+        """Return whether all recorded objects are unchanged; False if this is not known."""
         if not self._lasting:
             return False
         now = tuple(self._now())
@@ -111,7 +111,7 @@ def _lasts(value: Any) -> bool:
         return True
     if getattr(value, "shape", None) == ():  # NumPy's numbers, but not its arrays of one number
         return not hasattr(value, "__setitem__")
-    # Builtins, ``typing``, a class's properties and the like: named, and of no use as a constant.
+    # Builtins, objects of ``typing``, descriptors: scene code never uses them as constants.
     return callable(value) or hasattr(value, "__origin__") or hasattr(type(value), "__get__")
 
 

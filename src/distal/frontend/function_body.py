@@ -1,7 +1,8 @@
-"""The state of lowering one function's body: its blocks, its locals, which of them have a value.
+"""The state of lowering one function body: its blocks, its locals, and which locals have a value.
 
-Statement and expression rules (``statements``, ``expressions`` and their neighbours) are functions
-over a ``FunctionBody``, which knows names and blocks, and no rule of the language.
+The rules of statements and expressions (``lowering/statements.py``, ``lowering/expressions.py`` and
+others) are functions that take a ``FunctionBody``. This class handles names and blocks and contains
+no rules of the language.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from distal.ir.walk import children
 if TYPE_CHECKING:
     from distal.frontend.lowering.compilation import Compilation
 
-# Deeper expressions are split into lets, so that no pass and no driver recurses too far.
+# Deeper expressions are split into lets, because passes and drivers recurse over expressions.
 DEEPEST = 60
 
 
@@ -35,14 +36,15 @@ class Variable:
     """A local, a parameter or a loop variable of one function.
 
     Attributes:
-        name: As the author writes it.
-        owner: The body it belongs to.
-        changes: Whether it is a Var; a Let otherwise.
+        name: The name in the author's source.
+        owner: The function body that declares it.
+        changes: Whether it is a Var; otherwise it is a Let.
+        home: The block that declares it; None for a parameter.
         ir_name: Its name in the IR, unique in the function; empty until it is bound.
-        type: Known from its first assignment on.
-        static: Set instead of a type where the name stands for a function or the like.
-        failed: Its definition was a mistake: uses of it are no further mistakes.
-        loop: A loop variable, which is read-only.
+        type: Its type; None before the first assignment.
+        static: Set instead of a type if the name refers to a function, a type or a resource.
+        failed: Its definition has an error; uses of it are not reported as further errors.
+        loop: Whether it is a loop variable, which is read-only.
     """
 
     name: str
@@ -58,7 +60,13 @@ class Variable:
 
 @dataclass(eq=False, slots=True)
 class Block:
-    """Statements being collected; ``start`` is where the current author's statement begins."""
+    """A block whose statements are being collected.
+
+    Attributes:
+        variables: The locals that the block declares, by name.
+        statements: The IR statements so far.
+        start: The index in ``statements`` where the author's current statement begins.
+    """
 
     variables: dict[str, Variable]
     statements: list[Stmt] = field(default_factory=list)
@@ -67,13 +75,17 @@ class Block:
 
 @dataclass(slots=True)
 class OpenLoop:
-    """An open loop: what is assigned at each ``break``, or None where there was none yet."""
+    """A loop being lowered.
+
+    Attributes:
+        at_break: The variables that are assigned at every ``break``; None before the first one.
+    """
 
     at_break: set[Variable] | None = None
 
 
 class FunctionBody:
-    """One function body on its way to IR."""
+    """The lowering state of one function body."""
 
     def __init__(
         self,
@@ -100,16 +112,18 @@ class FunctionBody:
         self.result: Type | None = None
         self.returned: list[tuple[Value, ast.Return]] = []
         self.failed = False
-        self.whole_starts: dict[str, int] = {}  # locals that are ints because a literal began them
-        self.place: Span | None = None  # of the statement that is being lowered
+        self.whole_starts: dict[
+            str, int
+        ] = {}  # locals that are ints because they start as a literal
+        self.place: Span | None = None  # span of the statement that is being lowered
         self._taken: set[str] = set()
         self._depths: dict[Expr, int] = {}
         self._expression: Callable[[FunctionBody, ast.expr], Value] = compilation.expression
 
-    # Places and mistakes
+    # Source places and errors
 
     def span(self, node: Node | ast.arg | ast.keyword) -> Span:
-        """The author's place of a node."""
+        """Return the source span of a node."""
         return self.source.span(node)
 
     def problem(
@@ -118,25 +132,31 @@ class FunctionBody:
         node: Node | ast.arg | ast.keyword,
         hint: str | None = None,
     ) -> SceneError:
-        """A mistake at a node, to be raised."""
+        """Return an error at a node, for the caller to raise.
+
+        Args:
+            message: What is wrong.
+            node: The node that the error points at.
+            hint: What to write instead.
+        """
         return SceneError(message, self.span(node), hint)
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Note a mistake of this function."""
+        """Record an error of this function."""
         self.failed = True
         self.compilation.report(diagnostic)
 
     # Blocks and statements
 
     def expression(self, node: ast.expr) -> Value:
-        """Lower an expression; one that grows too deep is cut by a Let."""
+        """Lower an expression, and bind it to a Let if it is too deep."""
         value = self._expression(self, node)
         if isinstance(value, Static | Closure) or not hasattr(value, "type"):
             return value
         return self.shallow(value)  # type: ignore[arg-type]
 
     def shallow(self, value: Expr) -> Expr:
-        """The expression, or a read of a new Let that holds it."""
+        """Return the expression, or a read of a new Let if it is deeper than ``DEEPEST``."""
         if self._depth(value) <= DEEPEST or is_static(value.type):
             return value
         return self.bind("part", value)
@@ -149,12 +169,12 @@ class FunctionBody:
         return known
 
     def emit(self, stmt: Stmt) -> None:
-        """Add a statement; what can never run is checked but not kept."""
+        """Add a statement. Unreachable statements are checked but not added."""
         if self.reachable:
             self.blocks[-1].statements.append(stmt)
 
     def bind(self, name: str, value: Expr) -> Expr:
-        """Hold a value in a new Let before the current statement."""
+        """Bind a value to a new Let before the current statement, unless it has no operands."""
         if not children(value):
             return value
         fresh = self.fresh(name)
@@ -162,7 +182,7 @@ class FunctionBody:
         return Read(fresh, value.type)
 
     def hold(self, name: str, value: Expr) -> Expr:
-        """As ``bind``, and also for a Var that is about to change."""
+        """Bind a value like ``bind``, and also copy a plain read of a Var that may change next."""
         if isinstance(value, Read):
             fresh = self.fresh(name)
             self.emit(Let(fresh, value, span=self.place))
@@ -171,7 +191,7 @@ class FunctionBody:
 
     @contextmanager
     def block(self, statements: list[ast.stmt]) -> Iterator[Block]:
-        """Collect the statements of an inner block."""
+        """Open an inner block that collects statements."""
         block = Block({})
         for local in self.scopes.blocks.get(id(statements), ()):
             block.variables[local.name] = Variable(local.name, self, local.changes, block)
@@ -180,14 +200,14 @@ class FunctionBody:
         self.blocks.pop()
 
     def begin_statement(self, stmt: ast.stmt) -> None:
-        """Remember where hoisted locals go, before this statement, and where they come from."""
+        """Record the statement's span, and its position: declarations are inserted before it."""
         self.place = self.span(stmt)
         self.blocks[-1].start = len(self.blocks[-1].statements)
 
     # Names
 
     def fresh(self, name: str) -> str:
-        """A name of the IR that is new in this function, as close to ``name`` as can be."""
+        """Return an unused IR name of this function: ``name``, numbered if it is taken."""
         base = name.strip("_") or "value"
         candidate, n = base, 2
         while candidate in self._taken:
@@ -196,21 +216,25 @@ class FunctionBody:
         return candidate
 
     def add_parameter(self, name: str, type: Type | None) -> Variable:
-        """Declare a parameter; ``type`` is None where its annotation was a mistake."""
+        """Declare a parameter; ``type`` is None if its annotation has an error."""
         variable = Variable(name, self, False, None, self.fresh(name), type, failed=type is None)
         self.parameters[name] = variable
         self.assigned.add(variable)
         return variable
 
     def lookup(self, name: str) -> Variable | None:
-        """The local or parameter of this body that a name stands for here."""
+        """Return the local or parameter of this body with this name, or None."""
         for block in reversed(self.blocks):
             if name in block.variables:
                 return block.variables[name]
         return self.parameters.get(name)
 
     def find(self, name: str, node: ast.expr) -> Variable | tuple[bool, Any]:
-        """A variable of this or an enclosing body, or (found, object) from outside."""
+        """Return a variable of this or an enclosing body, or (found, object) from outside.
+
+        Raises:
+            SceneError: The name is a local that has no value at this place.
+        """
         body: FunctionBody | None = self
         while body is not None:
             variable = body.lookup(name)
@@ -225,7 +249,12 @@ class FunctionBody:
         return self.names.find(name)
 
     def read(self, variable: Variable, node: ast.expr) -> Value:
-        """The value of a variable here; of an enclosing function's variable, a capture."""
+        """Return the value of a variable; a variable of an enclosing function becomes a capture.
+
+        Raises:
+            FollowupError: The variable's definition has an error.
+            SceneError: The variable may have no value here.
+        """
         if variable.failed:
             raise FollowupError
         owner = variable.owner
@@ -241,7 +270,7 @@ class FunctionBody:
         return self.capture(variable)
 
     def capture(self, variable: Variable) -> Expr:
-        """An enclosing function's variable, as a parameter that this lifted function gets."""
+        """Return an enclosing function's variable as an extra parameter of this lifted function."""
         assert variable.type is not None
         if variable.owner is self:
             return Read(variable.ir_name, variable.type)
@@ -250,13 +279,19 @@ class FunctionBody:
         return self.captures[variable]
 
     def capture_params(self) -> tuple[Param, ...]:
-        """The parameters that captures became, in order."""
+        """Return the extra parameters for the captured variables, in order."""
         return tuple(Param(read.name, read.type) for read in self.captures.values())
 
     # Assignment
 
     def store(self, variable: Variable, value: Expr, node: ast.stmt | ast.expr) -> None:
-        """Give a local a value of the type it has, or of its first type."""
+        """Assign a value to a local. The first assignment declares the local with the value's type.
+
+        Args:
+            variable: The local.
+            value: The value; its type is the local's type if the local has one.
+            node: The node whose span the statement gets.
+        """
         span = self.span(node)
         if variable.ir_name and variable.changes:
             assert variable.type is not None
@@ -282,7 +317,7 @@ class FunctionBody:
 
 
 def zero(type: Type) -> Expr:
-    """A value for a local that is surely assigned before it is read."""
+    """Return an initial value for a local that is always assigned before it is read."""
     match type:
         case Scalar() | Vector():
             return number(0, type)

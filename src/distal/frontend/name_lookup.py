@@ -1,6 +1,6 @@
-"""What the names in a function mean, in its body and in its annotations.
+"""Look up the names in a function, for its body and its annotations.
 
-Input: a Python function. Output: a ``NameLookup``. Knows no syntax but that of annotations.
+Input: a Python function. Output: a ``NameLookup``. Handles no syntax except annotations.
 """
 
 from __future__ import annotations
@@ -20,7 +20,13 @@ _MISSING: Final = object()
 
 @dataclass(frozen=True, slots=True)
 class NameLookup:
-    """Where a function's global and closure names are looked up, and what annotations mean."""
+    """Lookup of a function's closure, global and built-in names, and of its annotations.
+
+    Attributes:
+        find: Returns (whether the name exists, its object).
+        annotation: Evaluates an annotation; raises a ``SceneError`` if it cannot.
+        known: Returns all names, for suggestions.
+    """
 
     find: Callable[[str], tuple[bool, Any]]
     annotation: Callable[[ast.expr], Any]
@@ -28,11 +34,11 @@ class NameLookup:
 
 
 def names_of(python: FunctionType, enclosing: Mapping[str, Any]) -> NameLookup:
-    """The names that a function sees: its closure, its module, Python's built-ins.
+    """Return the lookup of a function's names: its closure, its module, Python's built-ins.
 
     Args:
         python: The function.
-        enclosing: Types that only annotations name, which no closure holds.
+        enclosing: Types that only annotations use. Python's closures do not contain them.
     """
     module: Mapping[str, Any] = python.__globals__
     cells = dict(zip(python.__code__.co_freevars, python.__closure__ or (), strict=True))
@@ -49,7 +55,7 @@ def names_of(python: FunctionType, enclosing: Mapping[str, Any]) -> NameLookup:
         return found is not _MISSING, found
 
     def find_type(name: str) -> tuple[bool, Any]:
-        # A type that only an annotation names is in no closure.
+        # Python does not put a name that is used only in annotations into a closure.
         exists, found = find(name) if name in cells or name not in enclosing else (False, None)
         return (True, enclosing[name]) if not exists and name in enclosing else (exists, found)
 
@@ -60,7 +66,7 @@ def names_of(python: FunctionType, enclosing: Mapping[str, Any]) -> NameLookup:
 
 
 def _annotation(node: ast.expr, find: Any, known: Any) -> Any:
-    """Evaluate an annotation as Python would, its names looked up by ``find``."""
+    """Evaluate an annotation as Python does; ``find`` looks up its names."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         text = node.value
         try:

@@ -1,8 +1,8 @@
-"""Python's parser, for one thread at a time.
+"""Parse Python source text, in one thread at a time.
 
-Input: source text. Output: its tree. CPython 3.11 counts the depth of all trees
-that are being built in one place (gh-106905): two threads that parse at once fail now and then
-with "AST constructor recursion depth mismatch".
+Input: source text. Output: its syntax tree. CPython 3.11 counts the recursion depth of all parsers
+in one shared counter (gh-106905): if two threads parse at the same time, one sometimes fails with
+"AST constructor recursion depth mismatch".
 """
 
 from __future__ import annotations
@@ -15,6 +15,6 @@ _PARSING: Final = threading.Lock()
 
 
 def parse(text: str, **options: Any) -> Any:
-    """``ast.parse``, waiting for other threads that parse."""
+    """Call ``ast.parse`` while no other thread parses."""
     with _PARSING:
         return ast.parse(text, **options)

@@ -1,8 +1,8 @@
-"""A mistake found while lowering, on its way from an expression to its statement.
+"""Exceptions for errors that are found while lowering.
 
-An expression raises a ``SceneError``; the statement around it records the diagnostic and lowering
-goes on with the next statement. ``FollowupError`` is raised for a name whose own definition failed:
-its mistake was reported already.
+Lowering an expression raises a ``SceneError``. The enclosing statement records its diagnostic, and
+lowering continues with the next statement. ``FollowupError`` is raised for a name whose definition
+failed: that error was reported already.
 """
 
 from __future__ import annotations
@@ -14,7 +14,11 @@ from distal.diagnostics import Diagnostic, Span
 
 
 class SceneError(Exception):
-    """A mistake of the author at a place."""
+    """An error in the author's code, with its source place.
+
+    Attributes:
+        diagnostic: The message, the span and a hint.
+    """
 
     def __init__(self, message: str, span: Span | None, hint: str | None = None) -> None:
         super().__init__(message)
@@ -22,10 +26,10 @@ class SceneError(Exception):
 
 
 class FollowupError(Exception):
-    """The consequence of a mistake that was reported elsewhere."""
+    """The consequence of an error that was reported already."""
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str | None:
-    """A hint with the known name closest to ``name``, if one is close."""
+    """Return a hint with the known name most similar to ``name``; None if none is similar."""
     close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.7)
     return f"did you mean '{close[0]}'?" if close else None

@@ -1,8 +1,8 @@
-"""Operators and built-ins between values that Python code holds: ``slider("Size", 1) * 2``.
+"""Build expressions from operators and built-ins in Python code: ``slider("Size", 1) * 2``.
 
-Input: the name of an operation and its operands, expressions among them. Output:
-the expression, by the rules that scene code has; a mistake is a ``TypeError`` in the same words.
-There is no function around it: no statement, no local, no place in a source.
+Input: the name of an operation and its operands; at least one is an expression. Output: the
+expression, by the rules of scene code. Errors are ``TypeError`` with the messages of scene code.
+There is no enclosing function: no statements, no locals, no source spans.
 """
 
 from __future__ import annotations
@@ -42,25 +42,30 @@ _BINARY: Final[dict[str, ast.operator]] = {
 _UNARY: Final[dict[str, ast.unaryop]] = {"-x": ast.USub(), "+x": ast.UAdd()}
 _TYPES: Final[dict[str, Type]] = {str(type): type for type in VALUE_CLASSES}
 
-# What a message of scene code advises, said for Python, where float(...) must give a number.
+# Hints of scene code and their replacements for Python, where float(...) must return a number.
 _HINTS: Final = {"write float(...) around the int": "an int divided by 1 is a float: (n / 1) * 0.5"}
 
-# In a function the front end cuts a deeper expression into locals. Here there are no locals, and
-# the passes recurse through the whole expression and what surrounds it. Half of the measured limit.
+# In a function the front end splits deeper expressions into locals. Here there are no locals, and
+# the passes recurse through the expression and its surroundings. This is half the measured limit.
 DEEPEST: Final = 100
 _depths: Final[WeakKeyDictionary[Expr, int]] = WeakKeyDictionary()
 
-# The rules take the author's syntax for their messages: here there is none.
+# The rules need a syntax node for their messages; here there is none.
 _NOWHERE: Final = ast.Call(ast.Name("expression"), [], [])
 
 
 def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
-    """The value of an operator, a built-in or a vector's or matrix's type, by name.
+    """Apply an operation to operands: an operator, a built-in, or a vector or matrix constructor.
 
-    None where an operand is no value of scene code.
+    Args:
+        operation: The operator's symbol, the built-in's name or the type's name.
+        operands: The operands.
+
+    Returns:
+        The expression; None if an operand is not a value of scene code.
 
     Raises:
-        TypeError: The operation does not take such operands, or the expression grows too deep.
+        TypeError: The operation does not accept the operands, or the expression is too deep.
         ValueError: A number is NaN, infinite or too large.
     """
     if not all(map(_may_be_value, operands)):
@@ -84,7 +89,7 @@ def combine(operation: str, operands: Sequence[Any]) -> Expression | None:
 
 
 def _depth(node: Expr) -> int:
-    """How many operations are nested; an operand's number is known since it was built."""
+    """Return how many operations are nested; the depths of operands are cached."""
     known = _depths.get(node)
     if known is None:
         known = _depths[node] = 1 + max(map(_depth, children(node)), default=0)
@@ -92,21 +97,21 @@ def _depth(node: Expr) -> int:
 
 
 class _Outside(FunctionBody):
-    """Where an expression is built that belongs to no function."""
+    """A stand-in for ``FunctionBody``, for expressions outside any function."""
 
     def __init__(self) -> None:
         self.whole_starts = {}
 
     def span(self, node: Any) -> Any:
-        """No place."""
+        """Return None: there is no source."""
         return None
 
     def bind(self, name: str, value: Expr) -> Expr:
-        """The value itself: equal nodes are one object, and the compiler shares it."""
+        """Return the value itself: equal nodes are one object and are computed once."""
         return value
 
     def shallow(self, value: Expr) -> Expr:
-        """The value as it is: there is no statement to split it into."""
+        """Return the value itself: there are no statements to split it into."""
         return value
 
 
@@ -114,7 +119,7 @@ _OUTSIDE: Final = _Outside()
 
 
 class _Parameters:
-    """The parameters that the operands read, by first use."""
+    """The parameters that the operands read, in order of first use."""
 
     def __init__(self) -> None:
         self.found: dict[Parameter, None] = {}
@@ -151,11 +156,11 @@ def _may_be_value(operand: Any) -> bool:
 
 def _value(operand: Any, parameters: _Parameters) -> Value:
     if getattr(getattr(operand, "dtype", None), "kind", "") == "O":
-        operand = operand.tolist()  # NumPy's array of numbers and expressions
+        operand = operand.tolist()  # a NumPy array of numbers and expressions
     text = repr(operand) if isinstance(operand, int | float) else "the operand"
     value = value_of(operand, text, parameters)
     if isinstance(value, SequenceValue):
-        # Outside scene code a short tuple, list or array of numbers is a vector, never an array.
+        # Outside scene code, a tuple, list or array of 2 to 4 numbers is a vector, not an array.
         type = vector_type(value)
         coerced = None if type is None else coerce_constant(value, type)
         return value if coerced is None else coerced

@@ -1,11 +1,11 @@
-"""Scope analysis: the block that each local of a function belongs to.
+"""Scope analysis: find the block that declares each local of a function.
 
-Input: the syntax tree of one function. Output: for each block the locals that
-belong to it, and whether each may change. Knows names only, no types.
+Input: the syntax tree of one function. Output: the locals of each block, and whether each may
+change. Works with names only; does not depend on types.
 
-A local belongs to the innermost block that holds all its uses. Where several inner blocks use the
-same name and none of them reads what another wrote, each has a local of its own: the ``d`` of two
-loops in a row are two values, not one that changes.
+A local belongs to the innermost block that contains all its uses. If several inner blocks use the
+same name and none reads a value that another one wrote, each gets a separate local. For example,
+``d`` in two consecutive loops becomes two constants instead of one variable.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class _BlockUses:
     """Uses of names in one block, without its inner blocks."""
 
     statements: list[ast.stmt]
-    hidden: str | None = None  # the loop variable, which is no local in here
+    hidden: str | None = None  # the loop variable, which is not a local of this block
     reads: set[str] = field(default_factory=set)
     whole: dict[str, int] = field(default_factory=lambda: defaultdict(int))
     partial: set[str] = field(default_factory=set)
@@ -59,7 +59,7 @@ def analyse_scopes(statements: list[ast.stmt], parameters: set[str]) -> ScopeAna
     """Find the locals of a function with this body."""
     captures: dict[str, set[str]] = {}
     root = _collect(statements, captures, None)
-    # A part assigned does not make a name local: in Python it changes the outer object.
+    # Assignment to a part does not make a name local: in Python it changes the outer object.
     stored = _stored(root) | (_partly_stored(root) & parameters)
     blocks: dict[int, list[BlockLocal]] = defaultdict(list)
     for name in sorted(stored - parameters):
@@ -110,7 +110,7 @@ def _collect(
 
 
 def _uses(node: ast.AST, block: _BlockUses, captures: dict[str, set[str]]) -> None:
-    """Note every name in a statement or expression that has no inner blocks."""
+    """Record every name in a statement or expression that has no inner blocks."""
     match node:
         case ast.Name(name, ast.Load()):
             block.reads.add(name)
@@ -118,7 +118,7 @@ def _uses(node: ast.AST, block: _BlockUses, captures: dict[str, set[str]]) -> No
         case ast.Name(name):
             block.whole[name] += 1
         case ast.AugAssign(ast.Name(name), _, value):
-            # Reads the old value, so it is never the only assignment.
+            # It reads the old value, so it is never the only assignment.
             block.whole[name] += 1
             block.reads.add(name)
             _uses(value, block, captures)
@@ -126,7 +126,9 @@ def _uses(node: ast.AST, block: _BlockUses, captures: dict[str, set[str]]) -> No
             if value is not None or not isinstance(target, ast.Name):
                 _uses(target, block, captures)
             else:
-                block.reads.add(target.id)  # a bare declaration holds the local here
+                block.reads.add(
+                    target.id
+                )  # a declaration without a value makes the local belong to this block
             if value is not None:
                 _uses(value, block, captures)
         case ast.Subscript(base, index, ast.Store()):
@@ -155,7 +157,7 @@ def _part(base: ast.expr, block: _BlockUses, captures: dict[str, set[str]]) -> N
 
 
 def free_names(function: ast.FunctionDef | ast.Lambda) -> set[str]:
-    """Names that a nested function takes from outside."""
+    """Return the names that a nested function uses from its enclosing scopes."""
     a = function.args
     own = {p.arg for p in (*a.posonlyargs, *a.args, *a.kwonlyargs)}
     loads: set[str] = set()
@@ -201,7 +203,7 @@ def _mentions(block: _BlockUses, name: str) -> bool:
 
 
 def _place(block: _BlockUses, name: str, blocks: dict[int, list[BlockLocal]]) -> None:
-    """Find the innermost block for a name; several where the uses are independent."""
+    """Find the innermost block for a name, or several blocks if their uses are independent."""
     direct = name in block.reads or name in block.whole or name in block.partial
     holders = [inner for inner in block.inner if _mentions(inner, name)]
     separate = all(name not in exposed_reads(h.statements) for h in holders)
@@ -215,7 +217,7 @@ def _place(block: _BlockUses, name: str, blocks: dict[int, list[BlockLocal]]) ->
 
 
 def _sites(block: _BlockUses, name: str) -> Iterator[_BlockUses]:
-    """The block of each whole assignment."""
+    """Yield the block of each assignment to the whole variable."""
     if name == block.hidden:
         return
     for _ in range(block.whole.get(name, 0)):
@@ -231,12 +233,12 @@ def _partly(block: _BlockUses, name: str) -> bool:
 
 
 def exposed_reads(statements: list[ast.stmt]) -> set[str]:
-    """Names that a block may read before it has given them a value."""
+    """Return the names that a block may read before it assigns them."""
     return _flow(statements)[0]
 
 
 def _flow(statements: list[ast.stmt]) -> tuple[set[str], set[str] | frozenset[str]]:
-    """(exposed reads, names surely assigned at the end; ``*`` when the end is not reached)."""
+    """Return (exposed reads, names always assigned at the end; ``*`` if the end is unreachable)."""
     exposed: set[str] = set()
     assigned: set[str] = set()
     for stmt in statements:
@@ -269,7 +271,7 @@ def _flow(statements: list[ast.stmt]) -> tuple[set[str], set[str] | frozenset[st
 
 
 def _loads(node: ast.AST) -> set[str]:
-    """Names read; a part assigned or an operation-assignment reads too."""
+    """Return the names that are read; assigning to a part, or ``+=``, also reads the name."""
     loads = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
     return loads - (_whole_targets(node) - _reads_in(node))
 
@@ -294,5 +296,5 @@ def _flat_targets(target: ast.expr) -> Iterator[ast.expr]:
 
 
 def _reads_in(node: ast.AST) -> set[str]:
-    """Names that a statement reads in its value, or through a part it assigns."""
+    """Return the names that a statement reads in its value or in a target such as ``a[i]``."""
     return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}

@@ -1,7 +1,7 @@
-"""From captured text to a syntax tree, and from its nodes back to places in the author's file.
+"""Parse captured source text, and map syntax nodes back to places in the author's file.
 
-Input: a ``Source`` (file, lines, first line). Output: the ``def``'s node and a
-``SourceMap`` that makes spans. Knows nothing of scene code.
+Input: a ``Source`` (file, lines, first line). Output: the node of the ``def``, and a ``SourceMap``
+that makes spans. Does not depend on the rules of scene code.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Node: TypeAlias = ast.expr | ast.stmt
 
 
 class SourceMap:
-    """Makes spans from the nodes of one parsed definition."""
+    """Map from the nodes of one parsed definition to source spans."""
 
     def __init__(self, file: str, lines: Sequence[str], line_offset: int) -> None:
         self.file = file
@@ -26,11 +26,11 @@ class SourceMap:
         self._offset = line_offset
 
     def text(self, line: int) -> str:
-        """A line of the file, without its newline."""
+        """Return a line of the file, without its newline; ``line`` counts from 1."""
         return self._lines[line - 1].rstrip("\r\n") if 0 < line <= len(self._lines) else ""
 
     def span(self, node: ast.expr | ast.stmt | ast.arg | ast.keyword) -> Span:
-        """The place of a node."""
+        """Return the span of a node."""
         line = node.lineno + self._offset
         text = self.text(line)
         start, end = node.col_offset, len(text)
@@ -38,14 +38,14 @@ class SourceMap:
         if end_line == line and node.end_col_offset is not None:
             end = node.end_col_offset
         if not text.isascii():
-            # The tree counts bytes of UTF-8, a person counts characters.
+            # Columns of the tree count UTF-8 bytes; columns of a span count characters.
             encoded = text.encode()
             start = len(encoded[:start].decode(errors="replace"))
             end = len(encoded[:end].decode(errors="replace")) if end_line == line else len(text)
         return Span(self.file, line, start, end, text, end_line)
 
     def name_span(self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) -> Span:
-        """The place of a definition's name, for mistakes about the whole of it."""
+        """Return the span of a definition's name, for errors about the whole definition."""
         line = node.lineno + self._offset
         text = self.text(line)
         found = text.find(node.name, node.col_offset)
@@ -56,10 +56,10 @@ class SourceMap:
 
 
 def parse_definition(source: Source, name: str) -> tuple[ast.FunctionDef, SourceMap]:
-    """The ``def`` that begins at the source's first line.
+    """Parse the ``def`` that begins at the source's first line.
 
     Raises:
-        CompileError: There is no text, or no plain ``def`` of that name at the place.
+        CompileError: There is no text, or no plain ``def`` with this name at that line.
     """
     if not source.lines or source.first_line > len(source.lines):
         raise CompileError.at(
@@ -91,7 +91,7 @@ def _find(source: Source, name: str, span: Span) -> tuple[ast.FunctionDef, Sourc
     try:
         tree = parse("".join(segment))
     except SyntaxError:
-        # The indentation misled: a text in quotes, say. The whole file needs no guess.
+        # The guess by indentation failed, for example at a multi-line string: parse the file.
         tree, offset = parse("".join(source.lines)), 0
     first = source.first_line - offset
     for node in ast.walk(tree):
@@ -116,7 +116,7 @@ def _first_line(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
 
 
 def _segment(lines: Sequence[str], first: int) -> list[str]:
-    """The lines of the definition, by indentation: much faster than parsing the whole file."""
+    """Return the lines of the definition by indentation: much faster than parsing the file."""
     indent = _indent(lines[first])
     body = first
     while body < len(lines) and not lines[body].lstrip().startswith(("def ", "def\t", "async ")):

@@ -1,8 +1,8 @@
-"""What an expression of the author's can be before it has a type of the IR.
+"""The values that an author's expression can have before it has an IR type.
 
-Most are plain ``ir.nodes`` expressions. A whole-number literal still takes the other side's type;
-a display ``[a, b]`` or ``(a, b)`` becomes an array, a tuple or a vector where it is used; a
-function, type or module is there at compile time only.
+Most are plain ``ir.nodes`` expressions. A whole-number literal can still take the type of the
+other operand. ``[a, b]`` or ``(a, b)`` becomes an array, a tuple or a vector where it is used. A
+function, type or module exists only at compile time.
 """
 
 from __future__ import annotations
@@ -18,20 +18,26 @@ if TYPE_CHECKING:
     from distal.frontend.function_body import FunctionBody
 
 LARGEST_FLOAT = 3.4028234663852886e38
-LARGEST_ARRAY = 1 << 16  # components; more belong into a Buffer
+LARGEST_ARRAY = 1 << 16  # components; larger data must be a Buffer
 WHOLE_RANGES: dict[Type, range] = {INT: range(-(2**31), 2**31), UINT: range(2**32)}
 
 
 @dataclass(frozen=True, slots=True)
 class Whole:
-    """A whole number known now: a literal, or a captured int. Alone it is an int."""
+    """A whole number known at compile time (literal or captured int); its default type is int."""
 
     value: int
 
 
 @dataclass(frozen=True, slots=True)
 class SequenceValue:
-    """``[a, b]`` or ``(a, b)``, or a captured list or tuple; ``is_list`` makes it an array."""
+    """``[a, b]`` or ``(a, b)``, or a captured list or tuple.
+
+    Attributes:
+        items: The elements.
+        is_list: Whether it is a list, whose default is an array; otherwise a tuple.
+        captured: Whether it comes from Python, outside the function.
+    """
 
     items: tuple[Value, ...]
     is_list: bool
@@ -40,7 +46,12 @@ class SequenceValue:
 
 @dataclass(frozen=True, slots=True)
 class Static:
-    """A Python object that is no value: a function, a type, a module."""
+    """A Python object that is not a value at run time: a function, a type, a module.
+
+    Attributes:
+        object: The object.
+        text: Its name in the source.
+    """
 
     object: Any
     text: str
@@ -48,14 +59,14 @@ class Static:
 
 @dataclass(eq=False, slots=True)
 class Closure:
-    """A lambda or a nested ``def``: lifted to a module function when it is used.
+    """A lambda or a nested ``def``, which is lifted to a module function when it is used.
 
     Attributes:
         node: Its syntax.
-        owner: The function body that contains it and has the names it captures.
-        name: What the lifted function is called.
-        defaults: Values of parameters that have one, by name.
-        instances: The lifted functions by argument types.
+        owner: The function body that contains it and the names that it captures.
+        name: The name of the lifted function.
+        defaults: The default values, by parameter name.
+        instances: The lifted functions, by argument and result types.
     """
 
     node: ast.Lambda | ast.FunctionDef
@@ -69,7 +80,7 @@ Value: TypeAlias = "Expr | Whole | SequenceValue | Static | Closure"
 
 
 def describe(value: Value) -> str:
-    """A value's type in the author's words."""
+    """Return a description of a value's type for messages."""
     match value:
         case Whole():
             return "int"
@@ -85,7 +96,7 @@ def describe(value: Value) -> str:
 
 
 def whole_to(value: int, type: Type) -> Expr | None:
-    """The constant of a scalar type, or None where it is out of range or no number."""
+    """Return a whole number as a constant of a type; None if out of range or not a number type."""
     if type is FLOAT:
         try:
             number = float(value)

@@ -1,1 +1,1 @@
-"""Lowering: statements and expressions of scene code to the IR."""
+"""Lower statements and expressions of scene code to the IR."""

@@ -1,7 +1,7 @@
-"""Matching a call's arguments with a function's parameters.
+"""Match the arguments of a call with the parameters of a function.
 
-Input: a signature, the arguments and their places in the source. Output: an expression of the
-right type for each parameter, and what each type variable stands for.
+Input: a signature, the arguments and their source nodes. Output: an expression of the required
+type for each parameter, and the type bound to each type variable.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from distal.ir.types import FLOAT, INT, FunctionType, Scalar, Type, Vector
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """A value and the place where it was written; a default has the place of the call."""
+    """An argument's value and its source node; a default has the node of the call."""
 
     value: Value
     node: ast.expr
@@ -48,7 +48,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """A call that matches: types and expressions by parameter, type variables bound."""
+    """A matching call: the type and the expression of each parameter, and bound type variables."""
 
     types: tuple[Type, ...]
     args: tuple[Expr, ...]
@@ -62,7 +62,18 @@ def pair(
     keywords: dict[str, Argument],
     node: ast.expr,
 ) -> list[Argument]:
-    """One argument for each parameter: by place, by keyword, by default."""
+    """Return one argument for each parameter: positional, by keyword, or the default.
+
+    Args:
+        body: The calling function.
+        signature: The called function.
+        args: The positional arguments.
+        keywords: The keyword arguments, by name.
+        node: The call.
+
+    Raises:
+        SceneError: An argument is missing, unknown, given twice, or one too many.
+    """
     name = signature.name
     positional = [p for p in signature.parameters if p.positional]
     hint = signature.text()
@@ -98,10 +109,15 @@ def _default(
 
 
 def match(body: FunctionBody, signature: FunctionSignature, args: Sequence[Argument]) -> Match:
-    """Bring paired arguments to the parameters' types.
+    """Coerce paired arguments to the types of the parameters.
+
+    Args:
+        body: The calling function.
+        signature: The called function.
+        args: One argument for each parameter (see ``pair``).
 
     Raises:
-        SceneError: An argument has another type.
+        SceneError: An argument cannot be coerced to its parameter's type.
     """
     bindings = _bind(body, signature, args)
     types, coerced = [], []
@@ -115,7 +131,17 @@ def match(body: FunctionBody, signature: FunctionSignature, args: Sequence[Argum
 def parameter_type(
     body: FunctionBody, parameter: SignatureParameter, bindings: dict[TypeVar, Type]
 ) -> Type:
-    """The type of a parameter."""
+    """Return the type of a parameter.
+
+    Args:
+        body: The calling function.
+        parameter: The parameter.
+        bindings: The types bound to the type variables.
+
+    Raises:
+        FollowupError: The parameter has no annotation.
+        SceneError: The annotation is not a type of scene code.
+    """
     if parameter.annotation is MISSING:
         raise FollowupError
     try:
@@ -154,7 +180,7 @@ def _coerce_argument(
 def _bind(
     body: FunctionBody, signature: FunctionSignature, args: Sequence[Argument]
 ) -> dict[TypeVar, Type]:
-    """What each type variable stands for: the widest type among the arguments that have it."""
+    """Bind each type variable to the widest type among the arguments annotated with it."""
     bindings: dict[TypeVar, Type] = {}
     groups: dict[TypeVar, list[Argument]] = {}
     for parameter, argument in zip(signature.parameters, args, strict=True):
@@ -196,7 +222,13 @@ def _bound(
 def closeness(
     signature: FunctionSignature, args: Sequence[Argument], body: FunctionBody
 ) -> int | None:
-    """How closely arguments match an overload; None where they do not match."""
+    """Return a score of how closely arguments match an overload; None if they do not match.
+
+    Args:
+        signature: The overload.
+        args: One argument for each parameter (see ``pair``).
+        body: The calling function.
+    """
     total = 0
     try:
         bindings = _bind(body, signature, args)

@@ -1,7 +1,7 @@
-"""Functions of the IR made by objects instead of by a ``def``: shapes and scenes.
+"""Build IR functions for objects (shapes and scenes) that have no ``def``.
 
-Input: library functions as they were recorded, arguments as expressions, by name. Output: calls,
-and functions added to the program. Knows nothing of what the objects are.
+Input: recorded library functions, and their arguments as expressions, by name. Output: calls, and
+functions added to the program. Does not depend on the kinds of objects.
 """
 
 from __future__ import annotations
@@ -30,18 +30,25 @@ if TYPE_CHECKING:
 
 
 class Assembly:
-    """What an object uses to add its functions to a program."""
+    """The interface through which an object adds its functions to a program.
+
+    Attributes:
+        made: What the objects have already added to this program, by keys that they choose.
+    """
 
     def __init__(self, compilation: Compilation) -> None:
         self._compilation = compilation
-        # For the objects: what they made already in this program, by their own keys.
         self.made: dict[Any, Any] = {}
 
     def call(self, func: Func, arguments: Mapping[str, Expr]) -> Expr:
-        """A call of a scene function with those of the arguments that its parameters name.
+        """Return a call of a scene function, with arguments bound by parameter name.
 
-        A parameter without argument takes its default. Of overloads, the first is called whose
-        parameters all have an argument or a default.
+        Arguments that the function has no parameter for are ignored. A parameter without an
+        argument takes its default. The first overload whose parameters all have an argument or a
+        default, and accept the arguments' types, is called.
+
+        Raises:
+            CompileError: No overload can be called with these arguments.
         """
         parameters = self._parameters_of(func, arguments)
         args = tuple(self._argument(func, parameter, arguments) for parameter in parameters)
@@ -51,11 +58,11 @@ class Assembly:
         return Call(instance.name, args, instance.result)
 
     def parameter_names(self, func: Func) -> tuple[str, ...]:
-        """The names of a function's parameters (of its first overload)."""
+        """Return the names of the parameters of a function's first overload."""
         return tuple(p.name for p in self._compilation.signature(func.overloads[0]).parameters)
 
     def result(self, func: Func, arguments: Mapping[str, Expr]) -> Type:
-        """What ``call`` would give."""
+        """Return the result type of ``call`` with the same arguments."""
         return self.call(func, arguments).type
 
     def define(
@@ -66,12 +73,20 @@ class Assembly:
         body: Sequence[Stmt],
         span: Span | None = None,
     ) -> str:
-        """Add a function; its name in the program.
+        """Add a function and return its unique name in the program.
+
+        Args:
+            name: The preferred name.
+            params: Its parameters.
+            result: Its result type.
+            body: Its statements.
+            span: Where the author wrote the object.
 
         Raises:
-            CompileError: The body gives something else than the result: an author's function does.
+            CompileError: The type of the returned value is not ``result``. This happens if an
+                author's function has a wrong result type.
         """
-        # A kernel that writes a vector into memory for a float would write beyond it.
+        # A kernel that wrote a vector where the memory holds a float would write out of bounds.
         if body and isinstance(body[-1], Return):
             given = body[-1].value.type
             if given != result:
@@ -83,41 +98,47 @@ class Assembly:
         return unique
 
     def function(self, name: str) -> Function:
-        """A function that the program has already."""
+        """Return a function that is already in the program."""
         return next(f for f in self._compilation.functions if f.name == name)
 
     def composed(self, obj: Composed) -> Instance:
-        """The function of another object."""
+        """Return the function of another object."""
         return self._compilation.composed(obj)
 
     def adopt(self, type: Type) -> Type:
-        """The type as this program spells it."""
+        """Return the type with its structs renamed as in this program."""
         return self._compilation.adopt(type)
 
     def struct(self, cls: type) -> Type:
-        """The type of a ``@struct`` class."""
+        """Return the type of a ``@struct`` class."""
         return self._compilation.adopt(to_type(cls))
 
     def constant(self, value: Any, type: Type) -> Expr:
-        """A Python value as a constant of a type."""
+        """Return a Python value as a constant of a type."""
         found = coerce_constant(value_of(value, "value", self._compilation), type)
         assert found is not None, f"{value!r} is no {type}"
         return found
 
     def uniform(self, parameter: Parameter) -> Expr:
-        """The value of a parameter."""
+        """Return a read of a parameter's uniform."""
         return self._compilation.uniform(parameter)
 
     def expression(self, expression: Expression) -> Expr:
-        """The value of an expression of parameters and time."""
+        """Return the IR of an expression of parameters and time."""
         return self._compilation.computed(expression)
 
     def number(self, preferred_name: str, type: Type, value: Any) -> Expr:
-        """A number of the scene: a uniform with this value and, if it is free, this name."""
+        """Return a number of the scene: a uniform with this value.
+
+        Args:
+            preferred_name: The name of the uniform, if no other number has it.
+            type: The type of the uniform.
+            value: The value.
+        """
         return self._compilation.number(preferred_name, type, value)
 
     def resource(self, resource: TextureValue | LangBuffer, preferred_name: str) -> Expr:
-        """A texture or buffer."""
+        """Return a texture or buffer as an expression."""
         if isinstance(resource, TextureValue):
             return self._compilation.resource(resource, preferred_name, resource.__distal_type__)
         return self._compilation.resource(resource, preferred_name, Buffer(resource.element))

@@ -1,4 +1,4 @@
-"""Assignment: to names, to parts of values, to several at once."""
+"""Lower assignments: to names, to parts of values, and to several targets at once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,17 @@ from distal.ir.walk import nodes_in
 
 
 def assign(body: FunctionBody, target: ast.expr, value: Value, stmt: ast.stmt) -> None:
-    """``target = value``."""
+    """Lower ``target = value``.
+
+    Args:
+        body: The function being lowered.
+        target: The left side.
+        value: The lowered right side.
+        stmt: The statement, for spans and errors.
+
+    Raises:
+        SceneError: The target cannot be assigned to, or has another type than the value.
+    """
     match target:
         case ast.Name():
             _assign_name(body, target, value, stmt)
@@ -34,7 +44,11 @@ def assign(body: FunctionBody, target: ast.expr, value: Value, stmt: ast.stmt) -
 
 
 def local(body: FunctionBody, target: ast.Name) -> Variable:
-    """The local that a name being assigned stands for."""
+    """Return the local that an assignment to a name changes.
+
+    Raises:
+        SceneError: The name is a loop variable, which is read-only.
+    """
     variable = body.lookup(target.id)
     assert variable is not None, target.id
     if variable.loop:
@@ -64,13 +78,13 @@ def _assign_name(body: FunctionBody, target: ast.Name, value: Value, stmt: ast.s
 
 
 def value_node(stmt: ast.stmt) -> Node:
-    """The right side of an assignment, for its mistakes."""
+    """Return the right side of an assignment, where errors about its value point."""
     value = getattr(stmt, "value", None)
     return value if isinstance(value, ast.expr) else stmt
 
 
 def _assign_static(body: FunctionBody, variable: Variable, value: Value, target: ast.Name) -> None:
-    """A local name for a function, a type or a resource: at compile time only."""
+    """Bind a local name to a function, type or resource; this exists only at compile time."""
     if variable.changes or variable.type is not None:
         message = f"'{variable.name}' cannot change what function it stands for"
         raise body.problem(message, target, "give each function a name of its own")
@@ -99,7 +113,11 @@ def _assign_part(
 
 
 def lvalue(body: FunctionBody, target: ast.expr) -> Expr:
-    """The place that ``v.xy``, ``a[i]`` or ``hit.color`` names, rooted in a local."""
+    """Return the assignable expression of ``v.xy``, ``a[i]`` or ``hit.color``; its root is a local.
+
+    Raises:
+        SceneError: The target cannot be assigned to.
+    """
     match target:
         case ast.Name():
             return _root(body, target)
@@ -138,7 +156,7 @@ def _unpack(
 ) -> None:
     items = _items(body, value, len(elements), target, stmt)
     if len(items) > 1 and _depend(body, items, elements):
-        # All values are taken before the first target changes: a, b = b, a.
+        # Copy all values before the first target changes: a, b = b, a.
         items = [_held(body, i) for i in items]
     for element_target, item in zip(elements, items, strict=True):
         assign(body, element_target, item, stmt)
@@ -155,7 +173,7 @@ def _held(body: FunctionBody, value: Value) -> Value:
 
 
 def _depend(body: FunctionBody, items: list[Value], targets: list[ast.expr]) -> bool:
-    """Whether a value reads a local that an assignment before it may have changed."""
+    """Return whether a value reads a local that an earlier assignment may have changed."""
     names = {n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)}
     variables = (body.lookup(name) for name in names)
     changing = {v.ir_name for v in variables if v is not None and v.changes}
@@ -200,7 +218,7 @@ def _parts(body: FunctionBody, value: Expr, stmt: ast.stmt) -> list[Value]:
 
 
 def augment(body: FunctionBody, stmt: ast.AugAssign) -> None:
-    """``target op= value``."""
+    """Lower ``target op= value``."""
     if isinstance(stmt.target, ast.Name):
         variable = local(body, stmt.target)
         old = body.read(variable, stmt.target)

@@ -1,4 +1,4 @@
-"""Calls of built-ins: choose the signature for the arguments, and widen scalars to it."""
+"""Lower calls of built-ins: choose a signature for the arguments, and widen scalars to vectors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from distal.ir.signatures import Follows, Signature
 from distal.ir.types import FLOAT, INT, UINT, Scalar, Type, Vector
 from distal.lang.values import MatrixValue, VectorValue
 
-# Python's own functions that mean an intrinsic, so that scene code needs no import for them.
+# Functions of Python that are translated to an intrinsic, so scene code needs no import for them.
 PYTHON_FUNCTIONS: Final[dict[Any, Intrinsic]] = {
     getattr(module, function): INTRINSICS[name]
     for module, prefix in ((builtins, ""), (math, "math"))
@@ -30,11 +30,11 @@ PYTHON_FUNCTIONS: Final[dict[Any, Intrinsic]] = {
     if hasattr(module, function)
 }
 
-# A whole-number literal is an int by itself, becomes a float readily, a uint only beside one.
+# A whole-number literal is preferably an int, then a float; a uint only beside another uint.
 _LITERAL_SCORES: Final[dict[Type, int]] = {INT: 2, FLOAT: 1, UINT: 0}
 
 
-# What a result is called that depends on the type variable T.
+# How a signature text describes a result that depends on the type variable T.
 _RESULTS: Final[dict[object, str]] = {
     Follows.T: "T",
     Follows.AS_BOOL: "a bool for each component",
@@ -47,7 +47,7 @@ _RESULTS: Final[dict[object, str]] = {
 
 @cache
 def exact_instances(name: str) -> dict[tuple[Type, ...], Type]:
-    """Every instance of a built-in: argument types to result."""
+    """Return every instance of a built-in: argument types to result type."""
     instances: dict[tuple[Type, ...], Type] = {}
     for signature in INTRINSICS[name].signatures:
         for params, result in signature.instances():
@@ -57,7 +57,7 @@ def exact_instances(name: str) -> dict[tuple[Type, ...], Type]:
 
 @cache
 def _instances(name: str) -> tuple[tuple[tuple[Type, ...], Type, bool], ...]:
-    """(parameter types, result, whether scalars widen to vectors), in the table's order."""
+    """Return (parameter types, result, whether scalars widen to vectors), in the table's order."""
     return tuple(
         (params, result, _splats(signature))
         for signature in INTRINSICS[name].signatures
@@ -66,7 +66,7 @@ def _instances(name: str) -> tuple[tuple[tuple[Type, ...], Type, bool], ...]:
 
 
 def _splats(signature: Signature) -> bool:
-    """Scalars widen where the built-in works on each component, so takes scalars too."""
+    """Return whether scalars widen: the built-in is componentwise and also accepts scalars."""
     componentwise = all(p is Follows.T for p in (*signature.params, signature.result))
     return componentwise and any(isinstance(t, Scalar) for t in signature.over)
 
@@ -74,7 +74,17 @@ def _splats(signature: Signature) -> bool:
 def call_builtin(
     body: FunctionBody, intrinsic: Intrinsic, args: Sequence[Value], node: ast.expr
 ) -> Value:
-    """``intrinsic(args)``."""
+    """Lower ``intrinsic(args)``.
+
+    Args:
+        body: The calling function.
+        intrinsic: The built-in.
+        args: The lowered arguments.
+        node: The call.
+
+    Raises:
+        SceneError: The number of arguments is wrong, or no signature accepts them.
+    """
     if intrinsic.name in ("min", "max") and len(args) > 2:
         return _nary(body, intrinsic, args, node)
     if len(args) != len(intrinsic.args):
@@ -102,7 +112,7 @@ def _counted(count: int, noun: str) -> str:
 
 
 def _nary(body: FunctionBody, intrinsic: Intrinsic, args: Sequence[Value], node: ast.expr) -> Value:
-    """Min and max of many, left to right: the first of equals wins, as with two."""
+    """Lower min or max of more than two arguments, left to right: the first of equal ones wins."""
     total = args[0]
     for arg in args[1:]:
         total = call_builtin(body, intrinsic, (total, arg), node)
@@ -112,7 +122,7 @@ def _nary(body: FunctionBody, intrinsic: Intrinsic, args: Sequence[Value], node:
 
 
 def _best(name: str, args: Sequence[Value]) -> tuple[tuple[Type, ...], Type] | None:
-    """The instance that needs the least conversion; the first of equals."""
+    """Return the instance with the least conversion; the first one if several are equal."""
     best, best_score = None, -1
     for params, result, splats in _instances(name):
         score = _score(args, params, splats=splats)
@@ -140,7 +150,8 @@ def _score(args: Sequence[Value], params: Sequence[Type], *, splats: bool) -> in
         if score is None:
             return None
         total += score
-    # Literals alone mean float or int: vectors and unsigned numbers need an argument of the type.
+    # If all arguments are literals, only float and int match: vectors and unsigned numbers need at
+    # least one argument of the type.
     plain = all(p is FLOAT or p is INT for p in params)
     return total if exact or plain else None
 
@@ -163,10 +174,10 @@ def _coerce(body: FunctionBody, value: Value, type: Type, node: ast.expr) -> Exp
 
 
 def call_with_constants(intrinsic: Intrinsic, args: Sequence[Any]) -> Expr | None:
-    """The call of a built-in with Python numbers, vectors or matrices; None if it takes no such.
+    """Return a call of a built-in with Python numbers, vectors or matrices; None if none matches.
 
     Raises:
-        RefusedError: An argument is no constant of scene code.
+        RefusedError: An argument is not a constant of scene code.
     """
     values = [_plain_value(a, f"an argument of {intrinsic.name}") for a in args]
     known = [v for v in values if v is not None]
@@ -209,7 +220,7 @@ def _mismatch(
 
 
 def signature_text(intrinsic: Intrinsic) -> str:
-    """A built-in's signature for hints: ``length(v) -> float, v: vec2 | vec3 | vec4``."""
+    """Return a built-in's signature for hints: ``length(v) -> float, v: vec2 | vec3 | vec4``."""
     signature = intrinsic.signatures[0]
     over = " | ".join(dict.fromkeys(str(t) for s in intrinsic.signatures for t in s.over))
     result = _RESULTS.get(signature.result, str(signature.result))

@@ -1,4 +1,4 @@
-"""Calls: what the called name is decides which rules hold."""
+"""Lower calls; the rules depend on what is called: function, built-in, type, form or object."""
 
 from __future__ import annotations
 
@@ -66,7 +66,11 @@ _HINTS: Final[dict[Any, str]] = {
 
 
 def lower_call(body: FunctionBody, node: ast.Call) -> Value:
-    """``function(arguments)``."""
+    """Lower ``function(arguments)``.
+
+    Raises:
+        SceneError: The called value is not a function, or does not take these arguments.
+    """
     called = body.expression(node.func)
     match called:
         case Static(obj, text):
@@ -82,7 +86,11 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
 
 
 def arguments(body: FunctionBody, node: ast.Call) -> list[Value]:
-    """The positional arguments, lowered."""
+    """Lower the positional arguments of a call.
+
+    Raises:
+        SceneError: An argument is starred.
+    """
     for arg in node.args:
         if isinstance(arg, ast.Starred):
             raise body.problem("'*' in a call is not part of scene code", arg)
@@ -167,7 +175,7 @@ def _not_scene_code(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> 
 
 
 def _apply(body: FunctionBody, function: Expr, node: ast.Call, name: str | None = None) -> Expr:
-    """Call a function value: a parameter, or what an object stands for."""
+    """Call a function value: a parameter, or the function of an object."""
     type = function.type
     assert isinstance(type, FunctionType)
     name = name or ast.unparse(node.func)

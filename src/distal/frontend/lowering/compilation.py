@@ -1,7 +1,7 @@
-"""One compilation: the functions lowered so far, the uniforms and resources they read.
+"""The state of one compilation: the lowered functions, and the uniforms and resources they read.
 
-Functions are lowered when something calls them, once for each list of argument types. A callee is
-finished before its caller, so the order of finishing is the order of the module.
+A function is lowered at its first call, once for each list of argument types. A callee is finished
+before its caller, and the module lists functions in this order.
 """
 
 from __future__ import annotations
@@ -42,7 +42,17 @@ from distal.lang.resources import TextureValue
 
 
 class Compilation:
-    """The state of one compilation."""
+    """The state of one compilation.
+
+    Attributes:
+        expression: Lowers an expression of a function body.
+        functions: The finished IR functions, callees first.
+        diagnostics: The errors found so far.
+        in_progress: The functions that are being lowered, outermost first.
+        instances: The lowered functions, by source and argument types.
+        is_too_deep: Whether calls exceeded Python's recursion limit, which was reported.
+        assembly: The interface for objects that add functions.
+    """
 
     def __init__(self) -> None:
         self.expression: Callable[[FunctionBody, ast.expr], Value] = lower_expression
@@ -50,25 +60,25 @@ class Compilation:
         self.diagnostics: list[Diagnostic] = []
         self.in_progress: list[Instance] = []
         self.instances: dict[Any, Instance] = {}
-        self.is_too_deep = False  # calls went deeper than Python's stack, which was reported
+        self.is_too_deep = False
         self._signatures: dict[Overload, FunctionSignature] = {}
         self._names: set[str] = set()
         self._uniforms: dict[str, tuple[Parameter, UniformDeclaration]] = {}
         self._numbers: dict[str, UniformDeclaration] = {}
-        self._name_counts: dict[str, int] = {}  # how often a number was to be called that
+        self._name_counts: dict[str, int] = {}  # how often each name was requested for a number
         self.assembly = Assembly(self)
         self._resources: dict[int, ResourceDeclaration] = {}
         self._structs: dict[str, list[Struct]] = {}
 
-    # Mistakes
+    # Errors
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Note a mistake, once."""
+        """Record an error, once."""
         if diagnostic not in self.diagnostics:
             self.diagnostics.append(diagnostic)
 
     def error(self) -> CompileError | None:
-        """All mistakes in the order of the source, or None."""
+        """Return all errors in the order of the source, or None."""
         if not self.diagnostics:
             return None
         files: dict[str, int] = {}
@@ -82,10 +92,14 @@ class Compilation:
 
         return CompileError(sorted(self.diagnostics, key=place))
 
-    # What the functions share
+    # State shared by all functions
 
     def signature(self, overload: Overload) -> FunctionSignature:
-        """A function's parsed definition; its mistakes are noted."""
+        """Return a function's parsed signature, and record its errors.
+
+        Raises:
+            FollowupError: The definition cannot be used; its errors are recorded.
+        """
         signature = self._signatures.get(overload)
         if signature is None:
             try:
@@ -102,15 +116,15 @@ class Compilation:
         return signature
 
     def signature_text(self, overload: Overload) -> str:
-        """``name(p: vec3) -> float`` as the author wrote it."""
+        """Return the signature as the author wrote it: ``name(p: vec3) -> float``."""
         return self.signature(overload).text()
 
     def overloads(self) -> tuple[Overload, ...]:
-        """Every Python function that was looked at so far."""
+        """Return every Python function whose signature was read so far."""
         return tuple(self._signatures)
 
     def unique_name(self, name: str, suffix: str = "") -> str:
-        """A module-wide name: plain, else with the suffix, else numbered."""
+        """Return a name unique in the module: plain, else with the suffix, else numbered."""
         base = name.strip("_") or "function"
         candidates = [base, f"{base}_{suffix}"] if suffix else [base]
         for candidate in candidates:
@@ -124,7 +138,7 @@ class Compilation:
         return f"{candidates[-1]}_{n}"
 
     def adopt(self, type: Type) -> Type:
-        """The type with every struct renamed whose name another struct has already."""
+        """Return the type; a struct is renamed if another struct of the program has its name."""
         match type:
             case Struct(name, fields, is_tuple):
                 inner = tuple((n, self.adopt(t)) for n, t in fields)
@@ -147,7 +161,11 @@ class Compilation:
         return Struct(f"{struct.name}_{position + 1}", struct.fields, False)
 
     def annotation(self, body: FunctionBody, node: ast.expr) -> Type:
-        """The type that an annotation inside a body names."""
+        """Return the type that an annotation inside a body names.
+
+        Raises:
+            SceneError: The annotation is not a type of scene code.
+        """
         try:
             return self.adopt(to_type(body.names.annotation(node), body.bindings))
         except SceneError as problem:
@@ -159,7 +177,11 @@ class Compilation:
             raise body.problem(message, node) from None
 
     def uniform(self, parameter: Parameter) -> Expr:
-        """The value of a parameter."""
+        """Return a read of a parameter's uniform, and declare the uniform.
+
+        Raises:
+            CompileError: Two different parameters have the same name.
+        """
         name = parameter.name
         known = self._uniforms.get(name)
         if known is not None and known[0] != parameter:
@@ -181,15 +203,20 @@ class Compilation:
         return Uniform(name, parameter.type)
 
     def computed(self, expression: Expression) -> Expr:
-        """The value of an expression of parameters and time."""
+        """Return the IR of an expression of parameters and time."""
         for parameter in expression.parameters:
             self.uniform(parameter)
         return expression.node
 
     def number(self, preferred_name: str, type: Type, value: Any) -> Expr:
-        """A number of the scene: a uniform with this value.
+        """Return a number of the scene: a new uniform with this value.
 
-        Its name has a capital letter, which no parameter's name has.
+        Its name starts with a capital letter; names of parameters never do.
+
+        Args:
+            preferred_name: The name, which gets a number if another uniform has it.
+            type: The type of the uniform.
+            value: The value.
         """
         first = name = f"{preferred_name[:1].upper()}{preferred_name[1:]}"
         n = self._name_counts.get(first, 1)
@@ -201,7 +228,13 @@ class Compilation:
         return Uniform(name, type)
 
     def resource(self, resource: TextureValue | LangBuffer, name: str, type: Type) -> Expr:
-        """A texture or buffer, under the first name it was met by."""
+        """Return a texture or buffer, under the first name that referred to it.
+
+        Args:
+            resource: The texture or buffer.
+            name: The preferred name.
+            type: Its type in the IR.
+        """
         known = self._resources.get(id(resource))
         if known is None:
             plain = name.rpartition(".")[2]
@@ -216,7 +249,11 @@ class Compilation:
         return Resource(known.name, known.type)
 
     def finish(self, entry: Instance, kind: EntryKind) -> Module:
-        """The module, or all mistakes raised."""
+        """Return the module.
+
+        Raises:
+            CompileError: The scene code has errors; it contains all of them.
+        """
         error = self.error()
         if error is not None:
             raise error
@@ -226,28 +263,32 @@ class Compilation:
         resources = tuple(self._resources.values())
         return Module(tuple(self.functions), entry.name, kind, uniforms, resources)
 
-    # Functions (the rules are in ``scene_calls`` and ``lambda_lifting``)
+    # Functions (``scene_calls`` and ``lambda_lifting`` implement the rules)
 
     def call(
         self, body: FunctionBody, function: Func, args: Sequence[Value], node: ast.Call
     ) -> Expr:
-        """A call of another scene function."""
+        """Lower a call of another scene function (see ``scene_calls.call``)."""
         return scene_calls.call(body, function, args, node)
 
     def call_closure(
         self, body: FunctionBody, closure: Closure, args: Sequence[Value], node: ast.Call
     ) -> Expr:
-        """A call of a lambda or nested function."""
+        """Lower a call of a lambda or nested function (see ``lambda_lifting.call_closure``)."""
         return lambda_lifting.call_closure(body, closure, args, node)
 
     def function_value(
         self, body: FunctionBody, value: Value, type: FunctionType, node: Node
     ) -> Expr | None:
-        """A function as a value of a FunctionType."""
+        """Return a function as a FunctionType value (see ``lambda_lifting.function_value``)."""
         return lambda_lifting.function_value(body, value, type, node)
 
     def composed(self, obj: Composed) -> Instance:
-        """The function that an object makes itself, made now if it was not yet."""
+        """Return the function of an object; the object adds it at the first request.
+
+        Raises:
+            CompileError: The object contains itself.
+        """
         known = self.instances.get(obj)
         if known is None:
             types = tuple(type for _, type in obj.signature)
@@ -259,7 +300,11 @@ class Compilation:
         return known
 
     def check_recursion(self, instance: Instance, span: Span) -> None:
-        """Refuse a call of a function that is being lowered right now."""
+        """Check that a called function is not being lowered now.
+
+        Raises:
+            SceneError: The call is recursive.
+        """
         if instance in self.in_progress:
             start = self.in_progress.index(instance)
             chain = [i.source_name for i in self.in_progress[start:]] + [instance.source_name]

@@ -22,7 +22,16 @@ if TYPE_CHECKING:
 
 
 def exact_instance(compilation: Compilation, func: Func, types: tuple[Type, ...]) -> Instance:
-    """The overload whose parameters have exactly these types, lowered."""
+    """Return the lowered overload whose parameters have exactly these types.
+
+    Args:
+        compilation: The compilation that gets the function.
+        func: The function.
+        types: The argument types.
+
+    Raises:
+        SceneError: No overload takes these types.
+    """
     signatures = [compilation.signature(o) for o in func.overloads]
     for signature in signatures:
         bindings = exact_bindings(compilation, signature, types)
@@ -36,7 +45,16 @@ def exact_instance(compilation: Compilation, func: Func, types: tuple[Type, ...]
 def exact_bindings(
     compilation: Compilation, signature: FunctionSignature, types: tuple[Type, ...]
 ) -> dict[TypeVar, Type] | None:
-    """What the type variables of a signature stand for, or None where the types do not match."""
+    """Return the types bound to a signature's type variables; None if the types do not match.
+
+    Args:
+        compilation: The compilation, for the names of structs.
+        signature: The overload.
+        types: The argument types.
+
+    Raises:
+        SceneError: An annotation is not a type of scene code.
+    """
     if len(signature.parameters) != len(types):
         return None
     bindings: dict[TypeVar, Type] = {}

@@ -1,6 +1,6 @@
-"""Expressions: one function for each kind of syntax node, in one table.
+"""Lower expressions: one function for each kind of syntax node, in one table.
 
-A node without an entry is not part of the language: a mistake at that node.
+A node without an entry is not part of the language and is reported as an error.
 """
 
 from __future__ import annotations
@@ -62,7 +62,11 @@ _LETTER_SETS: Final = ("xyzw", "rgba")
 
 
 def lower_expression(body: FunctionBody, node: ast.expr) -> Value:
-    """The value of an expression."""
+    """Lower an expression.
+
+    Raises:
+        SceneError: The expression is not valid scene code.
+    """
     rule = _RULES.get(type(node))
     if rule is None:
         raise refusal(body, node)
@@ -96,7 +100,17 @@ def _name(body: FunctionBody, node: ast.Name) -> Value:
 
 
 def object_value(body: FunctionBody, obj: Any, text: str, node: ast.expr) -> Value:
-    """The meaning of a Python object that is named here."""
+    """Return the value of a Python object that scene code names.
+
+    Args:
+        body: The function being lowered.
+        obj: The object.
+        text: The name in the source, for messages.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: Scene code cannot use the object.
+    """
     try:
         return value_of(obj, text, body.compilation)
     except RefusedError as refused:
@@ -116,7 +130,7 @@ def _attribute(body: FunctionBody, node: ast.Attribute) -> Value:
 
 
 def _is_enum_member(body: FunctionBody, node: ast.expr) -> bool:
-    """Whether this is ``Mode.A``, which stands for its value already."""
+    """Return whether the node is ``Mode.A``, which is lowered to its value directly."""
     if not isinstance(node, ast.Attribute):
         return False
     owner = body.expression(node.value)
@@ -124,13 +138,23 @@ def _is_enum_member(body: FunctionBody, node: ast.expr) -> bool:
 
 
 def _as_vector(body: FunctionBody, sequence: SequenceValue, node: ast.expr) -> Value:
-    """A captured tuple whose components are picked is a vector of floats."""
+    """Return a captured tuple as a vector of floats, because the code accesses its components."""
     coerced = coerce(body, sequence, vector_of(Kind.FLOAT, len(sequence.items)), node)
     return sequence if coerced is None else coerced
 
 
 def member(body: FunctionBody, value: Expr, name: str, node: ast.expr) -> Expr:
-    """``value.name``: a swizzle or a field."""
+    """Lower ``value.name``: a swizzle or a field.
+
+    Args:
+        body: The function being lowered.
+        value: The value.
+        name: The name of the field, or the letters of the swizzle.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The value has no such component or field.
+    """
     match value.type:
         case Vector(kind):
             lanes = swizzle_lanes(body, name, value.type, node)
@@ -152,7 +176,17 @@ def member(body: FunctionBody, value: Expr, name: str, node: ast.expr) -> Expr:
 
 
 def swizzle_lanes(body: FunctionBody, name: str, type: Vector, node: ast.expr) -> str:
-    """The letters of a swizzle as ``xyzw``."""
+    """Return the letters of a swizzle as ``xyzw``.
+
+    Args:
+        body: The function being lowered.
+        name: The letters in the source, from ``xyzw`` or ``rgba``.
+        type: The type of the vector.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The vector has no such components, or there are more than 4 letters.
+    """
     for letters in _LETTER_SETS:
         if set(name) <= set(letters):
             lanes = "".join("xyzw"[letters.index(c)] for c in name)
@@ -189,7 +223,7 @@ def _static_attribute(body: FunctionBody, base: Static, node: ast.Attribute) -> 
 
 
 def _bin_op(body: FunctionBody, node: ast.BinOp) -> Value:
-    # A long sum leans to the left: go down its spine in a loop, not by recursion.
+    # A long sum is nested in its left operands: walk them in a loop instead of recursing.
     spine = [node]
     while isinstance(spine[-1].left, ast.BinOp):
         spine.append(spine[-1].left)
@@ -277,7 +311,7 @@ def _subscript(body: FunctionBody, node: ast.Subscript) -> Value:
 
 
 def array_name(node: ast.expr) -> str:
-    """What a local that holds an array is called: as the author calls it."""
+    """Return a name for a local that holds an array: the author's name if there is one."""
     match node:
         case ast.Name(name) | ast.Attribute(_, name):
             return name
@@ -286,7 +320,16 @@ def array_name(node: ast.expr) -> str:
 
 
 def element(body: FunctionBody, base: Expr, node: ast.Subscript) -> Expr:
-    """``base[index]``, also as a target."""
+    """Lower ``base[index]``, also as an assignment target.
+
+    Args:
+        body: The function being lowered.
+        base: The array, vector, matrix, tuple or buffer.
+        node: The subscript.
+
+    Raises:
+        SceneError: The base takes no index, or the index is invalid.
+    """
     if isinstance(node.slice, ast.Slice):
         hint = "pick components by letters, such as .xy" if isinstance(base.type, Vector) else None
         raise body.problem("slices are not part of scene code", node, hint)
@@ -336,14 +379,23 @@ def _constant_element(body: FunctionBody, base: Expr, position: int, node: ast.e
             return Index(base, integer(position), element_type(base.type), span=span)
 
 
-LONGEST_QUOTE: Final = 40  # letters of the author's code inside a hint
+LONGEST_QUOTE: Final = 40  # characters of the author's code inside a hint
 
 
 def check_index(body: FunctionBody, position: int, length: int | None, node: ast.Subscript) -> None:
-    """Refuse a constant index outside 0 .. length - 1; the length of a buffer is not known.
+    """Check that a constant index is in 0 .. length - 1.
 
-    A negative one is refused too, although Python counts it from the end: computed indices are
-    clamped, and one index must not mean two elements.
+    Negative indices are rejected, although Python counts them from the end: indices computed at run
+    time are clamped, and the same index must not select two different elements.
+
+    Args:
+        body: The function being lowered.
+        position: The index.
+        length: The number of elements; None for a buffer, whose length is not known.
+        node: The subscript.
+
+    Raises:
+        SceneError: The index is out of range.
     """
     if position < 0 and (length is None or position >= -length):
         text = ast.unparse(node.value)
@@ -379,7 +431,16 @@ def _lambda(body: FunctionBody, node: ast.Lambda) -> Value:
 
 
 def make_closure(body: FunctionBody, node: ast.Lambda | ast.FunctionDef, name: str) -> Closure:
-    """A function that may use the locals around it; its defaults are computed here."""
+    """Return a lambda or nested function, with its default values lowered here.
+
+    Args:
+        body: The function that contains it.
+        node: Its syntax.
+        name: Its name; ``lambda`` for a lambda.
+
+    Raises:
+        SceneError: It has starred parameters.
+    """
     a = node.args
     if a.vararg or a.kwarg:
         raise body.problem(
@@ -393,7 +454,11 @@ def make_closure(body: FunctionBody, node: ast.Lambda | ast.FunctionDef, name: s
 
 
 def arguments_of_range(body: FunctionBody, node: ast.Call) -> list[Value]:
-    """The 1 to 3 arguments of ``range``."""
+    """Lower the 1 to 3 arguments of ``range``.
+
+    Raises:
+        SceneError: There are more or fewer arguments, or keywords.
+    """
     if node.keywords or not 1 <= len(node.args) <= 3:
         raise body.problem("'range' takes 1 to 3 arguments", node, "range(start, stop, step)")
     return arguments(body, node)

@@ -1,4 +1,4 @@
-"""A scene function made for certain argument types."""
+"""An instance of a scene function: the function for particular argument types."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from distal.ir.types import FunctionType, Type
 
 @dataclass(eq=False, slots=True)
 class Instance:
-    """A function lowered, or being lowered, for certain types.
+    """A function that is lowered, or being lowered, for particular argument types.
 
     Attributes:
         name: Its name in the module.
-        source_name: What the author calls it.
-        params: The types of its own parameters, captures not counted.
-        result: None until it is known; stays None where a mistake hides it.
-        captures: The enclosing variables that its last parameters are, for a lifted function.
+        source_name: Its name in the author's source.
+        params: The types of its parameters, without captures.
+        result: The result type; None until it is known, and always None if an error prevents it.
+        captures: The enclosing variables that a lifted function gets as its last parameters.
     """
 
     name: str
@@ -28,6 +28,6 @@ class Instance:
     captures: tuple[Variable, ...] = ()
 
     def reference(self) -> FunctionRef:
-        """The function as a value."""
+        """Return the function as a value."""
         assert self.result is not None
         return FunctionRef(self.name, (), FunctionType(self.params, self.result))

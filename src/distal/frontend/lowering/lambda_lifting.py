@@ -1,7 +1,7 @@
-"""Functions as values: built-ins, scene functions, lambdas and nested functions passed on.
+"""Lower functions as values: built-ins, scene functions, lambdas and nested functions.
 
-A lambda or nested ``def`` is lifted to a function of the module. The enclosing locals it uses
-become its last parameters, and the reference to it carries their values of the moment.
+A lambda or nested ``def`` is lifted to a function of the module. The enclosing locals that it uses
+become its last parameters. A reference to it contains their values at that moment.
 """
 
 from __future__ import annotations
@@ -35,7 +35,18 @@ if TYPE_CHECKING:
 
 
 def function_value(body: FunctionBody, value: Value, type: FunctionType, node: Node) -> Expr | None:
-    """A function as a value of exactly ``type``; None where it cannot be one."""
+    """Return a function as a value of exactly ``type``; None if its type is different.
+
+    Args:
+        body: The function that uses the value.
+        value: The function.
+        type: The required function type.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The function takes or returns something else.
+        FollowupError: The function has errors, which are reported already.
+    """
     match value:
         case Closure():
             return _closure_value(body, value, type, node)
@@ -119,7 +130,7 @@ def _default(
 def _builtin_value(
     compilation: Compilation, intrinsic: Intrinsic, type: FunctionType
 ) -> Expr | None:
-    """A built-in passed as a function: a small function that calls it."""
+    """Return a built-in as a value: a reference to a small function that calls it."""
     result = exact_instances(intrinsic.name).get(type.params)
     if result is not type.result:
         return None
@@ -130,7 +141,13 @@ def _builtin_value(
 def builtin_function(
     compilation: Compilation, intrinsic: Intrinsic, types: tuple[Type, ...]
 ) -> Instance:
-    """A function of the module that only calls a built-in."""
+    """Return a function of the module that only calls a built-in.
+
+    Args:
+        compilation: The compilation that gets the function.
+        intrinsic: The built-in.
+        types: The argument types; an exact instance of the built-in must exist.
+    """
     key = (intrinsic.name, types)
     known = compilation.instances.get(key)
     if known is not None:
@@ -168,7 +185,16 @@ def _closure_value(
 
 
 def captured(body: FunctionBody, variable: Variable, node: Node) -> Expr:
-    """The value that a captured variable has where the function is used."""
+    """Return the value of a captured variable at the place where the function is used.
+
+    Args:
+        body: The function that uses the lifted function.
+        variable: The variable.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The variable may have no value here.
+    """
     if variable not in variable.owner.assigned and variable.owner.reachable:
         message = f"'{variable.name}' may be read before it has a value"
         raise body.problem(message, node, "give it a value first")
@@ -186,7 +212,18 @@ def call_closure(
     args: Sequence[Value],
     node: ast.Call,
 ) -> Expr:
-    """A direct call of a lambda or nested function."""
+    """Lower a direct call of a lambda or nested function.
+
+    Args:
+        body: The calling function.
+        closure: The lambda or nested function.
+        args: The lowered positional arguments.
+        node: The call.
+
+    Raises:
+        SceneError: The arguments do not match its parameters.
+        FollowupError: The called function has errors, which are reported already.
+    """
     params = _parameters(closure)
     given: dict[str, tuple[Value, ast.expr]] = {}
     if len(args) > len(params):
@@ -234,7 +271,18 @@ def lift_closure(
     result: Type | None,
     node: Node,
 ) -> Instance:
-    """Lower a lambda or nested function for these types, once."""
+    """Lower a lambda or nested function for these argument types, once.
+
+    Args:
+        body: The function that uses it.
+        closure: The lambda or nested function.
+        types: The argument types.
+        result: The required result type of a lambda; None if there is none.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The function calls itself.
+    """
     known: Instance | None = closure.instances.get((*types, result))
     if known is not None:
         body.compilation.check_recursion(known, body.span(node))
@@ -271,7 +319,7 @@ def _lower_closure(closure: Closure, instance: Instance, result: Type | None) ->
     if isinstance(node, ast.FunctionDef) and node.returns is not None:
         body.result = compilation.annotation(owner, node.returns)
     elif isinstance(node, ast.Lambda):
-        # A lambda's result is what is wanted of it, so that its literals take that type.
+        # A lambda gets the required result type, so that its literals take that type.
         body.result = result
     instance.result = body.result
     statements = scene_calls.lower_body(body, body_nodes)

@@ -1,7 +1,7 @@
 """Lower a function, an object or a built-in to a module of IR.
 
-Input: what ``@func`` or ``@image`` made, an object or a built-in, and argument types. Output: a
-module, or one ``CompileError`` with all mistakes. Does not depend on targets.
+Input: a function decorated with ``@func`` or ``@image``, an object or a built-in, and argument
+types. Output: a module, or one ``CompileError`` with all errors. Does not depend on targets.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from distal.lang.names import LangFunction
 
 R = TypeVar("R")
 
-# What can be lowered.
+# The objects that can be lowered.
 SceneCode: TypeAlias = Func | Composed | LangFunction
 
 
@@ -35,12 +35,12 @@ def lower(obj: SceneCode, arg_types: tuple[Type, ...] | None = None) -> Module:
     """Lower an image, or a function for the types of its arguments.
 
     Args:
-        obj: What ``@image`` or ``@func`` made, a shape, a scene, or a built-in.
-        arg_types: Picks the overload and binds type variables; may be left out where the
-            function's annotations say it all.
+        obj: A function decorated with ``@image`` or ``@func``, a shape, a scene, or a built-in.
+        arg_types: The argument types; they select the overload and bind type variables. None if
+            the annotations alone determine the types.
 
     Raises:
-        CompileError: All mistakes in the function and in what it calls.
+        CompileError: The function, or a function that it calls, has errors; contains all of them.
     """
     return _lower(Compilation(), obj, arg_types)
 
@@ -48,7 +48,7 @@ def lower(obj: SceneCode, arg_types: tuple[Type, ...] | None = None) -> Module:
 def lower_captured(
     obj: SceneCode, arg_types: tuple[Type, ...] | None = None
 ) -> tuple[Module, Captured]:
-    """As ``lower``; also says later on whether the module is still up to date."""
+    """Lower like ``lower``; also return an object that can check if the module is still current."""
     compilation = Compilation()
     module = _lower(compilation, obj, arg_types)
     return module, Captured(compilation.overloads())
@@ -67,9 +67,12 @@ def _lower(compilation: Compilation, obj: SceneCode, arg_types: tuple[Type, ...]
 
 
 def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tuple[Function, ...]:
-    """A function for exactly these argument types, and what it calls, callees first.
+    """Return a function for exactly these argument types and the functions it calls, callees first.
 
-    Unlike for ``lower``, parameters may be functions, textures and buffers.
+    Unlike in ``lower``, parameters may be functions, textures and buffers.
+
+    Raises:
+        CompileError: No overload takes these types, or the function has errors.
     """
     compilation = Compilation()
 
@@ -88,14 +91,14 @@ def lower_overload(func: Func | LangFunction, arg_types: tuple[Type, ...]) -> tu
 
 
 def has_overload(func: Func, arg_types: tuple[Type, ...]) -> bool:
-    """Whether a function has an overload for exactly these argument types."""
+    """Return whether a function has an overload for exactly these argument types."""
     compilation = Compilation()
     signatures = [compilation.signature(o) for o in func.overloads]
     return any(exact_bindings(compilation, h, arg_types) is not None for h in signatures)
 
 
 def _guarded(compilation: Compilation, name: str, work: Callable[[], R]) -> R:
-    """Run, and turn whatever stops the work into one error with all mistakes."""
+    """Run ``work``, and convert any exception of lowering to one ``CompileError``."""
     try:
         return work()
     except SceneError as problem:
@@ -160,7 +163,7 @@ def _lower_func(compilation: Compilation, func: Func, types: tuple[Type, ...] | 
 
 
 def _own_types(compilation: Compilation, func: Func) -> tuple[Type, ...]:
-    """The annotated types, where there is nothing to choose."""
+    """Return the annotated types of a function that has one overload and no type variables."""
     signatures = [compilation.signature(o) for o in func.overloads]
     if len(signatures) > 1:
         message = (
@@ -171,7 +174,7 @@ def _own_types(compilation: Compilation, func: Func) -> tuple[Type, ...]:
     types: list[Type] = []
     for parameter in signature.parameters:
         if parameter.annotation is MISSING:
-            # The mistake is reported; the body's own mistakes are wanted beside it.
+            # The missing annotation is reported; go on, to report the errors of the body too.
             types.append(VEC3)
             continue
         try:

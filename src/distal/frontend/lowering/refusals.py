@@ -1,4 +1,4 @@
-"""The messages for syntax that is not part of scene code, with a hint where there is one."""
+"""Error messages for syntax that is not part of scene code, with hints."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _REFUSED: Final[dict[type[ast.AST], tuple[str, str | None]]] = {
 
 
 def refusal(body: FunctionBody, node: Node) -> SceneError:
-    """The mistake of using syntax that scene code does not have."""
+    """Return the error for syntax that is not part of scene code."""
     if isinstance(node, ast.Constant):
         return _constant(body, node)
     what, hint = _REFUSED.get(type(node), (f"'{type(node).__name__}'", None))

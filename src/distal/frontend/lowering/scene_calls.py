@@ -1,4 +1,4 @@
-"""Scene functions calling scene functions: choosing the overload, lowering the callee once."""
+"""Lower calls between scene functions: choose the overload, and lower the callee once."""
 
 from __future__ import annotations
 
@@ -33,7 +33,18 @@ def call(
     args: Sequence[Value],
     node: ast.Call,
 ) -> Expr:
-    """A call of another scene function."""
+    """Lower a call of another scene function.
+
+    Args:
+        body: The calling function.
+        function: The called function.
+        args: The lowered positional arguments.
+        node: The call.
+
+    Raises:
+        SceneError: No overload takes the arguments.
+        FollowupError: The called function has errors, which are reported already.
+    """
     positional = [Argument(v, n) for v, n in zip(args, node.args, strict=True)]
     keywords = keyword_arguments(body, node)
     signatures = [body.compilation.signature(o) for o in function.overloads]
@@ -50,7 +61,11 @@ def call(
 
 
 def keyword_arguments(body: FunctionBody, node: ast.Call) -> dict[str, Argument]:
-    """The keyword arguments of a call, lowered."""
+    """Lower the keyword arguments of a call.
+
+    Raises:
+        SceneError: The call has a ``**`` argument.
+    """
     keywords: dict[str, Argument] = {}
     for keyword in node.keywords:
         if keyword.arg is None:
@@ -95,7 +110,18 @@ def instantiate(
     bindings: dict[TypeVar, Type],
     caller: tuple[FunctionBody, Node] | None,
 ) -> Instance:
-    """The function for these types, lowered now if it was not yet."""
+    """Return the instance of a function for these types; lower it at the first request.
+
+    Args:
+        compilation: The compilation that gets the function.
+        signature: The overload.
+        types: The types of its parameters.
+        bindings: The types bound to its type variables.
+        caller: The calling function and node, for the check of recursion; None outside scene code.
+
+    Raises:
+        SceneError: The call is recursive.
+    """
     key = (signature.overload, types)
     known = compilation.instances.get(key)
     if known is not None:
@@ -127,7 +153,14 @@ def lower_function(
     instance: Instance,
     bindings: dict[TypeVar, Type],
 ) -> None:
-    """Lower one function's body; its mistakes are noted in the program."""
+    """Lower one function's body; its errors are recorded in the compilation.
+
+    Args:
+        compilation: The compilation that gets the function.
+        signature: The overload.
+        instance: The instance, whose result type is set.
+        bindings: The types bound to its type variables.
+    """
     scopes = analyse_scopes(signature.node.body, {s.name for s in signature.parameters})
     body = FunctionBody(compilation, signature.name, signature.source, signature.names, scopes)
     body.bindings = bindings
@@ -182,7 +215,7 @@ def _declare_result(
 
 
 def lower_body(body: FunctionBody, statements: list[ast.stmt]) -> tuple[Stmt, ...]:
-    """Lower a function's statements; parameters that change become locals first."""
+    """Lower a function's statements; parameters that it assigns to are copied to locals first."""
     with body.block(statements) as block:
         for name in sorted(body.scopes.changed_parameters):
             parameter = body.parameters[name]
@@ -200,7 +233,10 @@ def lower_body(body: FunctionBody, statements: list[ast.stmt]) -> tuple[Stmt, ..
 def infer_result(
     body: FunctionBody, statements: tuple[Stmt, ...]
 ) -> tuple[Type | None, tuple[Stmt, ...]]:
-    """The result's type; without an annotation, that of the returned values."""
+    """Return the result type, and the statements with literals coerced to it.
+
+    Without an annotation, the type of the returned values is used. It is None if they differ.
+    """
     if body.result is not None:
         return body.result, statements
     found: dict[Type, ast.Return] = {}

@@ -1,7 +1,7 @@
-"""Statements: one function for each kind of syntax node, in one table.
+"""Lower statements: one function for each kind of syntax node, in one table.
 
-A mistake inside a statement is recorded and the next statement is lowered all the same, so that an
-author sees every mistake of a function at once.
+An error in a statement is recorded, and lowering continues with the next statement. So the author
+sees all errors of a function at once.
 """
 
 from __future__ import annotations
@@ -29,11 +29,12 @@ from distal.ir.build import integer, negation
 from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
 from distal.ir.types import INT, Array, Type, is_static
 
-DEEP_CALLS: Final = 20  # a statement that fails below so many calls fails because of them
+# Above this number of nested calls, a RecursionError is attributed to the calls, not the statement.
+DEEP_CALLS: Final = 20
 
 
 def lower_statements(body: FunctionBody, statements: list[ast.stmt]) -> None:
-    """Lower into the current block, continuing after each mistake."""
+    """Lower statements into the current block, and continue after each error."""
     for stmt in statements:
         body.begin_statement(stmt)
         try:
@@ -53,7 +54,7 @@ def lower_statements(body: FunctionBody, statements: list[ast.stmt]) -> None:
 
 
 def _report_depth(body: FunctionBody, stmt: ast.stmt) -> None:
-    """Say that Python's stack is used up: by this statement, or by the calls that lead to it."""
+    """Report that Python's recursion limit is reached: by this statement, or by nested calls."""
     body.failed = True
     compilation = body.compilation
     if len(compilation.in_progress) < DEEP_CALLS:
@@ -68,7 +69,7 @@ def _report_depth(body: FunctionBody, stmt: ast.stmt) -> None:
 
 
 def _give_up(body: FunctionBody, stmt: ast.stmt) -> None:
-    """What a failed statement would have defined is not missed any more."""
+    """Mark the names that a failed statement defines, so that uses of them are not reported."""
     names = [n.id for n in ast.walk(stmt) if isinstance(n, ast.Name) and _stores(n)]
     if isinstance(stmt, ast.FunctionDef | ast.ClassDef):
         names.append(stmt.name)
@@ -84,7 +85,7 @@ def _stores(node: ast.Name) -> bool:
 
 
 def _guarded(body: FunctionBody, lower: Callable[[], Expr]) -> Expr | None:
-    """A head's value, or None after recording its mistake: the blocks are lowered still."""
+    """Return the condition, or None after recording its error; the blocks are lowered anyway."""
     try:
         return lower()
     except SceneError as problem:
@@ -142,7 +143,7 @@ def _if(body: FunctionBody, stmt: ast.If) -> None:
 
 
 def _emit_after(body: FunctionBody, stmt: Stmt, *, reachable: bool) -> None:
-    """Add a statement whose own end may not be reached, though its start is."""
+    """Add a statement; ``reachable`` is for its start, and its end may be unreachable."""
     after, body.reachable = body.reachable, reachable
     body.emit(stmt)
     body.reachable = after
@@ -172,7 +173,7 @@ def _while(body: FunctionBody, stmt: ast.While) -> None:
     span = body.span(stmt)
     statements = tuple(inner.statements)
     if head.statements:
-        # The condition needs lets of its own, computed again each round.
+        # The condition has statements, which must run again in each iteration.
         leave = If(negation(test), (Break(span=span),), (), span=span)
         test, statements = TRUE, (*head.statements, leave, *statements)
     _emit_after(body, While(test, statements, span=span), reachable=reachable)
@@ -199,7 +200,7 @@ def _for(body: FunctionBody, stmt: ast.For) -> None:
     variable = Variable(name, body, False, loop=True, failed=bounds is None)
     counter = body.fresh((name.strip("_") or "i") if array is None else f"{name}_index")
     _loop_body(body, stmt, variable, counter, bounds, array)
-    if shadowed is not None:  # a loop in a loop, both with _: in Python the inner one's stays
+    if shadowed is not None:  # nested loops over _: in Python the inner loop's value remains
         body.assigned.discard(shadowed)
 
 
@@ -230,7 +231,7 @@ def _loop_body(
 
 
 def _iteration(body: FunctionBody, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr | None]:
-    """(start, stop, step) and, for a loop over an array, the array."""
+    """Return (start, stop, step) and, for a loop over an array, the array."""
     node = stmt.iter
     if isinstance(node, ast.Call):
         called = body.expression(node.func)
@@ -313,7 +314,7 @@ def _expr(body: FunctionBody, stmt: ast.Expr) -> None:
 
 
 def _pass(body: FunctionBody, stmt: ast.Pass) -> None:
-    """Nothing."""
+    """Do nothing."""
 
 
 def _function_def(body: FunctionBody, stmt: ast.FunctionDef) -> None:

@@ -1,1 +1,1 @@
-"""What annotations mean, and what the ``def`` line of a function declares."""
+"""Read signatures: annotations, and the parameters and results that ``def`` lines declare."""

@@ -1,7 +1,7 @@
-"""What an annotation means: from the Python object to a type of the IR.
+"""Convert an evaluated annotation (a Python object) to an IR type.
 
-Type variables are looked up in bindings that the call decided. Knows nothing of syntax: names and
-texts are evaluated by the caller's namespace.
+Type variables are looked up in the bindings of the call. Does not depend on syntax: the caller
+evaluates names and texts in the function's namespace.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _PYTHON_TYPES: dict[object, Type] = {float: FLOAT, int: INT, bool: BOOL}
 
 
 class AnnotationError(Exception):
-    """An annotation that names no type of scene code; the message says why."""
+    """An annotation is not a type of scene code; the message says why."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:
         super().__init__(message)
@@ -51,7 +51,7 @@ class AnnotationError(Exception):
 
 
 class UnboundVariableError(Exception):
-    """A type variable that the call has not decided."""
+    """A type variable has no binding in this call."""
 
     def __init__(self, variable: TypeVar) -> None:
         super().__init__(variable.__name__)
@@ -59,11 +59,11 @@ class UnboundVariableError(Exception):
 
 
 def to_type(annotation: Any, bindings: Bindings = NO_BINDINGS) -> Type:
-    """The type that an evaluated annotation stands for.
+    """Return the IR type of an evaluated annotation.
 
     Raises:
-        AnnotationError: It stands for none.
-        UnboundVariableError: It needs a type variable that has no binding.
+        AnnotationError: It is not a type of scene code.
+        UnboundVariableError: It contains a type variable that has no binding.
     """
     if isinstance(annotation, type):
         found = _class_type(annotation)
@@ -121,7 +121,7 @@ def _generic(annotation: Any, bindings: Bindings) -> Type:
 
 def _array(element: Type, length: Any) -> Type:
     if typing.get_origin(length) is typing.Literal:
-        # Type checkers want the length as Literal[4].
+        # Type checkers require the length as Literal[4].
         (length,) = typing.get_args(length)[:1]
     if isinstance(length, bool) or not isinstance(length, int):
         raise AnnotationError("the length of an array is a whole number known now")
@@ -145,7 +145,16 @@ def _buffer(element: Type) -> Type:
 
 
 def evaluate(text: str, names: Mapping[str, Any], module: Mapping[str, Any]) -> Any:
-    """The object that an annotation given as text stands for."""
+    """Evaluate an annotation given as text.
+
+    Args:
+        text: The annotation.
+        names: The names of the enclosing scopes, looked up first.
+        module: The names of the module.
+
+    Raises:
+        AnnotationError: The evaluation fails.
+    """
     try:
         return eval(text, dict(module), names)
     except Exception as error:
@@ -156,7 +165,11 @@ _STRUCTS_IN_PROGRESS: list[type] = []
 
 
 def struct_type(cls: type) -> Struct:
-    """The type that a class made by ``@struct`` stands for."""
+    """Return the IR type of a ``@struct`` class.
+
+    Raises:
+        AnnotationError: A field has no valid type, or the struct is empty or contains itself.
+    """
     known = vars(cls).get("__distal_struct_type__")
     if isinstance(known, Struct):
         return known
@@ -192,7 +205,7 @@ def _field(cls: type, field: dataclasses.Field[Any], names: StructNames) -> tupl
 
 
 def struct_defaults(cls: type) -> dict[str, Callable[[], Any]]:
-    """For each field that has a default, what makes it."""
+    """Return a function that makes the default, for each field that has one."""
     defaults: dict[str, Callable[[], Any]] = {}
     for field in dataclasses.fields(cls):
         if field.default is not dataclasses.MISSING:
@@ -207,11 +220,11 @@ def _same(value: Any) -> Any:
 
 
 def admits(variable: TypeVar, type: Type) -> bool:
-    """Whether a type variable may stand for a type."""
+    """Return whether a type variable can be bound to a type."""
     allowed = variable.__constraints__ or (variable.__bound__ and (variable.__bound__,)) or ()
     return not is_static(type) and (not allowed or any(to_type(a) is type for a in allowed))
 
 
 def choices(variable: TypeVar) -> str:
-    """The types a type variable ranges over, for a hint."""
+    """Return the types that a type variable can be bound to, as text for a hint."""
     return " | ".join(str(to_type(a)) for a in variable.__constraints__)

@@ -1,7 +1,7 @@
-"""A function's parameters and result: what ``def`` says before the body.
+"""Read a function's signature: its parameters and its result.
 
-Input: an ``Overload`` as it was recorded. Output: its syntax, its parameters with
-evaluated annotations and defaults, and where its names are looked up.
+Input: a recorded ``Overload``. Output: its syntax tree, its parameters with evaluated annotations
+and defaults, and the lookup of its names.
 """
 
 from __future__ import annotations
@@ -23,7 +23,16 @@ MISSING: Final = object()
 
 @dataclass(frozen=True, slots=True)
 class SignatureParameter:
-    """One parameter: ``annotation`` is the evaluated object, ``MISSING`` where there is none."""
+    """One parameter of a signature.
+
+    Attributes:
+        name: Its name.
+        annotation: The evaluated annotation; ``MISSING`` if there is none.
+        default: The default value; ``MISSING`` if there is none.
+        span: Its source span.
+        positional: Whether a positional argument can set it.
+        by_keyword: Whether a keyword argument can set it.
+    """
 
     name: str
     annotation: Any
@@ -35,7 +44,19 @@ class SignatureParameter:
 
 @dataclass(eq=False, slots=True)
 class FunctionSignature:
-    """What the ``def`` line of a function says."""
+    """A function's signature, as its ``def`` line declares it.
+
+    Attributes:
+        name: The function's name.
+        node: Its syntax tree.
+        source: Makes source spans from nodes.
+        names: Looks up its names.
+        parameters: Its parameters.
+        result: The evaluated result annotation; ``MISSING`` if there is none.
+        overload: The recorded Python function.
+        problems: The errors of the signature.
+        unusable: Whether it cannot be scene code at all, for example a method.
+    """
 
     name: str
     node: ast.FunctionDef
@@ -45,15 +66,15 @@ class FunctionSignature:
     result: Any
     overload: Overload
     problems: list[Diagnostic] = field(default_factory=list)
-    unusable: bool = False  # not a function that could be scene code at all
+    unusable: bool = False
 
     @property
     def span(self) -> Span:
-        """The place of the function's name."""
+        """The span of the function's name."""
         return self.source.name_span(self.node)
 
     def text(self) -> str:
-        """``name(p: vec3, r: float) -> float`` as the author wrote it, for hints."""
+        """Return ``name(p: vec3, r: float) -> float`` as the author wrote it, for hints."""
         a = self.node.args
         written = {arg.arg: arg.annotation for arg in (*a.posonlyargs, *a.args, *a.kwonlyargs)}
         parts = []
@@ -67,10 +88,10 @@ class FunctionSignature:
 
 
 def read_signature(overload: Overload) -> FunctionSignature:
-    """Parse the definition and evaluate what its first line says.
+    """Parse a definition and evaluate its annotations; errors go to ``problems``.
 
     Raises:
-        CompileError: There is no source to parse.
+        CompileError: The source text is not available or cannot be parsed.
     """
     python = overload.python
     node, source = parse_definition(overload.source, python.__code__.co_name)
@@ -94,7 +115,7 @@ def read_signature(overload: Overload) -> FunctionSignature:
 
 
 def _wrapped_span(python: FunctionType, signature: FunctionSignature) -> Span:
-    """The place of the ``def`` that the author decorated."""
+    """Return the span of the ``def`` that the author decorated."""
     inner = getattr(python, "__wrapped__", None)
     if not isinstance(inner, FunctionType):
         return signature.span

@@ -1,8 +1,8 @@
-"""Bringing a value to a type: literals take the type that is wanted, nothing else is converted.
+"""Coerce values to types: literals take the required type, other values are not converted.
 
-``coerce`` gives an expression of exactly the expected type or None; ``with_default_type`` gives the
-value its default type. A number never changes its kind, and a scalar is never widened, unless a
-rule of an operator or a built-in says so.
+``coerce`` returns an expression of exactly the required type, or None. ``with_default_type``
+returns the value with its default type. A number never changes its kind, and a scalar is never
+widened, except by the rules of operators and built-ins.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from distal.lang.names import LangForm, LangFunction
 
 
 def is_callable(value: Value) -> bool:
-    """Whether a value may be a function for a parameter that takes one."""
+    """Return whether a value can be passed to a parameter that is a function."""
     match value:
         case Closure():
             return True
@@ -46,7 +46,17 @@ def is_callable(value: Value) -> bool:
 
 
 def coerce(body: FunctionBody, value: Value, type: Type, node: Node) -> Expr | None:
-    """The value as an expression of exactly ``type``; None where it is of another."""
+    """Return the value as an expression of exactly ``type``; None if it has another type.
+
+    Args:
+        body: The function being lowered.
+        value: The value.
+        type: The required type.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: A whole number is out of the range of the type.
+    """
     match value:
         case Whole(number):
             return _coerce_whole(body, number, type, node)
@@ -101,7 +111,7 @@ def _coerce_sequence(
 
 
 def vector_type(value: Value) -> Type | None:
-    """The vector that a captured list or a tuple of 2 to 4 numbers may stand for."""
+    """Return the vector type that a captured list or a tuple of 2 to 4 numbers can become."""
     if not isinstance(value, SequenceValue) or not 2 <= len(value.items) <= 4:
         return None
     if value.is_list and not value.captured:
@@ -118,7 +128,7 @@ def _scalar_kind(value: Value) -> Kind | None:
 
 
 def default_type(value: Value) -> Type | None:
-    """The type a value has alone; None for what is no value or does not know yet."""
+    """Return the default type of a value; None if it is not a value or has no single type."""
     match value:
         case Whole():
             return INT
@@ -138,7 +148,7 @@ def default_type(value: Value) -> Type | None:
 
 
 def _common(items: Sequence[Value], types: Sequence[Type]) -> Type | None:
-    """The one element type: whole-number literals join floats."""
+    """Return the common element type, or None; whole-number literals take the others' type."""
     concrete = {t for i, t in zip(items, types, strict=True) if not isinstance(i, Whole)}
     if not concrete:
         return INT
@@ -150,7 +160,16 @@ def _common(items: Sequence[Value], types: Sequence[Type]) -> Type | None:
 
 
 def with_default_type(body: FunctionBody, value: Value, node: Node) -> Expr:
-    """The value with the type it has alone."""
+    """Return the value with its default type.
+
+    Args:
+        body: The function being lowered.
+        value: The value.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: It is not a value, or a list whose elements have different types.
+    """
     match value:
         case Static(obj, text):
             raise not_a_value(body, obj, text, node)
@@ -168,7 +187,14 @@ def with_default_type(body: FunctionBody, value: Value, node: Node) -> Expr:
 
 
 def not_a_value(body: FunctionBody, obj: object, text: str, node: Node) -> SceneError:
-    """The mistake of using a function, a type or a module as a value."""
+    """Return the error for a function, type or module that is used as a value.
+
+    Args:
+        body: The function being lowered.
+        obj: The object.
+        text: Its name in the source.
+        node: The node that the error points at.
+    """
     hint = None
     if isinstance(obj, Func | LangFunction | LangForm):
         hint = f"call it: {text}(...)"
@@ -191,7 +217,18 @@ def _mixed_sequence(body: FunctionBody, value: Value, node: Node) -> SceneError:
 
 
 def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, what: str) -> Expr:
-    """The value as ``type``; otherwise the mistake ``what is type, not …``."""
+    """Return the value as an expression of exactly ``type``.
+
+    Args:
+        body: The function being lowered.
+        value: The value.
+        type: The required type.
+        node: The node that the error points at.
+        what: The subject of the message "``what`` is ``type``, not …".
+
+    Raises:
+        SceneError: The value has another type.
+    """
     coerced = coerce(body, value, type, node)
     if coerced is not None:
         return coerced
@@ -207,7 +244,7 @@ def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, wh
 
 
 def callable_hint(body: FunctionBody, value: Value) -> str | None:
-    """What a function takes, where another one is wanted."""
+    """Return a hint with the signatures of a scene function; None for other values."""
     match value:
         case Static(Func() as function):
             return " or ".join(body.compilation.signature_text(o) for o in function.overloads)
@@ -216,7 +253,7 @@ def callable_hint(body: FunctionBody, value: Value) -> str | None:
 
 
 def shown_type(value: Value) -> str:
-    """The type of a value, or what it is."""
+    """Return the type of a value for messages, or a description if it has no type."""
     if isinstance(value, SequenceValue):
         default = default_type(value)
         return describe(value) if default is None else str(default)
@@ -224,7 +261,7 @@ def shown_type(value: Value) -> str:
 
 
 def conversion_hint(value: Value, wanted: Type) -> str | None:
-    """How to turn a value into the wanted type, where there is a natural way."""
+    """Return a hint how to convert a value to the wanted type; None if there is no obvious way."""
     given = default_type(value)
     if given is None or is_static(given) or is_static(wanted):
         return None
@@ -246,7 +283,7 @@ def conversion_hint(value: Value, wanted: Type) -> str | None:
 
 
 def constant_int(value: Value) -> int | None:
-    """A whole number known now, or None."""
+    """Return the value of a whole number that is known at compile time, or None."""
     match value:
         case Whole(number):
             return number

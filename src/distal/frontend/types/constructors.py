@@ -1,4 +1,4 @@
-"""Types called like functions: ``vec3(...)``, ``int(x)``, ``mat2(...)``, structs."""
+"""Lower constructor calls: ``vec3(...)``, ``int(x)``, ``mat2(...)``, structs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,17 @@ from distal.ir.types import (
 
 
 def construct(body: FunctionBody, type: Type, args: Sequence[Value], node: ast.Call) -> Value:
-    """A scalar, vector or matrix made from ``args``."""
+    """Return a scalar, vector or matrix made from ``args``.
+
+    Args:
+        body: The function being lowered.
+        type: The type to make.
+        args: The lowered arguments.
+        node: The call.
+
+    Raises:
+        SceneError: The type cannot be made from these arguments.
+    """
     if node.keywords:
         message = f"'{type}' takes no keyword arguments"
         raise body.problem(message, node.keywords[0])
@@ -109,7 +119,7 @@ def _vector(body: FunctionBody, type: Vector, args: Sequence[Value], node: ast.C
 
 
 def _elements(body: FunctionBody, arg: Value, node: ast.Call) -> Sequence[Value]:
-    """The elements of a short array of numbers; else the argument itself."""
+    """Return the elements of an array of 2 to 4 numbers; otherwise the argument itself."""
     if isinstance(arg, SequenceValue):
         return [arg]
     match default_type(arg):
@@ -174,7 +184,17 @@ def _diagonal(scalar: Expr, type: Matrix) -> Expr:
 
 
 def construct_struct(body: FunctionBody, cls: type, args: Sequence[Value], node: ast.Call) -> Expr:
-    """``Hit(distance, material=2)``: positional, by keyword, defaults."""
+    """Return a struct, for example ``Hit(distance, material=2)``; missing fields take defaults.
+
+    Args:
+        body: The function being lowered.
+        cls: The ``@struct`` class.
+        args: The lowered positional arguments.
+        node: The call.
+
+    Raises:
+        SceneError: The arguments do not match the fields.
+    """
     try:
         type = body.compilation.adopt(struct_type(cls))
     except AnnotationError as error:
@@ -223,7 +243,16 @@ def _struct_field(
 
 
 def length_of(body: FunctionBody, value: Value, node: ast.expr) -> Value:
-    """``len(x)``: known now for everything but a buffer."""
+    """Return ``len(x)`` of an array, vector, matrix or tuple, which is known at compile time.
+
+    Args:
+        body: The function being lowered.
+        value: The argument.
+        node: The call.
+
+    Raises:
+        SceneError: The value has no length.
+    """
     if isinstance(value, SequenceValue):
         return Whole(len(value.items))
     expr = with_default_type(body, value, node)
@@ -239,12 +268,22 @@ def length_of(body: FunctionBody, value: Value, node: ast.expr) -> Value:
 
 
 def _size(value: Value) -> int:
-    """How many single values a display holds."""
+    """Return how many single values a list or tuple contains, nested ones included."""
     return sum(map(_size, value.items)) if isinstance(value, SequenceValue) else 1
 
 
 def repeated(body: FunctionBody, element: Value, count: Value, node: ast.expr) -> Value:
-    """``[x] * n``: an array of equal elements."""
+    """Return ``[x] * n``: an array of equal elements.
+
+    Args:
+        body: The function being lowered.
+        element: The list.
+        count: How often it is repeated.
+        node: The product.
+
+    Raises:
+        SceneError: The count is not known at compile time, or the array is too large or empty.
+    """
     if not isinstance(count, Whole) or not isinstance(element, SequenceValue):
         raise body.problem("a list is repeated a number of times known now", node)
     total = _size(element) * count.value

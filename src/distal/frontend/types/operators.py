@@ -1,6 +1,6 @@
-"""The rules of operators: what each takes and what it gives.
+"""The typing rules of operators: operand types and result types.
 
-Literals alone are computed here, in Python's own arithmetic; everything else becomes a node.
+Operations on two literals are computed here, with Python's arithmetic; others become IR nodes.
 """
 
 from __future__ import annotations
@@ -83,7 +83,18 @@ _LARGEST_LITERAL = 1 << 64
 
 
 def binary(body: FunctionBody, op: ast.operator, lhs: Value, rhs: Value, node: Node) -> Value:
-    """``lhs op rhs``."""
+    """Lower ``lhs op rhs``.
+
+    Args:
+        body: The function being lowered.
+        op: The operator.
+        lhs: The left operand.
+        rhs: The right operand.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The operator does not accept these operands.
+    """
     if isinstance(op, ast.Pow):
         return power(body, lhs, rhs, node)
     if isinstance(op, ast.MatMult):
@@ -174,7 +185,7 @@ def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node)
         raise body.problem(f"'{op.value}' does not take {value.type}", node)
     if kind_of(count.type) not in (Kind.INT, Kind.UINT):
         raise body.problem(f"'{op.value}' shifts by an int, not {count.type}", node)
-    # int and uint counts keep their bits, and only the low five count.
+    # int and uint counts keep their bits, and only the lowest five bits are used.
     count = cast(count, kind)
     if isinstance(value.type, Scalar):
         value = splat(value, count.type)
@@ -203,7 +214,17 @@ def _matmul(body: FunctionBody, lhs: Value, rhs: Value, node: Node) -> Expr:
 
 
 def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -> Value:
-    """``-x``, ``+x``, ``~x``; ``not`` is a condition's."""
+    """Lower ``-x``, ``+x`` or ``~x``; ``not`` is lowered with the conditions.
+
+    Args:
+        body: The function being lowered.
+        op: The operator.
+        operand: The operand.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The operator does not accept this operand.
+    """
     if isinstance(operand, Whole):
         match op:
             case ast.USub():
@@ -232,7 +253,18 @@ def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -
 
 
 def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -> Expr:
-    """One comparison of a chain."""
+    """Lower one comparison of a chain.
+
+    Args:
+        body: The function being lowered.
+        op: The comparison.
+        lhs: The left operand.
+        rhs: The right operand.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The operands cannot be compared.
+    """
     found = COMPARISONS.get(type(op))
     if found is None:
         raise _no_comparison(body, op, node)
@@ -260,7 +292,17 @@ def _no_comparison(body: FunctionBody, op: ast.cmpop, node: ast.expr) -> SceneEr
 
 
 def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Expr:
-    """A value that decides something: a bool, and nothing that only resembles one."""
+    """Return a condition as an expression. It must be a bool; numbers are not converted.
+
+    Args:
+        body: The function being lowered.
+        value: The condition.
+        node: The node, for errors.
+        what: The subject of the message "``what`` is a bool, not …".
+
+    Raises:
+        SceneError: The value is not a bool.
+    """
     if isinstance(value, Whole):
         raise body.problem(f"{what} is a bool, not int", node, "compare it: x != 0")
     expr = with_default_type(body, value, node)

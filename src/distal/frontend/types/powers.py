@@ -1,4 +1,4 @@
-"""``base ** exponent``: constant whole exponents multiply, others call the built-in ``pow``."""
+"""Lower ``base ** exponent``: products for constant whole exponents, else the built-in ``pow``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,17 @@ from distal.ir.types import FLOAT, Kind, Matrix, kind_of
 
 
 def power(body: FunctionBody, base: Value, exponent: Value, node: Node) -> Value:
-    """``base ** exponent``: constant whole exponents multiply, others call the built-in ``pow``."""
+    """Lower ``base ** exponent``: products for constant whole exponents, else ``pow``.
+
+    Args:
+        body: The function being lowered.
+        base: The base.
+        exponent: The exponent.
+        node: The node, for errors.
+
+    Raises:
+        SceneError: The operands have no power.
+    """
     whole = _whole_exponent(exponent)
     if isinstance(base, Whole) and whole is not None and isinstance(exponent, Whole):
         return _fold_power(body, base.value, whole, node)
@@ -47,7 +57,7 @@ def _whole_exponent(exponent: Value) -> int | None:
         case Whole(value):
             return value
         case Const(value, type) if type is FLOAT and float(value).is_integer():
-            # Beyond this float exponents are not meant as repeated products.
+            # Larger float exponents are not computed as repeated products.
             return int(value) if abs(value) <= 1024 else None
         case _:
             return None
@@ -64,7 +74,7 @@ def _fold_power(body: FunctionBody, base: int, exponent: int, node: Node) -> Val
 
 
 def _multiplied(body: FunctionBody, base: Expr, exponent: int, node: Node) -> Expr:
-    """Repeated squaring; each power of two is computed once."""
+    """Return a power by repeated squaring; each power of two is computed once."""
     if exponent == 0:
         return number(1, base.type)
     span = body.span(node)
@@ -89,7 +99,7 @@ def _multiplied(body: FunctionBody, base: Expr, exponent: int, node: Node) -> Ex
 
 
 def _reciprocal(body: FunctionBody, product: Expr, span: Span) -> Expr:
-    """1 / product, as large as a power becomes (the built-in ``pow``) where that is 0."""
+    """Return 1 / product; where the product is 0, the largest value that ``pow`` returns."""
     product = body.bind("product", product)
     inverse = Binary(BinaryOp.DIV, number(1, product.type), product, product.type, span=span)
     size = builtin("abs", product)

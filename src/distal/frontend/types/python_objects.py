@@ -1,7 +1,7 @@
-"""What a Python object that scene code names means: a constant, a parameter, a resource.
+"""Convert Python objects that scene code names to values: constants, parameters, resources.
 
-Constants are taken in when the function is lowered. NumPy's numbers and arrays are understood by
-what they offer (``dtype``, ``tolist``); NumPy itself is not imported.
+Constants are captured when the function is lowered. NumPy's numbers and arrays are recognized by
+their attributes (``dtype``, ``tolist``); NumPy itself is not imported.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ from distal.lang.values import MatrixValue, VectorValue, uint
 
 
 class RefusedError(Exception):
-    """An object that scene code cannot use; the message says why."""
+    """Scene code cannot use an object; the message says why."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:
         super().__init__(message)
@@ -59,26 +59,37 @@ class RefusedError(Exception):
 
 
 class Declarations(Protocol):
-    """Where uniforms and resources of the module are noted by first use."""
+    """Interface that declares the module's uniforms and resources at their first use."""
 
     def uniform(self, parameter: Parameter) -> Expr:
-        """The value of a parameter."""
+        """Return the value of a parameter."""
         ...
 
     def computed(self, expression: Expression) -> Expr:
-        """The value of an expression of parameters and time."""
+        """Return the value of an expression of parameters and time."""
         ...
 
     def resource(self, resource: TextureValue | LangBuffer, name: str, type: Type) -> Expr:
-        """A texture or buffer."""
+        """Return a texture or buffer.
+
+        Args:
+            resource: The texture or buffer.
+            name: The preferred name.
+            type: Its type in the IR.
+        """
         ...
 
 
 def value_of(obj: Any, text: str, declarations: Declarations) -> Value:
-    """The value of an object named ``text``; a ``Static`` for what has none but may be used.
+    """Return the value of an object; a ``Static`` for functions, types and modules.
+
+    Args:
+        obj: The object.
+        text: Its name in the source, for messages.
+        declarations: Declares parameters and resources.
 
     Raises:
-        RefusedError: The object has no meaning in scene code.
+        RefusedError: Scene code cannot use the object.
     """
     number = number_of(obj, text)
     if number is not None:
@@ -111,7 +122,11 @@ def value_of(obj: Any, text: str, declarations: Declarations) -> Value:
 
 
 def number_of(obj: Any, text: str) -> Expr | Whole | None:
-    """The constant that a Python or NumPy number stands for, or None."""
+    """Return a Python or NumPy number as a constant; None for other objects.
+
+    Raises:
+        RefusedError: The number is NaN, infinite or too large, or an Enum's value is not a number.
+    """
     if isinstance(obj, Enum):
         inner = number_of(obj.value, text)
         if inner is None:
@@ -136,7 +151,11 @@ def number_of(obj: Any, text: str) -> Expr | Whole | None:
 
 
 def float_constant(value: float, text: str) -> Expr:
-    """A float that every target can say."""
+    """Return a float as a constant that every target can represent.
+
+    Raises:
+        RefusedError: The float is NaN, infinite or larger than a 32-bit float.
+    """
     if math.isnan(value):
         raise RefusedError(f"'{text}' is not a number (NaN), which scene code does not have")
     if math.isinf(value):
@@ -160,7 +179,11 @@ def _plain(value: Any) -> Any:
 
 
 def lang_value(value: VectorValue | MatrixValue, text: str) -> Expr:
-    """The constant that a vector or matrix made in Python stands for."""
+    """Return a vector or matrix of Python code as a constant.
+
+    Raises:
+        RefusedError: A component is NaN, infinite or too large.
+    """
     type = value.__distal_type__
     match type:
         case Vector(kind):
@@ -197,7 +220,7 @@ def _check_size(size: int, text: str) -> None:
 
 
 def _rows(rows: list[Any], text: str) -> tuple[Value, ...] | None:
-    """Points in a list: rows of 2 to 4 numbers are vectors, of floats if one number is."""
+    """Return rows of 2 to 4 numbers as float vectors; None if they are not, or are all whole."""
     size = len(rows[0])
     if not 2 <= size <= 4 or any(len(r) != size for r in rows):
         return None
@@ -238,7 +261,7 @@ def _array(obj: Any, text: str) -> Value:
     shape = tuple(obj.shape)
     _check_size(math.prod(shape), text)
     if len(shape) == 2 and shape[0] == shape[1] and 2 <= shape[0] <= 4 and kind is Kind.FLOAT:
-        # NumPy writes rows, scene code's matrices are made of columns.
+        # NumPy's matrices are stored by rows, matrices of scene code by columns.
         columns = [[obj[r, c].item() for r in range(shape[0])] for c in range(shape[0])]
         vector = vector_of(Kind.FLOAT, shape[0])
         parts = (Compose(tuple(_scalar(x, kind, text) for x in c), vector) for c in columns)
@@ -256,7 +279,7 @@ def _array(obj: Any, text: str) -> Value:
 
 
 def coerce_constant(value: Value, type: Type) -> Expr | None:
-    """A captured value as a constant of exactly this type, or None."""
+    """Return a captured value as a constant of exactly this type, or None."""
     match value:
         case Whole(number):
             return whole_to(number, type)
@@ -283,11 +306,11 @@ def _coerce_sequence(items: tuple[Value, ...], type: Type) -> Expr | None:
 
 
 def type_of_value(obj: Any) -> Type | None:
-    """The type a Python value has in scene code, or None: for whoever calls a function with it."""
+    """Return the type that a Python value has as an argument of a scene function, or None."""
     try:
         number = number_of(obj, "value")
     except RefusedError:
-        return FLOAT  # NaN and infinity may be passed, though not written
+        return FLOAT  # NaN and infinity are allowed as arguments, but not as constants
     if isinstance(number, Whole):
         return to_type(int)
     if number is not None:
@@ -302,7 +325,7 @@ def type_of_value(obj: Any) -> Type | None:
 
 
 def kind_of_object(obj: Any) -> str:
-    """What an unusable object is, for a message."""
+    """Return a description of an unusable object, for a message."""
     if isinstance(obj, ModuleType):
         return "a module"
     if isinstance(obj, FunctionType):

@@ -1,4 +1,4 @@
-"""Two operands becoming one type: a literal takes the other side's kind, a scalar is splatted."""
+"""Unify operands to one type: a literal takes the other side's kind, a scalar is splatted."""
 
 from __future__ import annotations
 
@@ -30,7 +30,18 @@ from distal.ir.types import (
 def unify_operands(
     body: FunctionBody, lhs: Value, rhs: Value, node: Node, symbol: str
 ) -> tuple[Expr, Expr]:
-    """Both sides as one type: a literal takes the other side's kind, a scalar is splatted."""
+    """Return both sides as one type: a literal takes the other's kind, a scalar is splatted.
+
+    Args:
+        body: The function being lowered.
+        lhs: The left operand.
+        rhs: The right operand.
+        node: The node, for errors.
+        symbol: The operator, or ``select``.
+
+    Raises:
+        SceneError: The types cannot be unified.
+    """
     if isinstance(lhs, Whole) and not isinstance(rhs, Whole):
         right = concrete(body, rhs, lhs, node)
         return _coerce_literal(body, lhs, right, node, symbol), right
@@ -54,12 +65,19 @@ _EVERY_SYMBOL: Final = frozenset(
 
 
 def _widening(type: Type) -> frozenset[str]:
-    """The operators that repeat a scalar in every component of the other side."""
+    """Return the operators that splat a scalar to the type of the other side."""
     return frozenset({"*", "/"}) if isinstance(type, Matrix) else _EVERY_SYMBOL
 
 
 def concrete(body: FunctionBody, value: Value, other: Value, node: Node) -> Expr:
-    """A value with its own type; a captured tuple is a vector beside a vector."""
+    """Return a value with its default type; a captured tuple beside a vector becomes a vector.
+
+    Args:
+        body: The function being lowered.
+        value: The operand.
+        other: The other operand.
+        node: The node, for errors.
+    """
     if isinstance(value, SequenceValue):
         other_type = default_type(other)
         if isinstance(other_type, Matrix):
@@ -74,7 +92,7 @@ def concrete(body: FunctionBody, value: Value, other: Value, node: Node) -> Expr
 def _coerce_literal(
     body: FunctionBody, literal: Whole, other: Expr, node: Node, symbol: str
 ) -> Expr:
-    """The literal as the other side's kind; a scalar, or splatted beside a vector or matrix."""
+    """Return a literal with the other side's type, splatted beside a vector or matrix."""
     kind = kind_of(other.type)
     if kind is None or kind is Kind.BOOL:
         raise do_not_mix(body, other, with_default_type(body, literal, node), node, symbol)
@@ -84,7 +102,15 @@ def _coerce_literal(
 
 
 def do_not_mix(body: FunctionBody, lhs: Expr, rhs: Expr, node: Node, symbol: str) -> SceneError:
-    """The mistake of bringing two types together that an operator does not join."""
+    """Return the error for operands whose types an operator cannot combine.
+
+    Args:
+        body: The function being lowered.
+        lhs: The left operand.
+        rhs: The right operand.
+        node: The node that the error points at.
+        symbol: The operator.
+    """
     left, right = lhs.type, rhs.type
     message = f"{left} and {right} do not mix in '{symbol}'"
     hint = None
@@ -108,7 +134,7 @@ def do_not_mix(body: FunctionBody, lhs: Expr, rhs: Expr, node: Node, symbol: str
 
 
 def _int_hint(body: FunctionBody, value: Expr) -> str:
-    """How an int meets a float."""
+    """Return a hint how to combine an int with a float."""
     if isinstance(value, Read) and value.name in body.whole_starts:
         start = body.whole_starts[value.name]
         return f"'{value.name}' is an int because it starts as {start}: write {start}.0"
@@ -120,7 +146,17 @@ def _int_hint(body: FunctionBody, value: Expr) -> str:
 def unify_values(
     body: FunctionBody, values: Sequence[Value], node: ast.expr, what: str
 ) -> tuple[Expr, ...]:
-    """All values as one type: literals take the type of the others, nothing is widened."""
+    """Return all values as one type: literals take the type of the others, nothing is widened.
+
+    Args:
+        body: The function being lowered.
+        values: The values.
+        node: The node, for errors.
+        what: The start of the message, which the types follow.
+
+    Raises:
+        SceneError: The types differ.
+    """
     concrete = [v for v in values if not isinstance(v, Whole)]
     types = list(dict.fromkeys(default_type(v) for v in concrete))
     if not concrete:
