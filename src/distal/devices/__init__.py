@@ -1,1 +1,1 @@
-"""Where compiled scenes run. ``base.Kernel`` is what each device gives back."""
+"""The devices that run compiled scenes; each returns a ``base.Kernel``."""

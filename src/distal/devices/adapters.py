@@ -1,7 +1,7 @@
-"""The GPUs of this machine, and one open device for each that is used.
+"""List the GPUs of this machine, and open one device for each GPU that is used.
 
-Input: a requested device, such as "auto", a number or part of a name. Output: an
-adapter's row, and an open ``Gpu``. wgpu is imported only when somebody asks. Knows no kernels.
+Input: a requested device: "auto", a number or part of a name. Output: an ``Adapter``, and an open
+``Gpu``. wgpu is imported only when it is needed. Does not depend on kernels.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Any, Final
 from distal.diagnostics import LONGEST_MESSAGE, DeviceError, printable
 from distal.packages import PackageError, loading, raised_in
 
-_ANSWER_TIMEOUT_S: Final = 30  # a driver may compile shaders of its own at its first start
+_ANSWER_TIMEOUT_S: Final = 30  # a driver may compile its internal shaders at its first start
 _KINDS: Final = ("DiscreteGPU", "IntegratedGPU", "VirtualGPU", "Unknown", "CPU")
 _SOFTWARE: Final = ("llvmpipe", "softpipe", "lavapipe", "swiftshader", "basic render driver")
 _LIMITS: Final = (
@@ -56,11 +56,11 @@ class Adapter:
     """A way to reach a GPU.
 
     Attributes:
-        number: Its place in the list that the driver layer gives; what ``--adapter`` takes.
+        number: Its index in wgpu's list, which ``--adapter`` takes.
         name: The GPU's own name.
         kind: DiscreteGPU, IntegratedGPU, VirtualGPU, CPU or Unknown.
         backend: Vulkan, Metal, D3D12 or OpenGL.
-        driver: What the driver says of itself.
+        driver: The driver's description of itself.
     """
 
     number: int
@@ -71,7 +71,7 @@ class Adapter:
 
     @staticmethod
     def of(number: int, info: dict[str, Any]) -> Adapter:
-        """The adapter of this number, from wgpu's information about it."""
+        """Return the adapter with this number, from wgpu's information about it."""
         text = {key: printable(info.get(key) or "") for key in _INFO_KEYS}
         name = text["device"] or text["vendor"] or "a GPU without a name"
         driver = text["description"]
@@ -79,12 +79,12 @@ class Adapter:
 
     @property
     def is_software(self) -> bool:
-        """Whether the processor does the work."""
+        """Whether it renders in software, on the CPU."""
         return self.kind == "CPU" or any(word in self.name.lower() for word in _SOFTWARE)
 
     @property
     def rank(self) -> tuple[int, int, int]:
-        """The smaller, the better: hardware first, discrete first, OpenGL last."""
+        """A sort key, the best adapter first: hardware first, discrete first, OpenGL last."""
         kind = "CPU" if self.is_software else self.kind
         place = _KINDS.index(kind) if kind in _KINDS else _KINDS.index("Unknown")
         return place, int(self.backend.startswith("OpenGL")), self.number
@@ -95,12 +95,12 @@ class Adapter:
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """The device that a request means.
+    """The device that a request selects.
 
     Attributes:
-        device: As ``render`` takes it, with "auto" decided and without the adapter.
-        adapter: The adapter's name; None for the best one, or for a device without.
-        reason: Why it is this one, in words.
+        device: The device as ``render`` takes it: never "auto", and without the adapter.
+        adapter: The adapter's name; None for the best one, or for a device without adapters.
+        reason: Why this device was selected, in words.
     """
 
     device: str
@@ -112,7 +112,7 @@ class Resolved:
 
 
 def resolve(device: str) -> Resolved:
-    """The device that a name means: "auto" becomes a GPU in hardware, or else the CPU."""
+    """Return the device that a name selects: "auto" selects a hardware GPU, or else the CPU."""
     if device != "auto":
         name, _, adapter = device.partition(":")
         return Resolved(name, adapter or None, "as requested")
@@ -131,7 +131,7 @@ def resolve(device: str) -> Resolved:
 
 
 def hardware() -> Adapter | None:
-    """The best hardware adapter, or None; lists the adapters as ``resolve("auto")`` does."""
+    """Return the best hardware adapter, or None; the listing is shared with ``resolve("auto")``."""
     if importlib.util.find_spec("wgpu") is None:
         return None
     return _best_hardware(listed_in_subprocess()[0])
@@ -143,10 +143,10 @@ def _best_hardware(found: Sequence[Adapter]) -> Adapter | None:
 
 @functools.cache
 def listed_in_subprocess() -> tuple[list[Adapter], str]:
-    """The adapters, listed once, in a process of its own; and what failed, or "".
+    """Return the adapters, listed once in a separate process, and an error message or "".
 
     With "auto" the user did not request a GPU, so a driver that hangs or crashes must not stop the
-    rendering. That costs 0.4 s once per process. For a named adapter, ``adapters`` lists them in
+    rendering. This costs 0.4 s once per process. For a named adapter, ``adapters`` lists them in
     this process.
     """
     try:
@@ -175,7 +175,7 @@ def listed_in_subprocess() -> tuple[list[Adapter], str]:
 
 
 def adapters() -> list[Adapter]:
-    """The adapters, listed in this process.
+    """Return the adapters, listed in this process.
 
     Raises:
         DeviceError: wgpu is not installed.
@@ -184,10 +184,10 @@ def adapters() -> list[Adapter]:
 
 
 def chosen(request: str | None = None) -> Adapter:
-    """The adapter of a number or of a part of its name; the best when None or "".
+    """Return the adapter with a number or with a part of a name; the best one for None or "".
 
     Raises:
-        DeviceError: There is none, or none like that; the message lists those there are.
+        DeviceError: There is no adapter, or none matches; the message lists the adapters.
     """
     found = adapters()
     if not found:
@@ -209,14 +209,14 @@ def _handles() -> list[Any]:
     try:
         with _quiet_mesa():
             return list(wgpu.gpu.enumerate_adapters_sync())
-    except RuntimeError:  # so says wgpu where no driver is installed
+    except RuntimeError:  # wgpu raises it if no driver is installed
         return []
     except Exception as error:
         raise DeviceError(f"wgpu cannot list the GPUs: {_short(error)}; or --device cpu") from error
 
 
 def wgpu_module() -> Any:
-    """The package, its warnings kept from the terminal.
+    """Import wgpu, and keep its warnings off the terminal.
 
     Raises:
         DeviceError: It is not installed, or cannot be loaded.
@@ -224,13 +224,13 @@ def wgpu_module() -> Any:
     try:
         with loading("wgpu"):
             module = importlib.import_module("wgpu")
-            for name in _NEEDED:  # half an installation lacks them
+            for name in _NEEDED:  # missing in a broken installation
                 getattr(module, name)
     except PackageError as error:
         message = _NO_WGPU if error.is_missing else f"{error}; or --device cpu"
         raise DeviceError(message) from error
     # Without a handler Python prints the warnings; an application that configures logging still
-    # gets them. The logger is of wgpu's own class, so wgpu has to make it.
+    # gets them. wgpu must create the logger first, because it has a special class.
     logger = logging.getLogger("wgpu")
     if not logger.handlers:
         logger.addHandler(logging.NullHandler())
@@ -239,7 +239,7 @@ def wgpu_module() -> Any:
 
 @contextlib.contextmanager
 def _quiet_mesa() -> Iterator[None]:
-    """Any folder in XDG_RUNTIME_DIR silences Mesa; put back, since windows look there."""
+    """Set XDG_RUNTIME_DIR to any folder, which silences Mesa; then restore it for windows."""
     if "XDG_RUNTIME_DIR" in os.environ:
         yield
         return
@@ -257,11 +257,11 @@ class Gpu:
     """An open device.
 
     Attributes:
-        adapter: Which GPU.
+        adapter: The GPU.
         device: wgpu's device.
-        lock: Held while commands are given: a window and a video may share the device.
-        is_lost: Whether it is gone; kernels then open a new one.
-        filters_floats: Whether it filters textures of 32-bit floats.
+        lock: Held while commands are submitted: a window and a video may share the device.
+        is_lost: Whether the device was lost; kernels then open a new one.
+        filters_floats: Whether it can filter textures of 32-bit floats.
     """
 
     def __init__(self, adapter: Adapter, handle: Any) -> None:
@@ -280,15 +280,15 @@ class Gpu:
             raise DeviceError(f"{adapter.name} cannot be used: {_short(error)}") from error
 
     def limit(self, name: str) -> int:
-        """One of the device's limits."""
+        """Return one of the device's limits, by wgpu's name."""
         return int(self.device.limits[name])
 
     @contextlib.contextmanager
     def commands(self, doing: str = "rendering") -> Iterator[Any]:
-        """The device, alone; its errors become a ``DeviceError``.
+        """Lock the device and yield it; convert its errors to ``DeviceError``.
 
         Raises:
-            DeviceError: The GPU was lost, has not the memory, or rejects a command.
+            DeviceError: The GPU was lost, has too little memory, or rejects a command.
         """
         wgpu = wgpu_module()
         with self.lock:
@@ -316,7 +316,7 @@ class Gpu:
         )
 
     def drop(self) -> None:
-        """Do not return this device again."""
+        """Mark this device as lost, so that ``opened`` does not return it again."""
         self.is_lost = True
         with _OPENING:
             for number, gpu in list(_OPEN.items()):
@@ -329,7 +329,7 @@ _OPENING = threading.RLock()
 
 
 def opened(adapter: Adapter) -> Gpu:
-    """The process's one device of an adapter.
+    """Return the open device of an adapter; there is one per process.
 
     Raises:
         DeviceError: It cannot be opened.
@@ -347,7 +347,7 @@ def _tells_of_loss(error: BaseException) -> bool:
 
 
 def _short(error: BaseException) -> str:
-    """What wgpu says, on one line."""
+    """Return wgpu's error message on one line."""
     lines = (line.strip(" :") for line in str(error).splitlines())
     words = ": ".join(
         line for line in lines if line and line not in ("Validation Error", "Caused by")

@@ -1,7 +1,7 @@
-"""The interface of a device: a kernel, ready to run.
+"""The interface of a device: a kernel that is ready to run.
 
-Input: a module from the front end. Output: pictures, or values at points.
-Knows nothing of how the work is done.
+Input: a module from the front end. Output: pictures, or values at points. Does not depend on any
+implementation.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import DeviceError as DeviceError
 
-# Called with the finished share, 0 to 1, in the calling thread.
+# Called in the calling thread with the fraction of the work that is done, 0 to 1.
 Progress: TypeAlias = Callable[[float], None]
-# Called in the calling thread: whether to stop. An event stops the work when it is set.
+# Called in the calling thread; True stops the work. An event stops the work when it is set.
 Cancel: TypeAlias = Callable[[], bool] | threading.Event
-# An array with one row for each point (a struct or tuple: a tuple of them).
+# An array with one row for each point; for a struct or tuple, a tuple of such arrays.
 Values: TypeAlias = "NDArray[Any] | tuple[Values, ...]"
 
 
 class Cancelled(Exception):  # noqa: N818 (nothing went wrong)
-    """The work was ended because ``cancel`` said so; there is no result."""
+    """``cancel`` stopped the work; there is no result."""
 
 
 class Kernel(Protocol):
     """A compiled module.
 
     Attributes:
-        stats: What is known of the compilation and of the last run: ``compile_s``, ``cache_hit``,
+        stats: Statistics of the compilation and of the last run: ``compile_s``, ``cache_hit``,
             ``level``, ``lanes``, ``precision``; after a run ``render_s`` and ``threads``.
     """
 
@@ -48,20 +48,20 @@ class Kernel(Protocol):
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """The picture of an image module: (height, width, 4), the top row first.
+        """Render an image module: float32 (height, width, 4), top row first.
 
         Args:
             width: Pixels across.
             height: Pixels down.
-            uniforms: A value for every uniform, by name: numbers, or their sequence.
-            resources: For every texture and buffer, by name, what the author declared, or an array
+            uniforms: A value for every uniform, by name: a number or a sequence of numbers.
+            resources: For every texture and buffer, by name, the declared resource, or an array
                 (texels in the order of their indices: (height, width, 4), depth or face first).
-            threads: How many to use; as many as the process may use when None.
-            progress: Called now and then with the finished share.
-            cancel: Called now and then: whether to stop.
+            threads: Number of threads; None uses all that the process may use.
+            progress: Called regularly with the fraction of the work that is done.
+            cancel: Called regularly; True stops the work.
 
         Raises:
-            Cancelled: ``cancel`` said so.
+            Cancelled: ``cancel`` stopped the work.
         """
         ...
 
@@ -75,14 +75,22 @@ class Kernel(Protocol):
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """The function's values at n points.
+        """Return the function's values at n points.
 
         Arrays have one row for each point: (n,) for scalars, (n, 3) for vec3, (n, 3, 3) for mat3 in
-        NumPy's layout (row, column), (n, length, …) for arrays, a tuple of arrays for a struct. A
-        row count of 1 means the same value at every point.
+        NumPy's layout (row, column), (n, length, …) for arrays, a tuple of arrays for a struct. An
+        argument with 1 row has the same value at every point.
+
+        Args:
+            args: The arguments, as arrays.
+            uniforms: As for ``render``.
+            resources: As for ``render``.
+            threads: As for ``render``.
+            progress: As for ``render``.
+            cancel: As for ``render``.
 
         Raises:
-            Cancelled: ``cancel`` said so.
+            Cancelled: ``cancel`` stopped the work.
         """
         ...
 
@@ -95,16 +103,23 @@ class Kernel(Protocol):
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """The picture that a function from vec4 to vec4 makes of a picture (height, width, 4).
+        """Apply a function from vec4 to vec4 to every pixel of a picture.
+
+        Args:
+            pixels: The picture, (height, width, 4).
+            uniforms: As for ``render``.
+            resources: As for ``render``.
+            threads: As for ``render``.
+            cancel: As for ``render``.
 
         Raises:
-            Cancelled: ``cancel`` said so.
+            Cancelled: ``cancel`` stopped the work.
         """
         ...
 
 
 def cancel_test(cancel: Cancel | None) -> Callable[[], bool]:
-    """A function to call now and then: whether the caller wants the work to stop."""
+    """Return a function that returns whether to stop the work."""
     match cancel:
         case None:
             return lambda: False

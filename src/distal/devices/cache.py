@@ -1,11 +1,10 @@
-"""Compiled kernels kept between runs.
+"""Store compiled kernels on disk between runs.
 
-Input: a key and a kernel's bytes. Output: the same bytes, or nothing. A kernel is
-machine code that will be run, so it is read only from a folder and a file that belong to the user
-and that nobody else can write. Files are written whole under another name and then renamed, and
-carry a checksum of their key and their content, so that writers side by side, full disks, lost
-power and files that changed places do no harm. A cache that cannot be used is no error: everything
-is compiled again.
+Input: a key and a kernel's bytes. Output: the same bytes, or nothing. A kernel is machine code that
+will be run, so it is read only from a folder and a file that belong to the user and that nobody
+else can write. A file is written completely under another name and then renamed, and contains a
+checksum of its key and its content. So concurrent writers, full disks, lost power and exchanged
+files do no harm. A cache that cannot be used is not an error: everything is compiled again.
 """
 
 from __future__ import annotations
@@ -25,16 +24,16 @@ from typing import Final
 
 try:
     import fcntl
-except ImportError:  # Windows, where kernels are not kept (no O_NOFOLLOW)
+except ImportError:  # Windows, where kernels are not stored (no O_NOFOLLOW)
     fcntl = None  # type: ignore[assignment]
 
 FOLDER_VARIABLE: Final = "DISTAL_CACHE_DIR"
 OFF: Final = "off"
-SIZE_LIMIT: Final = 256 * 2**20  # bytes; then the longest unused go
+SIZE_LIMIT: Final = 256 * 2**20  # bytes; above it, the least recently used kernels are removed
 _SUFFIX: Final = ".kernel"
 _TEMPORARY: Final = re.compile(r"\.new-[A-Za-z0-9_]{8,16}\Z")
-# Of a temporary file whose writer was killed. Writing takes milliseconds; a lock shows that a
-# writer is only stopped, as by a suspended machine.
+# Age at which a temporary file counts as left by a killed writer. Writing takes milliseconds; a
+# lock on the file shows that its writer is only paused, for example on a suspended machine.
 LEFTOVER_AGE_S: Final = 3600.0
 _MAGIC: Final = b"distal kernel 2\n"
 _DIGEST = 32
@@ -43,9 +42,10 @@ _warned: set[Path] = set()
 
 
 def default_folder() -> Path | None:
-    """The folder where kernels are kept; None if there is none.
+    """Return the folder where kernels are stored; None if they are not stored.
 
-    ``DISTAL_CACHE_DIR`` decides, ``off`` meaning nowhere; else the system's folder for caches.
+    ``DISTAL_CACHE_DIR`` sets it, and ``off`` disables it; the default is in the system's folder for
+    caches.
     """
     chosen = os.environ.get(FOLDER_VARIABLE, "")
     if chosen.lower() == OFF:
@@ -63,19 +63,24 @@ def default_folder() -> Path | None:
 
 
 class Cache:
-    """A folder of kernels."""
+    """A folder of kernels.
+
+    Attributes:
+        folder: The folder; None stores nothing.
+        limit: The maximum size, in bytes.
+    """
 
     def __init__(self, folder: Path | None, limit: int = SIZE_LIMIT) -> None:
         self.folder = folder
         self.limit = limit
 
     def load(self, key: str) -> bytes | None:
-        """The bytes stored under a key, if they are there and sound."""
+        """Return the bytes stored under a key; None if they are missing or damaged."""
         with self._opened() as folder:
             if folder is None:
                 return None
             try:
-                # Not blocking: a pipe in the file's place would be waited for without end.
+                # Non-blocking: opening a pipe with this name would otherwise wait forever.
                 flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
                 handle = os.open(key + _SUFFIX, flags, dir_fd=folder)
             except OSError:
@@ -89,12 +94,12 @@ class Cache:
                     return None
                 data = file.read()
                 with suppress(OSError):
-                    os.utime(handle)  # used last: dropped last
+                    os.utime(handle)  # for the removal of the least recently used
                 return _checked(key, data)
         return None
 
     def store(self, key: str, payload: bytes) -> bool:
-        """Keep bytes under a key; whether that worked."""
+        """Store bytes under a key; return whether they were stored."""
         data = _MAGIC + _digest(key, payload) + payload
         if self.folder is None or len(data) > self.limit:
             return False
@@ -112,25 +117,25 @@ class Cache:
         return True
 
     def discard(self, key: str) -> None:
-        """Remove what is stored under a key."""
+        """Remove the bytes stored under a key."""
         with self._opened() as folder, suppress(OSError):
             if folder is not None:
                 os.unlink(key + _SUFFIX, dir_fd=folder)
 
     def size(self) -> tuple[int, int]:
-        """How many kernels there are, and their bytes."""
+        """Return the number of kernels and their total size in bytes."""
         with self._opened() as folder:
             files = [] if folder is None else list(_kernels(folder))
         return len(files), sum(size for _, size, _ in files)
 
     @contextmanager
     def _opened(self) -> Iterator[int | None]:
-        """The folder held open, so that what was checked is what is used; None if not ours."""
+        """Open the folder, so that the checked folder is the one used; None if it is not ours."""
         if self.folder is None or not hasattr(os, "O_NOFOLLOW"):
             yield None
             return
         try:
-            # A link that another user made may lead to a folder of ours that is no cache.
+            # Another user's link could point to a folder of this user that is not a cache.
             link = os.lstat(self.folder)
             handle = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
         except OSError:
@@ -152,7 +157,7 @@ class Cache:
             warnings.warn(f"the kernel cache {self.folder} {what}", RuntimeWarning, stacklevel=4)
 
     def _drop_leftovers(self, folder: int) -> None:
-        """Remove the temporary files of writers that were killed, never those of running ones."""
+        """Remove the temporary files of killed writers, but never those of running ones."""
         with suppress(OSError), os.scandir(folder) as entries:
             for entry in entries:
                 if _TEMPORARY.match(entry.name):
@@ -160,7 +165,7 @@ class Cache:
                         _drop_leftover(folder, entry.name)
 
     def _shrink(self, folder: int) -> None:
-        """Drop what was not used for longest, down to four fifths of the limit."""
+        """Remove the least recently used kernels, down to four fifths of the limit."""
         files = sorted(_kernels(folder))
         total = sum(size for _, size, _ in files)
         if total <= self.limit:
@@ -179,7 +184,7 @@ def _only_ours(info: os.stat_result) -> bool:
 
 
 def _kernels(folder: int) -> Iterator[tuple[float, int, str]]:
-    """Time of last use, size and name of every kernel."""
+    """Yield the time of last use, the size and the name of every kernel."""
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             if entry.name.endswith(_SUFFIX):
@@ -201,7 +206,7 @@ def _drop_leftover(folder: int, name: str) -> None:
 
 
 def _lock(handle: int) -> bool:
-    """Hold a file while it is open; False if another process holds it."""
+    """Lock an open file; return False if another process has locked it."""
     if fcntl is None:
         return True
     try:
@@ -233,18 +238,18 @@ def _rename(folder: int, temporary: str, name: str) -> None:
     try:
         os.replace(temporary, name, src_dir_fd=folder, dst_dir_fd=folder)
     except IsADirectoryError:
-        os.rmdir(name, dir_fd=folder)  # an empty one only
+        os.rmdir(name, dir_fd=folder)  # removes only an empty folder
         os.replace(temporary, name, src_dir_fd=folder, dst_dir_fd=folder)
 
 
 def _digest(key: str, payload: bytes) -> bytes:
-    """A checksum of the content and of the key that it was stored under."""
+    """Return a checksum of the content and of its key."""
     named = key.encode()
     return hashlib.sha256(len(named).to_bytes(8, "little") + named + payload).digest()
 
 
 def _checked(key: str, data: bytes) -> bytes | None:
-    """The payload of a file, or None when it is broken or belongs to another key."""
+    """Return the payload of a file; None if it is damaged or belongs to another key."""
     start = len(_MAGIC) + _DIGEST
     if len(data) < start or not data.startswith(_MAGIC):
         return None

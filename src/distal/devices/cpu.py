@@ -1,7 +1,7 @@
-"""The CPU device: vector code on every processor, compiled once and kept.
+"""The CPU device: vector code on all processors, compiled once and stored in the cache.
 
-Input: a module fresh from the front end, then numbers. Output: pictures, and values
-at points. With a kernel in the cache no pass runs and nothing is compiled.
+Input: a module from the front end before any pass, then numbers. Output: pictures, and values at
+points. If the cache has the kernel, no pass runs and nothing is compiled.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from distal.ir.types import Buffer, Texture, Type
 
 RunPasses = Callable[[Module, Target, int], Module]
 
-_LARGEST_SIDE: Final = 32768  # pixels; a picture's bytes stay countable in 64 bits anywhere
+_LARGEST_SIDE: Final = 32768  # pixels; a picture's size in bytes fits 64 bits on all systems
 
 
 def prepare(
@@ -55,18 +55,18 @@ def prepare(
     features: str | None = None,
     cache: Cache | None = None,
 ) -> CpuKernel:
-    """Compile a module, or find it compiled.
+    """Compile a module, or load its kernel from the cache.
 
     Args:
-        module: As the front end made it, before any pass.
-        passes: Shapes it for a target and a precision; ``compiler.run_passes`` when None.
+        module: A module from the front end, before any pass.
+        passes: Runs the passes for a target and a precision; None: ``compiler.run_passes``.
         precision: Bits of a float, 32 or 64.
-        features: A CPU feature level by name; the best this processor has when None.
-        cache: Where kernels are kept; the user's folder when None.
+        features: The name of a CPU feature level; None: the best one of this processor.
+        cache: Where kernels are stored; None: the user's folder.
 
     Raises:
-        CompileError: The scene says what the CPU cannot do.
-        ValueError: No such feature level here.
+        CompileError: The CPU cannot run the scene.
+        ValueError: This processor does not have the feature level.
     """
     started = time.perf_counter()
     level = chosen_level(features)
@@ -96,7 +96,7 @@ def prepare(
     return CpuKernel(Executable(code), interface, precision, lanes, stats, types)
 
 
-# Kernels as files
+# Kernels as bytes of the cache
 
 
 def _stored(code: bytes, interface: dict[str, Any]) -> bytes:
@@ -111,7 +111,7 @@ def _loaded(data: bytes | None) -> tuple[bytes, dict[str, Any]] | None:
     return data[4 + size :], json.loads(data[4 : 4 + size])
 
 
-# Kernels as functions
+# Kernels as callable functions
 
 
 class CpuKernel:
@@ -152,7 +152,7 @@ class CpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """The picture; see ``Kernel.render``."""
+        """Render a picture; see ``Kernel.render``."""
         assert self._image, "a function has no picture"
         if not (0 < width <= _LARGEST_SIDE and 0 < height <= _LARGEST_SIDE):
             raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
@@ -174,7 +174,7 @@ class CpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """Values at points; see ``Kernel.evaluate``."""
+        """Return values at points; see ``Kernel.evaluate``."""
         assert not self._image, "an image has no points"
         points = cpu_memory.shared_length(args)
         if self._pixelwise and points:
@@ -203,7 +203,7 @@ class CpuKernel:
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """A picture of a picture; see ``Kernel.map_pixels``."""
+        """Apply the function to every pixel; see ``Kernel.map_pixels``."""
         values = self.evaluate(
             [pixels.reshape(-1, 4)], uniforms, resources, threads=threads, cancel=cancel
         )
@@ -218,9 +218,9 @@ class CpuKernel:
         progress: Progress | None,
         cancel: Cancel | None,
     ) -> NDArray[np.float32]:
-        """Rows of four floats from rows of four floats, as they lie in memory."""
+        """Map rows of four floats to rows of four floats, without a change of layout."""
         short = self._lanes - len(pixels)
-        if short > 0:  # a block is the least there is
+        if short > 0:  # a kernel computes at least one block
             pixels = np.pad(pixels, ((0, short), (0, 0)), mode="edge")
         source, target = np.ascontiguousarray(pixels), PICTURES.take(pixels.shape)
         tiles = -(-len(pixels) // (TILE_BLOCKS * self._lanes))
@@ -247,7 +247,7 @@ class CpuKernel:
         self.stats["render_s"] = time.perf_counter() - started
 
     def _run_frame(self, job: _KernelCall, cancel: Cancel | None) -> None:
-        """The per-frame part: at once, or watched in a thread when it may be long or large."""
+        """Run the per-frame part: directly, or in a watched thread if it may be long or large."""
         frame = self._frame
         assert frame is not None
         if self._interface["frame_apart"]:
@@ -258,7 +258,7 @@ class CpuKernel:
 
 
 class _KernelCall:
-    """The memory of one run, alive as long as a thread may touch it."""
+    """The memory of one run; it must exist as long as a thread may access it."""
 
     def __init__(
         self,
@@ -291,17 +291,17 @@ class _KernelCall:
         )
 
     def address(self) -> int:
-        """What a kernel is called with."""
+        """Return the pointer that a kernel is called with."""
         return int(self.words.ctypes.data)
 
     def set(self, **fields: int) -> None:
-        """Fill in fields of the job."""
+        """Set fields of the job."""
         for name, value in fields.items():
             self.words[JOB_FIELDS.index(name)] = value
 
 
 def _array(source: Any, type: Type) -> NDArray[Any]:
-    """A resource's array; what is one already has its texels in the order of their indices."""
+    """Return a resource's array; an array is returned unchanged (texels in index order)."""
     if isinstance(source, np.ndarray):
         return source
     assert isinstance(type, Texture | Buffer)

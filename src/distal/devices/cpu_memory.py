@@ -1,7 +1,7 @@
-"""Values between NumPy and a kernel's memory.
+"""Convert values between NumPy arrays and a kernel's memory.
 
-Input: arrays as users have them, and shapes as ``distal.backends.llvm.layout`` describes
-them. Output: runs of slots, one for each leaf, and back.
+Input: the user's arrays, and shapes as ``distal.backends.llvm.layout`` describes them. Output: runs
+of slots, one run for each leaf; and the reverse.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _STORED: Final = {"int": np.int32, "uint": np.uint32, "bool": np.int32}
 
 
 def float_type(precision: int) -> Any:
-    """The array type of a float."""
+    """Return the NumPy type of a float of 32 or 64 bits."""
     return np.float32 if precision == 32 else np.float64
 
 
@@ -29,7 +29,7 @@ def _slots(count: int, precision: int) -> _Array:
 
 
 def _put(slots: _Array, at: Any, kind: str, values: _Array) -> None:
-    """Write numbers of a kind into slots; an int takes a slot's first four bytes."""
+    """Write numbers of a kind into slots; an int occupies a slot's first four bytes."""
     if kind == "float":
         slots[at] = values
         return
@@ -44,7 +44,7 @@ def _put(slots: _Array, at: Any, kind: str, values: _Array) -> None:
 
 
 def _get(slots: _Array, kind: str) -> _Array:
-    """The numbers of a kind in slots."""
+    """Read numbers of a kind from slots."""
     if kind == "float":
         return slots.copy()
     whole = slots.view(np.int32) if slots.dtype == np.float32 else slots.view(np.int32)[::2]
@@ -52,10 +52,10 @@ def _get(slots: _Array, kind: str) -> _Array:
 
 
 class UniformSlots:
-    """Where a kernel's uniforms go. ``rows`` are (name, slot, shape, default), slot by slot.
+    """The slots of a kernel's uniforms. ``rows`` are (name, slot, shape, default), in slot order.
 
-    A scene of a thousand numbers has as many uniforms, each picture: hence one pass over the values
-    and one conversion of all, 0.1 ms, where an array for each took 4 ms.
+    A scene may have a thousand uniforms, which are written for each picture. So all values are
+    collected first and converted together: 0.1 ms, where one array for each uniform took 4 ms.
     """
 
     def __init__(self, rows: Sequence[Any], count: int, precision: int) -> None:
@@ -69,7 +69,7 @@ class UniformSlots:
         }
 
     def packed(self, values: Mapping[str, Any]) -> _Array:
-        """The values as slots."""
+        """Return the values as slots; missing ones take their defaults."""
         flat: list[Any] = []
         for name, default in self._rows:
             value = values.get(name, default)
@@ -87,7 +87,16 @@ class UniformSlots:
 
 
 def pack_resource(row: Sequence[Any], value: Any, precision: int) -> tuple[_Array, list[int]]:
-    """A texture's or buffer's numbers as slots, and its width (or count), height and depth."""
+    """Return a texture's or buffer's numbers as slots, and its width (or count), height and depth.
+
+    Args:
+        row: The resource's entry in the interface: name, kind of resource, shape of an element.
+        value: The array.
+        precision: Bits of a float, 32 or 64.
+
+    Raises:
+        ValueError: The array does not have the shape of such a resource.
+    """
     name, sort, shape = row
     kinds = kinds_in(shape)
     array = np.asarray(value)
@@ -106,7 +115,11 @@ def pack_resource(row: Sequence[Any], value: Any, precision: int) -> tuple[_Arra
 
 
 def shared_length(args: Sequence[Values]) -> int:
-    """How many points arguments are for: the longest row count."""
+    """Return the number of points of the arguments: the largest number of rows.
+
+    Raises:
+        ValueError: Two arguments have different numbers of rows, both greater than 1.
+    """
     counts = {len(array) for arg in args for array in _arrays(arg)}
     many = counts - {1}
     if len(many) > 1:
@@ -123,20 +136,28 @@ def _arrays(value: Values) -> list[_Array]:
 def pack_points(
     shapes: Sequence[Any], args: Sequence[Values], points: int, stride: int, precision: int
 ) -> _Array:
-    """Arguments as runs of ``stride`` slots, one for each leaf."""
+    """Return the arguments as runs of ``stride`` slots, one run for each leaf.
+
+    Args:
+        shapes: The shapes of the parameters.
+        args: The arguments, with one row for each point.
+        points: The number of points.
+        stride: Slots of a run: the points, padded to whole blocks.
+        precision: Bits of a float, 32 or 64.
+    """
     kinds = [k for shape in shapes for k in kinds_in(shape)]
     slots = _slots(max(1, len(kinds)) * stride, precision)
     leaves = [leaf for shape, arg in zip(shapes, args, strict=True) for leaf in _leaves(shape, arg)]
     for i, (kind, leaf) in enumerate(zip(kinds, leaves, strict=True)):
         run = slots[i * stride : (i + 1) * stride]
         _put(run, slice(None, points), kind, leaf)
-        # Lanes beyond the last point do what it does: no loop of theirs goes on for longer.
+        # Padding lanes repeat the last point, so their loops do not run longer.
         run[points:] = run[points - 1]
     return slots
 
 
 def _leaves(shape: Any, value: Values) -> list[_Array]:
-    """One array of numbers for each leaf."""
+    """Return one array of numbers for each leaf."""
     if "struct" in shape:
         return [
             leaf
@@ -165,7 +186,14 @@ def _at(value: Values, index: int) -> Values:
 
 
 def unpack_points(shape: Any, slots: _Array, points: int, stride: int) -> Values:
-    """A result out of runs of ``stride`` slots."""
+    """Return a result from runs of ``stride`` slots.
+
+    Args:
+        shape: The shape of the result.
+        slots: The slots.
+        points: The number of points.
+        stride: Slots of a run.
+    """
     kinds = kinds_in(shape)
     leaves = [_get(slots[i * stride : i * stride + points], k) for i, k in enumerate(kinds)]
     return _assembled(shape, iter(leaves), points)
@@ -188,7 +216,7 @@ def _assembled(shape: Any, leaves: Any, points: int) -> Values:
 
 
 def _stacked(elements: Sequence[Values]) -> Values:
-    """Elements side by side along the second axis; of structs, field by field."""
+    """Stack elements along the second axis; structs field by field."""
     if isinstance(elements[0], tuple):
         fields = zip(*elements, strict=True)
         return tuple(_stacked(list(field)) for field in fields)

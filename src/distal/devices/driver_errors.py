@@ -1,9 +1,9 @@
-"""Which of a GPU's own functions are too rough to draw with (decision 18).
+"""Measure which built-in functions of a GPU's driver are too inaccurate (decision 18).
 
-Input: an open GPU. Output: the names of the built-ins whose careful stand-in a
-program should have there, of those that the table has one for. Measured once for each open GPU, by
-a kernel of its own, at the same arguments and against the same error as a page measures
-(``web/src/trust.ts``; a test holds the two together).
+Input: an open GPU. Output: the names of the built-ins that a program should replace by their
+careful functions, among those that have one. The errors are measured once for each open GPU, by a
+separate kernel, at the same arguments and with the same limit as on a web page
+(``web/src/trust.ts``; a test compares the two).
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from distal.ir.types import FLOAT
 from distal.ir.walk import expressions_in
 
 NAMES: Final = tuple(row.name for row in INTRINSICS.values() if row.careful)
-COUNT: Final = 256  # arguments: exact in a shader, and all around the turn
-STEP: Final = 25 / 32  # between angles, to 99.6 either way; arcs are measured from -1 to 1
-# An angle near 100 is itself known to 4e-6, and folding it in 32 bits loses as much again.
+COUNT: Final = 256  # number of arguments; they are exact in a shader, and cover the whole circle
+STEP: Final = 25 / 32  # radians between angles, which reach ±99.6; arcs are measured from -1 to 1
+# A 32-bit angle near 100 has an error of 4e-6, and its reduction in 32 bits adds as much again.
 MOST: Final = 1e-5
 _ANGLES: Final = ("sin", "cos", "tan")
 
@@ -32,7 +32,7 @@ Measured = Callable[[Module, list[NDArray[np.float32]]], Any]
 
 
 def uses_rough(module: Module) -> bool:
-    """True when a module calls a built-in that drivers may compute roughly."""
+    """Return whether a module calls a built-in that drivers may compute inaccurately."""
     return any(
         isinstance(e, Builtin) and e.name in NAMES
         for function in module.functions
@@ -41,13 +41,16 @@ def uses_rough(module: Module) -> bool:
 
 
 def rough_names(run: Measured) -> frozenset[str]:
-    """The built-ins that are off by more than ``MOST``; ``run`` computes a function of points."""
+    """Return the built-ins whose error exceeds ``MOST``; ``run`` evaluates a module at points."""
     errors = measured_errors(run)
     return frozenset(name for name, error in errors.items() if not error <= MOST)
 
 
 def measured_errors(run: Measured) -> dict[str, float]:
-    """The greatest error of each; a tangent's as of its angle. NaN where one is no number."""
+    """Return the largest error of each built-in; NaN if a value is NaN.
+
+    The error of a tangent is converted to an error of its angle.
+    """
     place = np.arange(COUNT) + 0.5 - COUNT / 2
     arguments = [place * (STEP if name in _ANGLES else 2.0 / COUNT) for name in NAMES]
     which = np.repeat(np.arange(len(NAMES)), COUNT).astype(np.float32)
@@ -63,7 +66,7 @@ def measured_errors(run: Measured) -> dict[str, float]:
 
 
 def _module() -> Module:
-    """Of (which, x): the built-in of that number at x."""
+    """Return a function of (which, x): the value of built-in number ``which`` at x."""
     which, x = read("which", FLOAT), read("x", FLOAT)
     value: Expr = builtin(NAMES[-1], x)
     for i, name in enumerate(NAMES[:-1]):

@@ -1,7 +1,7 @@
-"""Objects put into memory and called.
+"""Load object files into memory and call their functions.
 
-Input: an object file. Output: functions that ctypes calls without Python's lock.
-LLVM's own loader does the work, as it knows every system's rules for executable memory.
+Input: an object file. Output: functions that ctypes calls without Python's global lock. LLVM's
+loader is used, because it handles the rules for executable memory of every system.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _LOADER_BYTES: Final = 16 * 2**20
 
 
 class Executable:
-    """An object file in memory that may be run; the memory is given back with the object."""
+    """An object file loaded into executable memory; the memory is freed with this object."""
 
     def __init__(self, code: bytes) -> None:
         llvm = llvm_binding()
@@ -27,7 +27,7 @@ class Executable:
         self._engine.finalize_object()
 
     def function(self, name: str) -> Callable[[int], None]:
-        """An exported function that takes one pointer; it keeps the object in memory."""
+        """Return an exported function, which takes one pointer; it keeps this object alive."""
         function = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(self._address(name))
 
         def call(pointer: int) -> None:

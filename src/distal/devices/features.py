@@ -1,8 +1,8 @@
-"""What the processor can do, and the vector shape that suits it.
+"""Detect the processor's feature level, and the vector shape for it.
 
-Input: the operating system's list of features, or a level by name. Output: a ``CpuLevel``: the
-processor that LLVM compiles for, and the lanes of a kernel. Needs no LLVM, so that a stored kernel
-is found without loading it.
+Input: the operating system's list of features, or the name of a level. Output: a ``CpuLevel``: the
+processor that LLVM compiles for, and the lanes of a kernel. Does not depend on LLVM, so a stored
+kernel is found without loading LLVM.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ class CpuLevel:
     """One feature level.
 
     Attributes:
-        name: How the command line and ``DISTAL_CPU`` spell it.
+        name: Its name on the command line and in ``DISTAL_CPU``.
         architecture: ``x86_64`` or ``aarch64``.
-        cpu: What LLVM compiles for. The level's own name rather than the machine's: kernels in the
-            cache serve every processor of the level, and LLVM knows all these names.
+        cpu: LLVM's name of the processor to compile for. It is the level's name, not the machine's:
+            kernels in the cache run on every processor of the level, and LLVM knows all names.
         width: Floats in one register.
-        chunks: Registers of each value in flight; measured with the raymarcher.
-        block_width: Pixels across in a block.
-        needs: Features in the spelling of Linux's ``/proc/cpuinfo``.
+        chunks: Registers that each value occupies; measured with the raymarcher.
+        block_width: Width of a block, in pixels.
+        needs: The required features, named as in Linux's ``/proc/cpuinfo``.
     """
 
     name: str
@@ -45,7 +45,7 @@ class CpuLevel:
     needs: tuple[str, ...]
 
     def lanes(self, precision: int) -> Lanes:
-        """The vector shape for a float of 32 or 64 bits: the same registers hold half as many."""
+        """Return the vector shape for floats of 32 or 64 bits (half as many per register)."""
         if precision == 64:
             return Lanes(self.width // 2, self.chunks, 64, self.block_width // 2, self.name)
         return Lanes(self.width, self.chunks, 32, self.block_width, self.name)
@@ -62,10 +62,10 @@ LEVELS: Final = (
 
 
 def level_named(name: str) -> CpuLevel:
-    """The level of that name.
+    """Return the level with this name.
 
     Raises:
-        ValueError: There is none.
+        ValueError: There is no such level.
     """
     for level in LEVELS:
         if level.name == name:
@@ -75,14 +75,14 @@ def level_named(name: str) -> CpuLevel:
 
 
 def machine() -> str:
-    """This machine's architecture: ``x86_64``, ``aarch64`` or another."""
+    """Return this machine's architecture: ``x86_64``, ``aarch64`` or another."""
     name = platform.machine().lower()
     return {"amd64": "x86_64", "arm64": "aarch64"}.get(name, name)
 
 
 @cache
 def host_features() -> frozenset[str]:
-    """The processor's features in Linux's spelling; empty where they are not known."""
+    """Return the processor's features, named as in Linux; empty if they are not known."""
     if machine() == "aarch64":
         return frozenset({"asimd"})
     if sys.platform.startswith("linux"):
@@ -119,7 +119,7 @@ def _from_sysctl() -> frozenset[str]:
 
 @cache
 def host_levels() -> tuple[CpuLevel, ...]:
-    """The levels this processor can run, the best first."""
+    """Return the levels that this processor can run, the best first."""
     features = host_features()
     here = machine()
     return tuple(
@@ -129,10 +129,10 @@ def host_levels() -> tuple[CpuLevel, ...]:
 
 
 def chosen_level(name: str | None = None) -> CpuLevel:
-    """The level to compile for: the named one, else ``DISTAL_CPU``'s, else the best.
+    """Return the level to compile for: the named one, else that in ``DISTAL_CPU``, else the best.
 
     Raises:
-        ValueError: No such level, or this processor cannot run it.
+        ValueError: There is no such level, or this processor cannot run it.
     """
     wanted = name or os.environ.get(FEATURES_VARIABLE) or None
     possible = host_levels()

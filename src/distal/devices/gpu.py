@@ -1,8 +1,8 @@
-"""The GPU device: a module as WGSL, computed or drawn by wgpu.
+"""The GPU device: a module as WGSL, which wgpu computes or draws.
 
-Input: a module fresh from the front end, then numbers. Output: pictures, values at
-points, or a picture drawn into somebody's texture. Large pictures go part by part, sized by
-measured time. A lost GPU is a ``DeviceError``; the next run opens it anew.
+Input: a module from the front end before any pass, then numbers. Output: pictures, values at
+points, or a picture drawn into a given texture. Large pictures are rendered in parts, sized by
+measured time. A lost GPU raises a ``DeviceError``; the next run opens it again.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ RunPasses = Callable[[Module, Target, int], Module]
 _PIXEL_BYTES: Final = 16
 _FORMAT: Final = "rgba32float"
 _ROW_BYTES: Final = 256  # WebGPU's alignment of a texture's rows in a buffer
-_LARGEST_PART: Final = 2**26  # bytes, of a part's output and again of what is read back
+_LARGEST_PART: Final = 2**26  # bytes of a part's output; the buffer to read it back is as large
 
 
 def prepare(
@@ -51,15 +51,16 @@ def prepare(
     """Compile a module for a GPU.
 
     Args:
-        module: As the front end made it, before any pass.
-        passes: Shapes it for a target and a precision; ``compiler.run_passes`` when None.
-        precision: Bits of a float; a GPU has 32.
-        path: "compute", or "fragment": images are drawn; functions are computed all the same.
-        adapter: A number or a part of a name; the best when None.
+        module: A module from the front end, before any pass.
+        passes: Runs the passes for a target and a precision; None: ``compiler.run_passes``.
+        precision: Bits of a float; only 32 is supported.
+        path: "compute", or "fragment", which draws images; functions always use compute.
+        adapter: A number or a part of a name; None: the best one.
 
     Raises:
-        CompileError: The scene says what WGSL cannot.
-        DeviceError: There is no such GPU, or it refuses the program.
+        CompileError: WGSL cannot express the scene.
+        DeviceError: There is no such GPU, or it rejects the program.
+        ValueError: There is no such path.
     """
     if path not in ("compute", "fragment"):
         raise ValueError(f"a GPU's path is compute or fragment, not '{path}'")
@@ -91,7 +92,7 @@ _ROUGH: Final[WeakKeyDictionary[Gpu, frozenset[str]]] = WeakKeyDictionary()
 
 
 def _rough_names(row: Adapter) -> frozenset[str]:
-    """The built-ins that an adapter's driver is too rough in; measured once while it is open."""
+    """Return the built-ins that an adapter's driver computes inaccurately; measured once."""
     gpu = opened(row)
     found = _ROUGH.get(gpu)
     if found is None:
@@ -100,7 +101,7 @@ def _rough_names(row: Adapter) -> frozenset[str]:
 
 
 def _drivers_own(row: Adapter, module: Module, points: list[NDArray[np.float32]]) -> Values:
-    """A function's values with all built-ins as the driver has them."""
+    """Return a function's values, computed with the driver's built-ins."""
     target = get_target("wgsl-compute")
     shaped = run_passes(module, target)
     return GpuKernel(shaped, emit(shaped, target), lambda: opened(row)).evaluate(points, {}, {})
@@ -110,8 +111,8 @@ class GpuKernel:
     """A compiled module on a GPU; see ``distal.devices.base.Kernel``.
 
     Attributes:
-        stats: Besides: ``adapter``, ``backend``, ``path``; after a run ``tiles``.
-        pace: How large parts are.
+        stats: As for ``Kernel``, and ``adapter``, ``backend``, ``path``; after a run ``tiles``.
+        tile_sizer: Determines the size of the parts.
     """
 
     def __init__(self, module: Module, artifact: Artifact, open_gpu: Callable[[], Gpu]) -> None:
@@ -131,7 +132,7 @@ class GpuKernel:
 
     @property
     def program(self) -> GpuProgram:
-        """The text on an open device: a new one where the last was lost."""
+        """The program on an open device; on a new device if the last one was lost."""
         return self._ready()
 
     def _ready(self) -> GpuProgram:
@@ -159,11 +160,11 @@ class GpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """The picture; see ``Kernel.render``. ``threads`` means nothing here.
+        """Render a picture; see ``Kernel.render``. ``threads`` is ignored.
 
         Raises:
-            Cancelled: ``cancel`` said so.
-            DeviceError: The GPU was lost, or has not the memory.
+            Cancelled: ``cancel`` stopped the work.
+            DeviceError: The GPU was lost, or has too little memory.
         """
         assert self._is_image, "a function has no picture"
         wanted = cancel_test(cancel)
@@ -204,7 +205,7 @@ class GpuKernel:
         across, down = program.interface["workgroup"]
         groups = (-(-tile.width // across), -(-tile.height // down))
         binding = program.interface["output"]["binding"]
-        # The whole buffer is bound: a bind group then serves parts of any size.
+        # Bind the whole buffer, so that one bind group works for parts of any size.
         program.encode_compute(encoder, groups, {binding: (output, output.size)})
         rows = self._read(program, encoder, output, size)
         part = picture[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width]
@@ -231,7 +232,7 @@ class GpuKernel:
         part[...] = whole[:, : tile.width]
         staging.unmap()
 
-    # Memory, kept between runs
+    # Memory, reused between runs
 
     def _output(self, program: GpuProgram, size: int) -> Any:
         usage = wgpu_module().BufferUsage
@@ -242,7 +243,7 @@ class GpuKernel:
         return self._buffer(program, "staging", size, usage.COPY_DST | usage.MAP_READ)
 
     def _buffer(self, program: GpuProgram, name: str, size: int, usage: int) -> Any:
-        """A buffer of at least that size; grown by half again, so that few are made."""
+        """Return a buffer of at least this size; it grows by half, so that few are created."""
         buffer = self._memory.get(name)
         if buffer is None or buffer.size < size:
             room = size if buffer is None else max(size, buffer.size * 3 // 2)
@@ -276,7 +277,7 @@ class GpuKernel:
         return self._mapped(program, encoder, staging, size)
 
     def _mapped(self, program: GpuProgram, encoder: Any, staging: Any, size: int) -> Any:
-        """Submit, wait, and return the mapped bytes; the caller unmaps them."""
+        """Submit the commands, wait, and return the mapped bytes; the caller unmaps them."""
         program.gpu.device.queue.submit([encoder.finish()])
         staging.map_async(wgpu_module().MapMode.READ, 0, size).sync_wait()
         return staging.read_mapped(0, size, copy=False)
@@ -293,7 +294,7 @@ class GpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """Values at points; see ``Kernel.evaluate``."""
+        """Return values at points; see ``Kernel.evaluate``."""
         assert not self._is_image, "an image has no points"
         points = cpu_memory.shared_length(args)
         if self._params == [VEC4] and self._result is VEC4:
@@ -303,7 +304,7 @@ class GpuKernel:
         if "compute" not in stages:
             raise DeviceError("this function's values do not fit a GPU's buffers: --device cpu")
         shapes, shape = [shape_of(t) for t in self._params], shape_of(self._result)
-        # cpu_memory's runs of slots for 32 bits are the words that the text reads and writes.
+        # The text reads and writes the same layout as cpu_memory's runs of 32-bit slots.
         source = cpu_memory.pack_points(shapes, args, points, points, 32).reshape(-1, points)
         leaves = len(kinds_in(shape))
         target = np.empty((max(1, leaves), points), np.float32)
@@ -325,7 +326,7 @@ class GpuKernel:
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """A picture of a picture; see ``Kernel.map_pixels``."""
+        """Apply the function to every pixel; see ``Kernel.map_pixels``."""
         flat = np.ascontiguousarray(pixels, np.float32).reshape(-1, 4)
         return self._mapped_pixels(flat, uniforms, resources, None, cancel).reshape(pixels.shape)
 
@@ -356,7 +357,7 @@ class GpuKernel:
         progress: Progress | None,
         cancel: Cancel | None,
     ) -> None:
-        """Some points after the other, sized by measured time like a picture's parts."""
+        """Run a function on parts of the points, which are sized by measured time."""
         wanted = cancel_test(cancel)
         with self._lock:
             program, started = self._ready(), time.perf_counter()
@@ -378,7 +379,7 @@ class GpuKernel:
             self.stats["render_s"] = time.perf_counter() - started
 
     def _call(self, given: NDArray[Any] | None, size: int, count: int) -> NDArray[np.float32]:
-        """Call the function for some points; a copy of the words it wrote."""
+        """Call the function for some points, and return a copy of the words that it wrote."""
         program = self._ready()
         usage, interface = wgpu_module().BufferUsage, program.interface
         output = self._output(program, size)
@@ -407,10 +408,10 @@ class GpuKernel:
         uniforms: Mapping[str, Any],
         resources: Mapping[str, Any],
     ) -> None:
-        """Draw the picture into a texture view of this device, and wait for nothing.
+        """Draw the picture into a texture view of this device, without waiting for the GPU.
 
         Args:
-            view: Of a texture of at least that size, which can be rendered to.
+            view: A view of a texture of at least this size that can be rendered to.
             format: The texture's format.
             width: Pixels across.
             height: Pixels down.

@@ -1,7 +1,7 @@
-"""What a program reads, in a GPU's memory: uniforms as bytes, textures and buffers uploaded once.
+"""A program's inputs in a GPU's memory: uniforms as bytes, textures and buffers uploaded once.
 
-Input: the interface of a WGSL text, values by name. Output: bytes, and bindings.
-Knows no pipelines.
+Input: the interface of a WGSL text, and values by name. Output: bytes, and bindings. Does not
+depend on pipelines.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _WORDS: Final = {"f": np.float32, "v": np.float32, "m": np.float32, "i": np.int3
 
 
 class UniformBytes:
-    """Where uniforms lie in their buffer.
+    """The layout of the uniforms in their buffer.
 
-    One pass over the values and one conversion for each kind of word: a scene has a thousand
-    numbers, and as many uniforms, each frame.
+    A scene may have a thousand uniforms, which are written for each frame. So all values are
+    collected first and converted together, once for each kind of word.
     """
 
     def __init__(self, interface: Mapping[str, Any]) -> None:
@@ -51,7 +51,12 @@ class UniformBytes:
     def packed(
         self, values: Mapping[str, Any], tile: Sequence[int] = (0, 0, 0, 0)
     ) -> NDArray[np.uint32]:
-        """The words of the buffer; ``tile`` says which part of a picture is computed."""
+        """Return the words of the buffer.
+
+        Args:
+            values: Values by name; missing ones take their defaults.
+            tile: The part of a picture to compute: x, y, width, height in pixels.
+        """
         flat: list[Any] = []
         for name, default, type in self._rows:
             value = values.get(name, default)
@@ -59,7 +64,7 @@ class UniformBytes:
                 flat.append(value)
             else:
                 array = np.asarray(value)
-                # Matrices come row by row and lie column by column.
+                # Matrices are given by rows and stored by columns.
                 flat.extend((array.T if type.startswith("mat") else array).ravel().tolist())
         numbers = np.array(flat, np.float64)  # 64 bits hold every int and uint exactly
         words = np.zeros(self._size // 4, np.uint32)
@@ -73,7 +78,7 @@ class UniformBytes:
 
 
 def _places(row: Mapping[str, Any]) -> list[int]:
-    """The word of each component of a uniform."""
+    """Return the index of the word of each component of a uniform."""
     first, type = row["offset"] // 4, row["type"]
     if type.startswith("mat"):
         size = int(type[3])
@@ -84,8 +89,11 @@ def _places(row: Mapping[str, Any]) -> list[int]:
 class Resources:
     """Textures and buffers in a GPU's memory.
 
-    They are uploaded again only when what they are made of has changed: another object, another
-    content of an array, another state of a file.
+    They are uploaded again only if their source has changed: another object, other content of an
+    array, or a modified file.
+
+    Attributes:
+        uploads: The number of uploads so far.
     """
 
     def __init__(self, gpu: Gpu, interface: Mapping[str, Any], types: Mapping[str, Type]) -> None:
@@ -93,13 +101,13 @@ class Resources:
         self._types = types
         self._textures = interface["textures"]
         self._buffers = interface["buffers"]
-        # The program's own tables, which are no one's to change.
+        # Constant tables of the program, which nobody can change.
         self._tables = {e["name"]: _values(e) for e in interface["buffers"] if "values" in e}
         self._known: dict[str, tuple[Any, Any]] = {}
         self.uploads = 0
 
     def bindings(self, device: Any, sources: Mapping[str, Any]) -> tuple[dict[int, Any], bool]:
-        """Binding to what is bound there; and whether any of it is new."""
+        """Return the object of each binding, and whether any of them is new."""
         found: dict[int, Any] = {}
         is_new = False
         for entry in self._textures:
@@ -121,7 +129,7 @@ class Resources:
             return known[1], False
         state = _state(source)
         array = source if isinstance(source, np.ndarray) else self._loaded(name, source)
-        if state is None:  # nested lists: only the array made of them can be compared
+        if state is None:  # nested lists: only their array can be compared
             if known is not None and _is_same(known[0], array):
                 return known[1], False
             state = array
@@ -148,7 +156,7 @@ class Resources:
             name, label = self._gpu.adapter.name, entry["name"]
             raise DeviceError(f"{name} has textures of up to {most} texels a side; '{label}' is"
                               " larger: --device cpu")  # fmt: skip
-        # Half floats where the GPU cannot filter whole ones: an error below 1/2000 of a value.
+        # Half floats if the GPU cannot filter 32-bit floats: a relative error below 1/2000.
         kind = np.float32 if self._gpu.filters_floats else np.float16
         data = np.ascontiguousarray(texels, kind)
         texture = device.create_texture(
@@ -168,7 +176,7 @@ class Resources:
             values = np.swapaxes(values.reshape(len(values), *[int(entry["element"][3])] * 2), 1, 2)
         if values.ndim > 1 and values.shape[-1] == 3:
             room = [(0, 0)] * (values.ndim - 1) + [(0, 1)]
-            values = np.pad(values, room)  # a column of three takes the space of four
+            values = np.pad(values, room)  # a column of three occupies the space of four
         bytes_ = np.ascontiguousarray(values)
         most = self._gpu.limit("max-storage-buffer-binding-size")
         if bytes_.nbytes > most:
@@ -179,12 +187,12 @@ class Resources:
 
 
 def _values(entry: Mapping[str, Any]) -> NDArray[Any]:
-    """The elements of a buffer of the program's own tables."""
+    """Return the elements of a buffer that holds a constant table."""
     return np.array(entry["values"], _WORDS.get(entry["element"][0], np.uint32))
 
 
 def view_dimension(entry: Mapping[str, Any]) -> str:
-    """What a texture's binding declares."""
+    """Return the view dimension of a texture's binding: "2d", "cube" or "3d"."""
     return _VIEWS[entry["type"]]
 
 
@@ -200,9 +208,9 @@ def _sampler(device: Any, entry: Mapping[str, Any]) -> Any:
 
 
 def _state(source: Any) -> Any:
-    """What identifies a source without loading it: its files' states, or a copy of its array.
+    """Return what identifies a source without loading it: its files' states, or a copy of its array.
 
-    An array is compared, not hashed: that reads 5 GB/s where a hash makes 1, and is exact.
+    Arrays are compared, not hashed: comparing reads 5 GB/s, hashing 1 GB/s, and it is exact.
     """
     data = source if isinstance(source, np.ndarray) else source.data
     if isinstance(data, np.ndarray):
@@ -218,7 +226,7 @@ def _state(source: Any) -> Any:
 
 
 def _is_same(known: Any, source: Any) -> bool:
-    """Whether a source is in the state that is known of it."""
+    """Return whether a source is still in the recorded state."""
     data = source if isinstance(source, np.ndarray) else source.data
     if isinstance(known, np.ndarray):
         return (

@@ -1,8 +1,8 @@
-"""A WGSL text as pipelines on an open device, with what they read and write.
+"""A WGSL text as pipelines on an open device, with their inputs and outputs.
 
-Input: an artifact, values by name. Output: commands in an encoder. What to bind
-where is read from the artifact's interface. Pipelines, buffers and bind groups are kept from one
-run to the next. Knows neither pictures nor time.
+Input: an artifact, and values by name. Output: commands in an encoder. The bindings are read from
+the artifact's interface. Pipelines, buffers and bind groups are reused between runs. Does not
+depend on pictures or time.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ LARGEST_DISPATCH: Final = 65535  # workgroups along one axis that every GPU allo
 
 
 class GpuProgram:
-    """One text on one device; the caller holds the device's lock (``Gpu.commands``).
+    """One text on one device; the caller must hold the device's lock (``Gpu.commands``).
 
     Attributes:
         gpu: The device.
         interface: The text's description of its inputs.
-        made: How many pipelines were made.
+        made: The number of pipelines created so far.
         resources: The author's textures and buffers.
     """
 
@@ -72,7 +72,7 @@ class GpuProgram:
             raise DeviceError(self._refused(error)) from error
 
     def _refused(self, error: BaseException) -> str:
-        """What is said of our text, on one line, with the author's place where it is known."""
+        """Return the error about the text on one line, with the author's place if it is known."""
         message = map_message(self._artifact, str(error))
         place, said = _PLACE.search(message), _SAID.search(message)
         where = f" at {place[1]}" if place else ""
@@ -82,11 +82,11 @@ class GpuProgram:
     # Pipelines
 
     def compute(self, entry: str) -> Any:
-        """The pipeline of an entry point."""
+        """Return the pipeline of a compute entry point."""
         return self._pipeline(entry, "")
 
     def fragment(self, format: str) -> Any:
-        """The pipeline that draws into textures of a format."""
+        """Return the pipeline that draws into textures of a format."""
         return self._pipeline("fragment_main", format)
 
     def _pipeline(self, entry: str, format: str) -> Any:
@@ -120,7 +120,7 @@ class GpuProgram:
     # Bindings
 
     def _kinds(self, sort: str, group: int) -> dict[int, dict[str, Any]]:
-        """Binding to what a layout says of it, used by the text or not."""
+        """Return the layout entry of each binding, even if the text does not use it."""
         interface = self.interface
         kinds: dict[int, dict[str, Any]] = {}
         if group == _READ:
@@ -133,7 +133,7 @@ class GpuProgram:
             return kinds
         kinds[interface["uniform_buffer"]["binding"]] = {"buffer": {"type": "uniform"}}
         if frame := interface.get("frame"):
-            # Written by one entry point and read by the others: two bindings of one buffer.
+            # One entry point writes it and the others read it: two bindings of one buffer.
             if sort == "frame":
                 kinds[frame["storage"]["binding"]] = {"buffer": {"type": "storage"}}
             else:
@@ -156,7 +156,7 @@ class GpuProgram:
         return layout
 
     def _group(self, sort: str, group: int, extra: Mapping[int, tuple[Any, int]]) -> Any:
-        """A bind group; the last one while it binds the same things."""
+        """Return a bind group; the previous one if it binds the same objects."""
         interface, things = self.interface, dict(self._bound)
         if group == _SHARED:
             things = {interface["uniform_buffer"]["binding"]: self._uniforms}
@@ -181,27 +181,33 @@ class GpuProgram:
     # Runs
 
     def load(self, sources: Mapping[str, Any]) -> None:
-        """Upload textures and buffers that have changed."""
+        """Upload the textures and buffers that have changed."""
         self._bound, is_new = self.resources.bindings(self._device, sources)
         if is_new:
             self._groups.clear()
 
     def set_uniforms(self, values: Mapping[str, Any], tile: Sequence[int] = (0, 0, 0, 0)) -> None:
-        """Write the uniforms; what is submitted from now on reads them."""
+        """Write the uniforms; commands that are submitted later read them."""
         message = self._uniform_bytes.packed(values, tile).tobytes()
         if message != self._written:
             self._device.queue.write_buffer(self._uniforms, 0, message)
             self._written = message
 
     def encode_frame(self, encoder: Any) -> None:
-        """The values that are the same in all pixels."""
+        """Encode the computation of the per-frame values."""
         if self._frame_buffer is not None:
             self._dispatch(encoder, "frame_main", "frame", {}, (1, 1))
 
     def encode_compute(
         self, encoder: Any, groups: tuple[int, int], extra: Mapping[int, tuple[Any, int]]
     ) -> None:
-        """The main entry point; ``extra``: binding to buffer and size, of its output and input."""
+        """Encode a call of the main compute entry point.
+
+        Args:
+            encoder: The command encoder.
+            groups: The number of workgroups in x and y.
+            extra: Buffer and size in bytes of the output and the input, by binding.
+        """
         entry = self.interface["stages"]["compute"]
         self._dispatch(encoder, entry, "compute", extra, groups)
 
@@ -221,7 +227,15 @@ class GpuProgram:
         step.end()
 
     def encode_draw(self, encoder: Any, view: Any, format: str, width: int, height: int) -> None:
-        """The fragment entry point, into the upper left part of a view."""
+        """Encode a drawing into the upper left part of a texture view.
+
+        Args:
+            encoder: The command encoder.
+            view: The texture view.
+            format: The texture's format.
+            width: Pixels across.
+            height: Pixels down.
+        """
         clear = {"view": view, "load_op": "clear", "store_op": "store"}
         step = encoder.begin_render_pass(color_attachments=[clear])
         step.set_pipeline(self.fragment(format))

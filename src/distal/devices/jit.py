@@ -1,4 +1,4 @@
-"""LLVM text to machine code. The only module that loads LLVM.
+"""Compile LLVM text to machine code. The only module that loads LLVM.
 
 Input: a module's text and a feature level. Output: an object file.
 """
@@ -19,12 +19,12 @@ from distal.diagnostics import printable
 from distal.packages import loading
 
 _APART: Final = "from distal.devices.jit import _serve; _serve()"
-_LLVM_BYTES: Final = 32 * 2**20  # its tables of targets and a loader, with a margin
+_LLVM_BYTES: Final = 32 * 2**20  # for LLVM's tables of targets and a loader, with a margin
 
 
 @cache
 def llvm_binding() -> Any:
-    """LLVM, ready for this machine; loaded when something is compiled or run, 30 to 50 ms."""
+    """Return LLVM's binding, initialised for this machine; loading it takes 30 to 50 ms."""
     with loading("llvmlite"):
         llvm = importlib.import_module("llvmlite.binding")
         assert llvm.ffi.lib is not None  # loads the library itself
@@ -35,7 +35,7 @@ def llvm_binding() -> Any:
 
 
 def machine_here() -> Any:
-    """A target machine of this system, for loading."""
+    """Return a target machine of this system, for loading code."""
     llvm = llvm_binding()
     return llvm.Target.from_triple(_triple(architecture_here())).create_target_machine(
         codemodel="jitdefault"
@@ -46,14 +46,14 @@ def _triple(architecture: str) -> str:
     if architecture != architecture_here():
         return f"{architecture}-unknown-linux-gnu"
     triple: str = llvm_binding().get_process_triple()
-    # The loader reads ELF on every system; Windows' own format lacks what large stacks need.
+    # The loader reads ELF on every system; Windows' format does not support large stacks.
     return f"{triple}-elf" if sys.platform == "win32" else triple
 
 
 def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:
-    """What is left for LLVM to do: the IR's own passes have inlined, folded and shared.
+    """Return LLVM's passes. They are few, because the IR's passes already inline, fold and share.
 
-    Value numbering and the like were tried: they took 20 ms and made no picture faster.
+    Value numbering and similar passes took 20 ms and made no picture faster.
     """
     options = llvm.create_pipeline_tuning_options(speed_level=2)
     builder = llvm.create_pass_builder(machine, options)
@@ -65,11 +65,16 @@ def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:
 
 
 def compile_object(text: str, level: CpuLevel, *, assembly: bool = False) -> Any:
-    """The object file of a module, or its assembly text.
+    """Return the object file of a module, or its assembly text.
+
+    Args:
+        text: The module in LLVM's language.
+        level: The CPU feature level to compile for.
+        assembly: Whether to return assembly text.
 
     Raises:
         PackageError: LLVM is missing or cannot be loaded.
-        MemoryError: A limit of this process leaves LLVM too little.
+        MemoryError: A limit of this process leaves too little memory for LLVM.
     """
     if is_limited():
         return _compiled_apart(text, level, assembly)
@@ -77,7 +82,7 @@ def compile_object(text: str, level: CpuLevel, *, assembly: bool = False) -> Any
 
 
 def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
-    """The same in a process of its own: LLVM ends the process where it gets no memory."""
+    """Compile in a separate process, because LLVM ends its process if it gets no memory."""
     path = os.pathsep.join(filter(None, sys.path))
     made = subprocess.run(
         [sys.executable, "-c", _APART, level.name, str(int(assembly))],
@@ -93,7 +98,7 @@ def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
 
 
 def _serve() -> None:
-    """Compile the text on stdin; what ``_compiled_apart`` runs."""
+    """Compile the text on stdin; runs in the process that ``_compiled_apart`` starts."""
     name, assembly = sys.argv[1:]
     text = sys.stdin.buffer.read().decode()
     made = _compiled(text, level_named(name), assembly == "1")
@@ -104,11 +109,11 @@ def _serve() -> None:
 def _compiled(text: str, level: CpuLevel, assembly: bool) -> Any:
     llvm = llvm_binding()
     if level.architecture != architecture_here():
-        # Every target there is, which takes a tenth of a second.
+        # Initialise all targets, which takes a tenth of a second.
         llvm.initialize_all_targets()
         llvm.initialize_all_asmprinters()
     triple = _triple(level.architecture)
-    # Reserved on macOS; elsewhere one register of thirty is no loss.
+    # macOS reserves x18; on other systems, one register less of thirty does not matter.
     features = "+reserve-x18" if level.architecture == "aarch64" else ""
     machine = llvm.Target.from_triple(triple).create_target_machine(
         cpu=level.cpu, features=features, opt=2, codemodel="jitdefault"

@@ -1,8 +1,8 @@
-"""The name under which machine code is kept: everything that the code depends on.
+"""Make the cache key of machine code from everything that the code depends on.
 
-Input: what is compiled, and for which CPU level. Output: a key for ``Cache``, made
-without loading LLVM. The one place that makes keys, so that no kind of kernel can leave out the
-level, the compiler or the version.
+Input: the source of the code, and its CPU level. Output: a key for ``Cache``, made without loading
+LLVM. All keys are made here, so that no kind of kernel can omit the level, the compiler or the
+version.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Final
 from distal.devices.features import CpuLevel
 from distal.version import __version__
 
-# What turns a module from the front end into machine code; the front end too, since passes link
-# functions of the prelude, which it lowers.
+# The packages that turn a module into machine code. The front end is included, because passes link
+# functions of the prelude, which the front end lowers.
 _COMPILER: Final = (
     *("ir", "passes", "backends/llvm", "devices", "frontend", "lang/prelude"),
     *("backends/base.py", "compiler"),
@@ -29,12 +29,12 @@ _LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")
 
 
 def kernel_key(level: CpuLevel, precision: int, *compiled: str) -> str:
-    """Names machine code.
+    """Return the cache key of machine code.
 
     Args:
         level: The CPU level that it is compiled for.
         precision: Bits of a float or of a result.
-        compiled: What is compiled, as texts.
+        compiled: Texts that identify what is compiled.
     """
     parts = (
         compiled,
@@ -50,7 +50,7 @@ def kernel_key(level: CpuLevel, precision: int, *compiled: str) -> str:
 
 @cache
 def compiler_sources() -> str:
-    """A fingerprint of the compiler itself, so that a change of it never meets its old kernels."""
+    """Return a fingerprint of the compiler's files: a changed compiler does not use old kernels."""
     root = Path(__file__).parent.parent
     rows: list[tuple[str, int, int]] = []
     for name in _COMPILER:
@@ -73,9 +73,9 @@ def _python_files(place: Path) -> list[str]:
 
 @cache
 def llvm_fingerprint() -> tuple[object, ...]:
-    """Tells one installed LLVM from another, without loading it: its version, and its library.
+    """Return a fingerprint of the installed LLVM without loading it: its version and its library.
 
-    Sizes and times alone do not: some installers give every file the same time.
+    Sizes and times alone are not enough: some installers give every file the same time.
     """
     spec = importlib.util.find_spec("llvmlite")
     if spec is None or spec.origin is None:

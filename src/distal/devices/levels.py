@@ -1,8 +1,8 @@
-"""Floats to the levels of 8 or 16 bits, by machine code: each frame of a video passes through here.
+"""Quantise floats to 8 or 16 bits in machine code; every frame of a video uses it.
 
-Input: an array of float32. Output: the nearest levels, as ``film.png.quantise``
-defines them. NumPy makes five passes in doubles over memory for it: 640x480 pixels take 3.4 ms of
-one core, here 0.3 ms.
+Input: an array of float32. Output: the nearest levels, as ``distal.images.png.quantise`` defines
+them. NumPy needs five passes over memory in doubles: 640x480 pixels take 3.4 ms on one core, here
+0.3 ms.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from distal.devices.kernel_key import kernel_key
 from distal.packages import PackageError
 
 _NAME: Final = "levels"
-_WIDTH: Final = 16  # values at once, whatever the machine's registers hold
+_WIDTH: Final = 16  # values per vector, independent of the machine's registers
 
 
 def levels(values: NDArray[np.float32], bits: int) -> NDArray[Any] | None:
-    """The nearest level of each value, NaN as 0; None where this machine runs no code of ours.
+    """Return the nearest level of each value, 0 for NaN; None if this machine cannot run the code.
 
     Args:
-        values: Any shape.
+        values: Values, 0 to 1 for the full range; any shape.
         bits: 8 or 16.
     """
     code = _code(bits)
@@ -49,7 +49,7 @@ def _code(bits: int) -> Executable | None:
         return None
     try:
         return _made(level, bits)
-    except (PackageError, MemoryError):  # the reference needs no LLVM
+    except (PackageError, MemoryError):  # the caller then uses NumPy
         return None
 
 
@@ -65,7 +65,7 @@ def _made(level: CpuLevel, bits: int) -> Executable:
 
 
 def _text(bits: int) -> str:
-    """LLVM's text: whole runs of values first, then those that are left, one by one."""
+    """Return the LLVM text: a loop over whole vectors, then a loop over single values."""
     return f"""
 define void @{_NAME}(ptr %job) {{
 entry:
@@ -89,7 +89,7 @@ end:
 
 
 def _loop(name: str, before: str, first: str, last: str, after: str, bits: int, width: int) -> str:
-    """A loop over values, ``width`` of them at once."""
+    """Return the text of a loop over values, ``width`` values at a time."""
 
     def of(element: str) -> str:
         return element if width == 1 else f"<{width} x {element}>"

@@ -1,7 +1,7 @@
-"""Whether this process may take only so much memory, and whether enough of it is left.
+"""Check whether this process has a memory limit, and whether enough memory is left.
 
-Input: how many bytes some work needs. Output: nothing, or a ``MemoryError``. Python
-and NumPy raise one by themselves; LLVM ends the process, so it is asked for beforehand.
+Input: how many bytes some work needs. Output: nothing, or a ``MemoryError``. Python and NumPy raise
+it themselves. LLVM ends the process if it gets no memory, so the memory is checked before.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ except ImportError:  # Windows has no such limits
 
 
 def is_limited() -> bool:
-    """Whether the address space or the data of this process has a limit, as ``ulimit -v`` sets."""
+    """Return whether this process has a limit on its address space or data (``ulimit -v``)."""
     if resource is None:
         return False
     limits = (resource.RLIMIT_AS, resource.RLIMIT_DATA)
@@ -23,14 +23,14 @@ def is_limited() -> bool:
 
 
 def require(size: int, purpose: str) -> None:
-    """Refuse work that needs more memory than the limit leaves.
+    """Check that some work does not need more memory than the limit leaves.
 
     Args:
-        size: Bytes.
-        purpose: What they are for, in words.
+        size: Bytes that the work needs.
+        purpose: The work, in words, for the message.
 
     Raises:
-        MemoryError: They are not there.
+        MemoryError: There is not enough memory.
     """
     if not is_limited():
         return

@@ -1,8 +1,8 @@
-"""Memory for pictures, used again.
+"""A pool that reuses the memory of pictures.
 
-A fresh picture of 640x480 is 1,200 pages that the system clears and maps when they are first
-touched, which took as long as rendering it. So memory goes back to a small pool when the last array
-on it is gone.
+A new picture of 640x480 has 1,200 pages that the system clears and maps at their first access,
+which took as long as rendering. So memory returns to a small pool when the last array that uses it
+is deleted.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import weakref
 import numpy as np
 from numpy.typing import NDArray
 
-_KEPT_BYTES = 64 * 2**20  # small next to a process that renders; enough for several pictures
-_SMALLEST = 2**16  # below, the allocator does as well
+_KEPT_BYTES = 64 * 2**20  # small compared with a rendering process; enough for several pictures
+_SMALLEST = 2**16  # bytes; for smaller arrays the allocator is as fast
 
 
 class _Lease:
-    """What an array's memory belongs to while somebody holds the array."""
+    """The owner of an array's memory, as long as the array is in use."""
 
     def __init__(self, memory: mmap.mmap, shape: tuple[int, ...]) -> None:
         self.memory = memory
@@ -43,16 +43,16 @@ def _mapped(size: int) -> mmap.mmap:
 
 
 class Pool:
-    """Blocks of memory that nobody holds, by size."""
+    """Unused blocks of memory, by size."""
 
     def __init__(self) -> None:
         self._free: dict[int, list[mmap.mmap]] = {}
         self._bytes = 0
-        # Given back from wherever an array dies, perhaps inside ``take``: the lock must allow that.
+        # An array can be deleted anywhere, even inside ``take``, so the lock must be reentrant.
         self._lock = threading.RLock()
 
     def take(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
-        """An array whose content is not set."""
+        """Return an array with undefined content."""
         size = int(np.prod(shape)) * 4
         if size < _SMALLEST:
             return np.empty(shape, np.float32)

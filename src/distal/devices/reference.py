@@ -1,7 +1,7 @@
-"""The reference device: the NumPy backend as a kernel. Slow, and right by definition.
+"""The reference device: the NumPy backend as a kernel. Slow, and correct by definition.
 
-Input: a lowered module, then plain arrays. Output: pictures and results. Nothing
-is compiled, so a kernel is ready at once; threads are not used.
+Input: a lowered module, then plain arrays. Output: pictures and results. Nothing is compiled, so a
+kernel is ready immediately; threads are not used.
 """
 
 from __future__ import annotations
@@ -38,16 +38,22 @@ RunPasses: TypeAlias = Callable[[Module, Target, int], Module]
 def prepare(
     module: Module, passes: RunPasses | None = None, precision: int = 32
 ) -> ReferenceKernel:
-    """The kernel of a module as the front end made it; ``passes`` as for the CPU device."""
+    """Return the kernel of a module.
+
+    Args:
+        module: A module from the front end, before any pass.
+        passes: Runs the passes for a target and a precision; None: ``compiler.run_passes``.
+        precision: Bits of a float, 32 or 64.
+    """
     shaped = (passes or run_passes)(module, get_target("numpy"), precision)
     return ReferenceKernel(shaped, precision)
 
 
 class ReferenceKernel:
-    """Runs one module.
+    """A kernel that interprets one module; see ``distal.devices.base.Kernel``.
 
     Attributes:
-        stats: What ``--stats`` tells.
+        stats: The statistics that ``--stats`` prints.
     """
 
     def __init__(self, module: Module, precision: int) -> None:
@@ -66,10 +72,10 @@ class ReferenceKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """The picture: float32 (height, width, 4), top row first.
+        """Render a picture; see ``Kernel.render``. ``threads`` is ignored.
 
         Raises:
-            Cancelled: ``cancel`` asked for it.
+            Cancelled: ``cancel`` stopped the work.
         """
         return reference.render(
             self._module,
@@ -92,11 +98,7 @@ class ReferenceKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """The function's value for every row of the arguments.
-
-        Arrays have one row for each point (or a single row for all): scalars (n,), vectors
-        (n, size), matrices (n, rows, columns), arrays (n, length, ...); structs are tuples.
-        """
+        """Return the function's values at points; see ``Kernel.evaluate``."""
         entry = self._module.function(self._module.entry)
         values = [to_lanes(arg, param.type) for arg, param in zip(args, entry.params, strict=True)]
         result = reference.evaluate(
@@ -119,12 +121,12 @@ class ReferenceKernel:
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """A picture of a picture; see ``Kernel.map_pixels``."""
+        """Apply the function to every pixel; see ``Kernel.map_pixels``."""
         values = self.evaluate([pixels.reshape(-1, 4)], uniforms, resources, cancel=cancel)
         return np.asarray(values, np.float32).reshape(pixels.shape)
 
     def _arrays(self, resources: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-        """The arrays of the resources; what is an array already is one in the texels' order."""
+        """Return the arrays of the resources; arrays are unchanged (texels in index order)."""
         arrays = {}
         for declaration in self._module.resources:
             source, type = resources[declaration.name], declaration.type
@@ -152,13 +154,13 @@ def _poll(cancel: Cancel | None) -> Callable[[], None]:
 
 
 def to_lanes(data: Values, type: Type) -> Value:
-    """Rows of points as the reference's values, whose last axis counts the points."""
+    """Convert rows of points to values of the reference, whose last axis is the points."""
     match type:
         case Scalar() | Vector() | Matrix():
-            # Components last become components first; a matrix's rows its columns' components.
+            # The axis of components moves from last to first; (row, column) becomes (column, row).
             return np.asarray(data).T
         case Array(element, length):
-            # An array of structs comes as a tuple of their fields' arrays, like a single one.
+            # An array of structs is given as a tuple of its fields' arrays, like a single struct.
             return tuple(to_lanes(_item(data, i), element) for i in range(length))
         case Struct(_, fields):
             return tuple(to_lanes(v, t) for v, (_, t) in zip(data, fields, strict=True))
@@ -169,21 +171,27 @@ def to_lanes(data: Values, type: Type) -> Value:
 
 
 def _item(data: Values, position: int) -> Values:
-    """One element of the array that every row holds."""
+    """Return one element of the array that every row contains."""
     if isinstance(data, tuple):
         return tuple(_item(part, position) for part in data)
     return data[:, position]
 
 
 def _stacked(parts: Sequence[Values]) -> Values:
-    """The array that every row holds, from its elements."""
+    """Return the array that every row contains, from its elements."""
     if isinstance(parts[0], tuple):
         return tuple(_stacked(fields) for fields in zip(*parts, strict=True))
     return np.stack([np.asarray(part) for part in parts], axis=1)
 
 
 def from_lanes(value: Value, type: Type, points: int) -> Values:
-    """The reference's values as rows of points."""
+    """Convert values of the reference to rows of points.
+
+    Args:
+        value: The value; its last axis is the points.
+        type: The type of the value.
+        points: The number of points; a value that is the same at all points is repeated.
+    """
     match type:
         case Scalar() | Vector() | Matrix():
             assert isinstance(value, np.ndarray)

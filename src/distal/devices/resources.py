@@ -1,9 +1,9 @@
-"""The data of textures and buffers, from what the author declared to arrays for a device.
+"""Load the data of textures and buffers into arrays for a device.
 
-Input: a declared resource and its type: a file's path, an array, nested lists. Output: texels as
+Input: a declared resource (a file's path, an array, nested lists) and its type. Output: texels as
 float32 (height, width, 4), depth or face first for volumes and cubes, in the order of their
-indices; buffers as (n,) or (n, size). Values of pictures are taken as they stand in the file, 0 to
-1. It knows no device.
+indices; buffers as (n,) or (n, size). Values of pictures are scaled to 0 to 1 and otherwise
+unchanged. Does not depend on devices.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ _COMPONENT: dict[Kind, Any] = {Kind.FLOAT: np.float32, Kind.INT: np.int32, Kind.
 
 
 def load(source: Any, type: Texture | Buffer) -> NDArray[Any]:
-    """The array of a resource.
+    """Return the array of a resource.
 
     Raises:
-        LoadError: A file cannot be read, or the data has not the shape of such a resource.
+        LoadError: A file cannot be read, or the data does not have the shape of such a resource.
     """
     if isinstance(type, Buffer):
         return _buffer(source.data, type)
@@ -32,14 +32,18 @@ def load(source: Any, type: Texture | Buffer) -> NDArray[Any]:
 
 
 def texels(data: Any, shape: TextureShape) -> NDArray[np.float32]:
-    """The texels of a texture; texel (0, 0) of a picture is its lower left one."""
+    """Return the texels of a texture; texel (0, 0) of a picture is at its lower left.
+
+    Raises:
+        LoadError: A file cannot be read, or the data does not have the shape of such a texture.
+    """
     match shape:
         case TextureShape.FLAT:
             return np.ascontiguousarray(_picture(data)[::-1])
         case TextureShape.VOLUME:
             return _with_channels(_numbers(data), 3)
         case TextureShape.CUBE:
-            # A cube's faces are seen from inside, top row first, as OpenGL has them.
+            # A cube's faces are seen from inside, top row first, as in OpenGL.
             faces = [_picture(face) for face in _parts(data)]
             if {face.shape for face in faces} != {faces[0].shape} or len(faces) != 6:
                 raise LoadError("a TextureCube takes six pictures of one size")
@@ -60,7 +64,7 @@ def _parts(data: Any) -> list[Any]:
 
 
 def _picture(data: Any) -> NDArray[np.float32]:
-    """A picture, top row first, (height, width, 4)."""
+    """Return a picture: (height, width, 4), top row first."""
     if not isinstance(data, str | Path):
         return _with_channels(_numbers(data), 2)
     from PIL import Image  # noqa: PLC0415 (only a file's data needs it)
@@ -68,7 +72,7 @@ def _picture(data: Any) -> NDArray[np.float32]:
     try:
         with Image.open(data) as picture:
             return _with_channels(np.asarray(picture.convert("RGBA")), 2)
-    except Exception as error:  # Pillow raises of every kind on broken files
+    except Exception as error:  # Pillow raises many kinds of exceptions for broken files
         raise LoadError(f"the texture '{data}' cannot be read: {printable(error)}") from error
 
 
@@ -85,7 +89,7 @@ def _numbers(data: Any) -> NDArray[Any]:
 
 
 def _with_channels(array: NDArray[Any], axes: int) -> NDArray[np.float32]:
-    """RGBA from grey, RGB or RGBA; bytes become 0 to 1."""
+    """Return RGBA from grey, RGB or RGBA; bytes are scaled to 0 to 1."""
     if array.ndim == axes:
         array = np.repeat(array[..., None], 3, axis=-1)
     if array.ndim != axes + 1 or array.shape[-1] not in (3, 4) or array.size == 0:

@@ -1,8 +1,8 @@
-"""One kernel run by several threads, watched by the caller's.
+"""Run one kernel in several threads, watched by the calling thread.
 
-Input: a function that several threads may call at once and that returns when nothing is
-left to do, a counter it advances, a flag it obeys. Output: nothing; it is done, or it was
-ended. The caller's own thread only waits, so that ctrl-C and ``cancel`` act at once.
+Input: a function that several threads may call at the same time and that returns when no work is
+left, a counter that it advances, and a flag that stops it. Output: nothing; the work is finished or
+was stopped. The calling thread only waits, so that ctrl-C and ``cancel`` take effect immediately.
 """
 
 from __future__ import annotations
@@ -18,20 +18,26 @@ from numpy.typing import NDArray
 
 from distal.devices.base import Cancel, Cancelled, Progress, cancel_test
 
-_WATCH_S: Final = 0.02  # how long a request to end may wait
-_STACK_BYTES: Final = 16 * 2**20  # twice what the LLVM backend gives to arrays
-_STARTING: Final = threading.Lock()  # the size of stacks is the whole process's
+_WATCH_S: Final = 0.02  # longest delay of a request to stop
+_STACK_BYTES: Final = 16 * 2**20  # twice the LLVM backend's limit for arrays
+_STARTING: Final = threading.Lock()  # the stack size is a setting of the whole process
 
 
 def usable_threads() -> int:
-    """How many processors this process may use."""
+    """Return how many processors this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 class Work:
-    """What the threads of one run share."""
+    """The state that the threads of one run share.
+
+    Attributes:
+        counter: The number of the next piece; the kernel advances it.
+        stop: Not 0 to stop the work.
+        pieces: The number of pieces.
+    """
 
     def __init__(self, counter: NDArray[Any], stop: NDArray[Any], pieces: int) -> None:
         self.counter = counter
@@ -39,7 +45,7 @@ class Work:
         self.pieces = pieces
 
     def done(self) -> float:
-        """The finished share; pieces being worked on count as done."""
+        """Return the fraction of the work that is done; pieces in progress count as done."""
         return min(1.0, float(self.counter[0]) / max(1, self.pieces))
 
 
@@ -50,10 +56,20 @@ def run(
     progress: Progress | None,
     cancel: Cancel | None,
 ) -> int:
-    """Run to the end; the number of threads used.
+    """Run the work to its end, and return the number of threads used.
+
+    Args:
+        work: The state that the threads share.
+        function: The kernel; each thread calls it once.
+        threads: The number of threads; None uses all processors of this process.
+        progress: Called regularly with the fraction of the work that is done.
+        cancel: Called regularly; True stops the work.
 
     Raises:
-        Cancelled: ``cancel`` said so.
+        Cancelled: ``cancel`` stopped the work.
+        MemoryError: The system cannot start a thread.
+        TypeError: ``threads`` is not a whole number.
+        ValueError: ``threads`` is below 1.
     """
     count = max(1, min(_checked(threads) or usable_threads(), work.pieces))
     failures: list[BaseException] = []
@@ -64,7 +80,7 @@ def run(
         except BaseException as error:
             failures.append(error)
 
-    # Daemon threads: a cancelled run ends soon, but an interpreter that exits does not wait for it.
+    # Daemon threads, because an exiting interpreter must not wait for them.
     workers = [threading.Thread(target=worker, daemon=True) for _ in range(count)]
     started: list[threading.Thread] = []
     try:
@@ -74,7 +90,7 @@ def run(
         work.stop[0] = 1
         raise
     finally:
-        # The kernel writes into arrays that the caller is about to drop.
+        # Wait for the threads: they write into arrays that the caller may free.
         for thread in started:
             thread.join()
     if failures:
@@ -105,7 +121,7 @@ def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> 
                     thread.start()
                 except (
                     RuntimeError
-                ):  # the system starts no more threads; the running ones do all the work
+                ):  # the system cannot start more threads; those that run do all the work
                     if not started:
                         raise MemoryError("the system starts no thread") from None
                     break

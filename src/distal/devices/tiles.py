@@ -1,9 +1,9 @@
-"""Cut a large picture into parts that are short enough for the GPU's driver.
+"""Split a large picture into parts that are short enough for the GPU's driver.
 
-Input: a picture's size and the time that each part took. Output: the next part.
-Drivers reset a GPU that works on one submission for more than about two seconds (Windows) or five
-to ten (Linux), and a window on the same GPU does not react meanwhile. So parts are sized by
-measured time. Knows no GPU.
+Input: a picture's size, and the time that each part took. Output: the next part. Drivers reset a
+GPU that works on one submission for more than about two seconds (Windows) or five to ten (Linux),
+and a window on the same GPU does not react during this time. So parts are sized by measured time.
+Does not depend on GPUs.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from dataclasses import dataclass
 from typing import Final
 
 TARGET_S: Final = (
-    0.05  # time of a part: ``cancel`` is checked 20 times a second, and little time is lost
+    0.05  # time of a part: ``cancel`` is checked 20 times per second, with little overhead
 )
-WHOLE_S: Final = 0.1  # a picture that is expected to take no longer is one part
+WHOLE_S: Final = 0.1  # a picture whose expected time is at most this is one part
 FIRST_PIXELS: Final = 64 * 64  # 0.2 s at 50 µs a pixel: a slow scene in software
-_GROWTH: Final = 8  # largest factor from one part to the next: the first pixels may be the fastest
+_GROWTH: Final = 8  # largest growth from one part to the next: the first pixels may be the fastest
 _ROW: Final = 8  # sides of workgroups
 
 
 @dataclass(frozen=True, slots=True)
 class Tile:
-    """A part of a picture in pixels, its corner counted from the top left."""
+    """A part of a picture, in pixels; x and y are its corner, from the top left."""
 
     x: int
     y: int
@@ -32,16 +32,16 @@ class Tile:
 
     @property
     def pixels(self) -> int:
-        """How many there are."""
+        """The number of pixels."""
         return self.width * self.height
 
 
 class TileSizer:
-    """How fast one kernel is, and how large its next part may be.
+    """Measures the speed of one kernel, and determines the size of its next part.
 
     Attributes:
-        most: The most pixels of a part, whatever the time says: what fits a binding; 8 or more.
-        first: The pixels of the very first part.
+        most: The maximum pixels of a part, limited by the size of a binding; 8 or more.
+        first: The pixels of the first part.
     """
 
     def __init__(self, most: int, first: int = FIRST_PIXELS) -> None:
@@ -54,7 +54,7 @@ class TileSizer:
         self._is_warm = False  # the driver has compiled the program
 
     def start(self, pixels: int) -> int:
-        """The budget of a picture's first part, in pixels."""
+        """Begin a picture, and return the size limit of its first part, in pixels."""
         self._pixels, self._seconds = 0, 0.0
         rate = self._part_rate = self._picture_rate
         if rate <= 0.0:
@@ -68,13 +68,13 @@ class TileSizer:
 
     def measured(self, tile: Tile, seconds: float) -> None:
         """Record how long a part took."""
-        if not self._is_warm:  # drivers compile at the first use: not a measure of speed
+        if not self._is_warm:  # drivers compile at the first use, so its time is not measured
             self._is_warm = True
             return
         self._pixels += tile.pixels
         self._seconds += max(seconds, 1e-6)
         self._picture_rate = self._pixels / self._seconds
-        # The slower of two neighbours predicts the next part.
+        # The slower of the last two parts predicts the next part.
         rate = tile.pixels / max(seconds, 1e-6)
         slower = min(rate, self._part_rate or rate)
         self._part_rate = rate
@@ -82,14 +82,19 @@ class TileSizer:
         self._budget = max(1, min(grown, self.most))
 
     def next(self) -> int:
-        """The budget of the next part, in pixels."""
+        """Return the size limit of the next part, in pixels."""
         return self._budget
 
 
 def tiles(width: int, height: int, tile_sizer: TileSizer) -> Iterator[Tile]:
-    """The parts of a picture, top row first, each sized when it is requested.
+    """Yield the parts of a picture, top row first; each is sized when it is requested.
 
     The caller reports each part's time to ``tile_sizer`` before it requests the next part.
+
+    Args:
+        width: Pixels across.
+        height: Pixels down.
+        tile_sizer: Determines the size of the parts.
     """
     y, budget = 0, tile_sizer.start(width * height)
     while y < height:
@@ -98,7 +103,7 @@ def tiles(width: int, height: int, tile_sizer: TileSizer) -> Iterator[Tile]:
             rows -= rows % _ROW if rows < height - y else 0
             yield Tile(0, y, width, rows)
             budget = tile_sizer.next()
-        else:  # a row of workgroups is too much: pieces of one
+        else:  # one row of workgroups is too large: split it
             rows, x = min(_ROW, height - y), 0
             while x < width:
                 across = max(1, budget // rows)

@@ -126,9 +126,7 @@ def _uses(node: ast.AST, block: _BlockUses, captures: dict[str, set[str]]) -> No
             if value is not None or not isinstance(target, ast.Name):
                 _uses(target, block, captures)
             else:
-                block.reads.add(
-                    target.id
-                )  # a declaration without a value makes the local belong to this block
+                block.reads.add(target.id)  # without a value, it only declares the local
             if value is not None:
                 _uses(value, block, captures)
         case ast.Subscript(base, index, ast.Store()):
