@@ -1,4 +1,4 @@
-"""Targets by name. A backend is a module, imported when one of its targets is emitted."""
+"""Find targets by name; import a target's backend when it is used."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from distal.ir.target import Target
 TEXT_TARGETS: Final[dict[str, TextTarget]] = {
     target.name: target for target in (*GLSL_TARGETS, *WGSL_TARGETS)
 }
-# The modules of all targets, in the order that help texts list them.
+# The modules of all targets, in the order of the help texts.
 _BACKENDS: Final = {
     "llvm": "distal.backends.llvm",
     **{name: target.backend for name, target in TEXT_TARGETS.items()},
@@ -24,7 +24,7 @@ _BACKENDS: Final = {
 
 
 def target_names() -> tuple[str, ...]:
-    """The names of all targets, in the order that help texts list them."""
+    """Return the names of all targets, in the order of the help texts."""
     return tuple(_BACKENDS)
 
 
@@ -33,7 +33,7 @@ def _backend(name: str) -> Backend:
 
 
 def get_target(name: str) -> Target:
-    """What the target called ``name`` can do.
+    """Return the capabilities of the target called ``name``.
 
     Raises:
         KeyError: There is no such target.
@@ -42,10 +42,10 @@ def get_target(name: str) -> Target:
 
 
 def emit(module: Module, target: Target) -> Artifact:
-    """Write the program of a module that has been through the passes for ``target``.
+    """Return the program of a module, to which the passes for ``target`` have been applied.
 
     Raises:
-        CompileError: The target cannot say what the author wrote.
+        CompileError: The target cannot express the author's code.
     """
     return _backend(target.name).emit(module, target)
 

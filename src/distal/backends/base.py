@@ -1,9 +1,9 @@
-"""What a backend returns, and what it must provide.
+"""The interface of a backend and of its output.
 
-A backend of texts is a module with ``emit(module, target)``; its targets are declared beside it, in
-``targets.py``. LLVM and the NumPy reference have one target each, their ``TARGET``. The module that
-``emit`` gets has been through every pass for that target; emit never fails on one, except with a
-``CompileError`` where the target cannot express what the author wrote.
+A text backend is a Python module with ``emit(module, target)``; ``targets.py`` in its package
+declares its targets. LLVM and the NumPy reference have one target each, their ``TARGET``. All
+passes for the target have been applied to the module that ``emit`` gets. ``emit`` fails only with
+a ``CompileError``, if the target cannot express the author's code.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ class Artifact:
     """The output of a text backend.
 
     Attributes:
-        text: The program, complete and usable as it stands.
-        interface: What a host must provide, JSON-able: uniforms, textures, buffers, stages.
-        vertex: The vertex stage, for targets that have one of their own; else None.
-        lines: For each line of ``text`` (from 1), the author's (file, line), where known: to map a
-            driver's message back.
+        text: The complete program, usable without changes.
+        interface: What a host must provide, as JSON data: uniforms, textures, buffers, stages.
+        vertex: The text of the vertex stage, for targets that have a separate one; else None.
+        lines: For each line of ``text``, the author's (file, line) if known; used to map a driver's
+            messages to the author's code.
         vertex_lines: The same for ``vertex``.
     """
 
@@ -36,10 +36,10 @@ class Artifact:
 
 
 class Backend(Protocol):
-    """A module that writes programs."""
+    """A Python module that writes programs."""
 
-    TARGET: Target  # of a backend that is no text backend
+    TARGET: Target  # only in LLVM and the NumPy reference
 
     def emit(self, module: Module, target: Target) -> Artifact:
-        """Write the whole program."""
+        """Return the whole program."""
         ...

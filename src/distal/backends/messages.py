@@ -1,8 +1,8 @@
-"""Messages of drivers and validators about emitted text, led back to the author's lines.
+"""Map messages of drivers and validators about emitted text to the author's lines.
 
-Input: an artifact and what a compiler said about its text. Output: the same message with each place
-in the text replaced by the author's file and line, where that is known. It knows how the compilers
-write a place, and nothing of what they say about it.
+Input: an artifact, and a compiler's message about its text. Output: the same message with each
+place in the text replaced by the author's file and line, if known. Depends on how the compilers
+write a place, but not on the rest of their messages.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _PLACES = re.compile(
 
 
 def map_message(artifact: Artifact, message: str, *, vertex: bool = False) -> str:
-    """``message`` with places in the artifact's text turned into places of the author's.
+    """Return ``message`` with places in the artifact's text replaced by the author's places.
 
     Args:
-        artifact: What was compiled.
-        message: What the driver or validator said.
-        vertex: Whether it said so about ``artifact.vertex``.
+        artifact: The artifact that was compiled.
+        message: The message of the driver or validator.
+        vertex: Whether the message is about ``artifact.vertex``.
     """
     lines = artifact.vertex_lines if vertex else artifact.lines
 

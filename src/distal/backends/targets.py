@@ -1,8 +1,8 @@
-"""What is known of a text target besides its capabilities: where it is used, and how.
+"""The properties of a text target besides its capabilities: where and how the text is used.
 
-Input: one declaration for each target, in the ``targets`` module of its backend. Output: what the
-command line, exports and the backends read. Declarations import no backend: they are read whenever
-``distal`` starts. To add a target of a family, add a declaration to its ``TARGETS``.
+Each target is declared once, in the ``targets`` module of its backend. The command line, exports
+and the backends read the declarations. They import no backend, because they are read whenever
+``distal`` starts. To add a target, add a declaration to the ``TARGETS`` of its backend.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from distal.ir.target import Target
 
 
 class Declares(Enum):
-    """Where a text gets a uniform from."""
+    """Who declares a uniform."""
 
-    TEXT = "text"  # it declares it, and whoever draws sets it
-    PLACE = "place"  # the place has declared it already
-    NOBODY = "nobody"  # nothing there would set it: it is a constant
+    TEXT = "text"  # the text declares it, and the program that draws sets it
+    PLACE = "place"  # the host declares it before the text
+    NOBODY = "nobody"  # the host cannot set it, so it is a constant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,12 +27,12 @@ class TextTarget(Target):
     """A target whose output is a shader text.
 
     Attributes:
-        backend: The module that writes it.
-        place: The name of the place where the text is used.
+        backend: The module that writes the text.
+        place: The name of the host, where the text is used.
         use: How to use it there, in sentences.
-        suffix: What exported files end in; None where another target has the suffix.
+        suffix: The suffix of exported files; None if another target has the suffix.
         parameters: Who declares the author's parameters.
-        textures_by: How a person gives a text its textures, where the text does not declare them.
+        textures_by: How a user provides textures, if the text does not declare them.
     """
 
     backend: ClassVar[str]

@@ -208,7 +208,7 @@ def _sampler(device: Any, entry: Mapping[str, Any]) -> Any:
 
 
 def _state(source: Any) -> Any:
-    """Return what identifies a source without loading it: its files' states, or a copy of its array.
+    """Return the identity of a source without loading it: file states, or a copy of its array.
 
     Arrays are compared, not hashed: comparing reads 5 GB/s, hashing 1 GB/s, and it is exact.
     """

@@ -1,1 +1,1 @@
-"""What GLSL and WGSL share: functions, statements, expressions and names of C-like text."""
+"""The shared part of GLSL and WGSL: functions, statements, expressions and names of C-like text."""

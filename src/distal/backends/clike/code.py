@@ -1,7 +1,7 @@
-"""Pieces of C-like text that know how tightly they bind, and are joined with few brackets.
+"""Pieces of C-like text with their precedence, joined with as few brackets as possible.
 
-Input: texts of operands. Output: texts of operations. GLSL and WGSL disagree on where brackets are
-needed; these suit both. It knows nothing of the IR.
+Input: texts of operands. Output: texts of operations. GLSL and WGSL require brackets in different
+places; the output is valid in both. Does not depend on the IR.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from distal.diagnostics import Span
 
 
 class Precedence(IntEnum):
-    """How tightly the outermost operator of a text binds."""
+    """The precedence of a text's outermost operator, the loosest first."""
 
     TERNARY = 0
     OR = 1
@@ -28,7 +28,7 @@ class Precedence(IntEnum):
 
 
 class Code(NamedTuple):
-    """An expression's text, and its outermost operator."""
+    """An expression's text, and the precedence and symbol of its outermost operator."""
 
     text: str
     level: Precedence = Precedence.PRIMARY
@@ -36,14 +36,14 @@ class Code(NamedTuple):
 
 
 class Line(NamedTuple):
-    """One line of output and the author's place it comes from."""
+    """One line of output, and the place in the author's code that it comes from."""
 
     text: str
     span: Span | None = None
 
 
 def _needs_brackets(operand: Code, level: Precedence, op: str, *, right: bool) -> bool:
-    """Whether an operand of an infix operator is bracketed: WGSL's grammar, the stricter one."""
+    """Return whether an operand of an infix operator needs brackets, by WGSL's stricter grammar."""
     inner = operand.level
     if inner is Precedence.PRIMARY:
         return False
@@ -60,19 +60,26 @@ def _needs_brackets(operand: Code, level: Precedence, op: str, *, right: bool) -
             inner in (Precedence.AND, Precedence.OR, Precedence.BITS, Precedence.SHIFT)
             and inner is not level
         )
-    # Operands of bit operators: only a chain of the very same operator stands without.
+    # Operands of bit operators: only a chain of the same operator needs no brackets.
     return not (level is Precedence.BITS and operand.op == op and not right)
 
 
 def literal_code(text: str) -> Code:
-    """A literal, which may have a sign, or be a difference."""
+    """Return a literal as code; its text may have a sign or be a difference."""
     if " " in text:
         return Code(text, Precedence.SUM)
     return Code(text, Precedence.UNARY if text.startswith("-") else Precedence.PRIMARY)
 
 
 def infix(op: str, level: Precedence, lhs: Code, rhs: Code) -> Code:
-    """``lhs op rhs``."""
+    """Return ``lhs op rhs``.
+
+    Args:
+        op: The operator's symbol.
+        level: The operator's precedence.
+        lhs: The left operand.
+        rhs: The right operand.
+    """
     left, right = (
         f"({side.text})" if _needs_brackets(side, level, op, right=at_right) else side.text
         for side, at_right in ((lhs, False), (rhs, True))
@@ -81,10 +88,10 @@ def infix(op: str, level: Precedence, lhs: Code, rhs: Code) -> Code:
 
 
 def tight(code: Code) -> str:
-    """The text as an operand of the tightest operators: dots, indices, signs."""
+    """Return the text as an operand of ``.``, ``[]`` or a sign, in brackets if needed."""
     return code.text if code.level is Precedence.PRIMARY else f"({code.text})"
 
 
 def prefix(op: str, operand: Code) -> Code:
-    """``op operand``."""
+    """Return ``op operand``."""
     return Code(f"{op}{tight(operand)}", Precedence.UNARY)

@@ -1,4 +1,4 @@
-"""Which expressions a compiler sees through: literals, tables of them, operations on them."""
+"""Recognize constant expressions: tables of literals, and operations on literals."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _OPERATIONS = Unary | Binary | MatMul | Compare | Logical | Select | Cast | Buil
 
 
 def is_table(e: Expr) -> bool:
-    """An array of nothing but literals: it stands once, outside the functions."""
+    """Return whether an expression is an array of literals, which is declared outside functions."""
     if not isinstance(e, Construct) or not isinstance(e.type, Array):
         return False
     literal = (Const, Splat, Compose, Construct)
@@ -34,9 +34,9 @@ def is_table(e: Expr) -> bool:
 
 
 def is_literal_operation(e: Expr) -> bool:
-    """An operation on nothing but literals, a minus sign before one aside.
+    """Return whether an expression is an operation on literals only, except a sign before a literal.
 
-    WGSL computes it when it compiles, in its own precision, and refuses what has no finite result.
+    WGSL computes it at compile time, in another precision, and rejects a result that is not finite.
     """
     if not isinstance(e, _OPERATIONS):
         return False

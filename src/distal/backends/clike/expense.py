@@ -1,6 +1,6 @@
-"""What expressions cost to run, so that a language knows whether it may compute both of a choice.
+"""Estimate the cost of expressions, to decide whether to compute both sides of a selection.
 
-Input: a module's functions. Output: numbers of operations. Knows no language and no driver.
+Input: a module's functions. Output: numbers of operations. Does not depend on languages or drivers.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from typing import Final
 from distal.ir.nodes import Call, Expr, For, Module, While
 from distal.ir.walk import expressions_in, nodes_in, statements_in
 
-# Up to so many operations in a branch, both branches are computed and one is picked.
+# If both branches have at most this number of operations, both are computed, and one is selected.
 EAGER_OPERATIONS: Final = 40
 
 
 class Expense:
-    """How many operations an expression may run; a loop counts as very many."""
+    """Counts the operations that an expression may run; a loop counts as ``LOOP``."""
 
     LOOP = 10**6
 
@@ -31,5 +31,5 @@ class Expense:
         return 1 + (self._functions.get(e.function, 0) if isinstance(e, Call) else 0)
 
     def of(self, e: Expr) -> int:
-        """Operations of an expression with the functions that it calls."""
+        """Return the number of operations of an expression, including the functions that it calls."""
         return sum(map(self._own, nodes_in(e)))

@@ -1,9 +1,9 @@
-"""Expressions as GLSL and WGSL both write them: infix operators, dotted lanes, calls.
+"""Write expressions in the common syntax of GLSL and WGSL: infix operators, swizzles, calls.
 
-Input: IR expressions. Output: text with as few brackets as both grammars take. Where a language
-cannot say something inside an expression, it is put into a local of its own before the statement:
-the writer appends those lines to ``lines`` itself. What differs between the languages is left to
-the methods of ``distal.backends.clike.dialect``.
+Input: IR expressions. Output: text with as few brackets as both grammars allow. If a language
+cannot express something inside an expression, the writer declares a local before the statement, by
+appending to ``lines``. The methods of ``distal.backends.clike.dialect`` write everything that
+differs between the languages.
 """
 
 from __future__ import annotations
@@ -63,18 +63,28 @@ INFIX = {
     BinaryOp.SHR: Precedence.SHIFT,
 }
 
-# What both languages apply to a scalar beside a vector without a constructor.
+# Operators that both languages accept between a scalar and a vector.
 _MIXED = (BinaryOp.ADD, BinaryOp.SUB, BinaryOp.MUL, BinaryOp.DIV)
 
 _PLAIN_CALL = re.compile(r"[\w<>{}]+\((\{\d\}(, \{\d\})*)?\)")
 
 
 class ExpressionWriter(Dialect):
-    """Writes expressions of one function at a time."""
+    """Writes the expressions of one function at a time.
+
+    Attributes:
+        names: The names of module scope.
+        tables: The tables of literals and their names.
+        lines: The lines written so far.
+        depth: The current indentation, in steps.
+        span: The author's place that new lines get.
+        locals: The names of locals in the text, by IR name.
+        local_namer: Makes names for new locals.
+    """
 
     def __init__(self, names: ModuleNames) -> None:
         self.names = names
-        self.tables: dict[Construct, str] = {}  # arrays of literals, and their names
+        self.tables: dict[Construct, str] = {}
         self.lines: list[Line] = []
         self.depth = 0
         self.span: Span | None = None
@@ -82,24 +92,31 @@ class ExpressionWriter(Dialect):
         self.local_namer = names.local_namer()
 
     def line(self, text: str) -> None:
-        """Append a line at the current depth."""
+        """Append a line at the current indentation."""
         self.lines.append(Line("    " * self.depth + text if text else "", self.span))
 
     def temporary(self, wanted: str, value: Code, type: Type, *, mutable: bool = False) -> Code:
-        """Bind a value to a local before the statement being written."""
+        """Declare a local with a value before the current statement, and return a read of it.
+
+        Args:
+            wanted: The preferred name.
+            value: The value.
+            type: The type of the value.
+            mutable: Whether the local is assigned again.
+        """
         name = self.local_namer.name(wanted)
         self.line(self.declaration(name, value, type, mutable=mutable))
         return Code(name)
 
     def named(self, e: Expr, wanted: str = "value") -> Code:
-        """Text that may be repeated without repeating work."""
+        """Return text that can be used several times without computing the value again."""
         code = self.expression(e)
         if isinstance(e, Const | Read | Uniform | PerFrame):
             return code
         return self.temporary(wanted, code, e.type)
 
     def components(self, e: Expr) -> list[Code]:
-        """The components of a vector, each text free of repeated work."""
+        """Return the components of a vector; the vector itself is computed once."""
         assert isinstance(e.type, Vector)
         match e:
             case Splat(value):
@@ -111,11 +128,11 @@ class ExpressionWriter(Dialect):
                 return [Code(f"{whole}.{lane}") for lane in "xyzw"[: e.type.size]]
 
     def call(self, function: str, args: Iterable[Code]) -> Code:
-        """A call of a function or constructor."""
+        """Return a call of a function or constructor."""
         return Code(f"{function}({self.arguments(list(args))})")
 
     def expression(self, e: Expr) -> Code:
-        """The text of an expression; lines it needs before the statement are appended."""
+        """Return the text of an expression; lines that must precede the statement are appended."""
         match e:
             case Const():
                 return self.constant(e)
@@ -183,7 +200,7 @@ class ExpressionWriter(Dialect):
                 assert_never(e)
 
     def array(self, e: Construct) -> Code:
-        """An array; of literals it is a table that stands once, outside the functions."""
+        """Return an array; an array of literals is a table, declared once outside the functions."""
         if not is_table(e):
             return self.array_text(e)
         if e not in self.tables:
@@ -191,7 +208,7 @@ class ExpressionWriter(Dialect):
         return Code(self.tables[e])
 
     def table_part(self, e: Expr) -> Code:
-        """An element of an array's constructor."""
+        """Return an element of an array's constructor."""
         if not isinstance(e, Construct):
             return self.expression(e)
         if isinstance(e.type, Array):
@@ -227,7 +244,7 @@ class ExpressionWriter(Dialect):
         splats = [i for i in may_be_scalar if isinstance(e.args[i], Splat)]
         args = []
         for i, arg in enumerate(e.args):
-            # clamp(v, 0.0, 1.0): all of the arguments that may be scalar, or none.
+            # clamp(v, 0.0, 1.0): either all arguments that may be scalar are scalar, or none.
             narrow = isinstance(arg, Splat) and i in splats and len(splats) == len(may_be_scalar)
             args.append(self.expression(arg.value if narrow and isinstance(arg, Splat) else arg))
         if spelling is None:
@@ -249,7 +266,7 @@ class ExpressionWriter(Dialect):
         if not needed:
             op, level = ("&&", Precedence.AND) if is_and else ("||", Precedence.OR)
             return infix(op, level, lhs, rhs)
-        # The right side has lines of its own, run only when the left side leaves it open.
+        # The right side needs statements; they run only if the left side does not decide.
         del self.lines[mark:]
         result = self.temporary("holds", lhs, e.type, mutable=True)
         self.line(f"if ({result.text if is_and else prefix('!', result).text}) {{")

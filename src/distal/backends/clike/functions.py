@@ -1,7 +1,8 @@
-"""Functions and statements as GLSL and WGSL both write them: braces, ``for``, ``return``.
+"""Write functions and statements in the common syntax of GLSL and WGSL.
 
-Input: IR functions. Output: lines of text, each with the author's place. Expressions come from
-``distal.backends.clike.expressions``; a language fills in ``Dialect`` and the few methods here.
+Input: IR functions. Output: lines of text, each with the author's place. Expressions are written by
+``distal.backends.clike.expressions``; a language implements ``Dialect`` and the abstract methods
+here.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ _IN_PLACE = (BinaryOp.ADD, BinaryOp.SUB, BinaryOp.MUL, BinaryOp.DIV)
 
 
 def falls_through(body: tuple[Stmt, ...]) -> bool:
-    """Whether a compiler that looks at the statements alone sees a way past the end of a block."""
+    """Return whether the end of a block seems reachable, without evaluating conditions."""
     if not body:
         return True
     match body[-1]:
@@ -63,43 +64,60 @@ def falls_through(body: tuple[Stmt, ...]) -> bool:
 
 
 def place(span: Span) -> str:
-    """File and line for a comment; the name of the file only, the same on every machine."""
+    """Return the file's name and the line for a comment, without the folder."""
     return f"{comment_text(PurePath(span.file.replace(chr(92), '/')).name)}:{span.line}"
 
 
 class FunctionWriter(ExpressionWriter):
-    """Writes whole functions."""
+    """Writes whole functions.
+
+    Attributes:
+        variables: The IR names of the locals that are Vars.
+    """
 
     @abstractmethod
     def header(self, fn: Function) -> str:
-        """The line that opens a function, without its brace."""
+        """Return the first line of a function, without its brace."""
 
     @abstractmethod
     def loop_start(self, name: str, start: Code, type: Type) -> str:
-        """The first part of a ``for``."""
+        """Return the first part of a ``for``.
+
+        Args:
+            name: The loop variable.
+            start: Its first value.
+            type: Its type.
+        """
 
     @abstractmethod
     def unsigned(self, value: Code) -> Code:
-        """An int's bits as a uint."""
+        """Return an int's bits as a uint."""
 
     @abstractmethod
     def signed(self, value: Code) -> Code:
-        """A uint's bits as an int."""
+        """Return a uint's bits as an int."""
 
     @abstractmethod
     def zero(self, type: Type) -> str:
-        """Some value of a type, for a place that is never reached."""
+        """Return any value of a type, for a statement that is never reached."""
 
     @abstractmethod
     def assign_swizzle(self, base: str, lanes: str, value: Code, type: Type) -> None:
-        """Write ``base.lanes = value`` for several lanes."""
+        """Append ``base.lanes = value`` for several lanes.
+
+        Args:
+            base: The text of the vector.
+            lanes: The letters of the swizzle.
+            value: The value.
+            type: The type of the value.
+        """
 
     @abstractmethod
     def target_index(self, base: str, target: Index) -> str:
-        """An element as the target of an assignment."""
+        """Return an element as the target of an assignment."""
 
     def open_function(self, fn: Function) -> None:
-        """Start on a function: its comment, and names for everything it binds."""
+        """Begin a function: append its comment, and name its parameters and locals."""
         self.span = fn.span
         if fn.span is not None:
             self.line(f"// {place(fn.span)}")
@@ -113,24 +131,24 @@ class FunctionWriter(ExpressionWriter):
         self.line("}")
 
     def body(self, fn: Function) -> None:
-        """Append the statements of a function, one step in."""
+        """Append the statements of a function, indented by one step."""
         self.depth += 1
         self.copy_parameters(fn)
         self.block(fn.body, tail=True)
         if falls_through(fn.body):
-            # Only after an endless loop, which is left by a return inside; compilers want one here.
+            # Only after an endless loop that returns from inside; compilers require a return here.
             self.line(f"return {self.zero(fn.result)};")
         self.depth -= 1
 
     def copy_parameters(self, fn: Function) -> None:
-        """Where parameters cannot be used as they are: bind copies."""
+        """Copy the parameters that cannot be used directly; the default copies none."""
 
     def mentioned(self, fn: Function) -> frozenset[str]:
-        """The module-scope names that the function's text may mention."""
+        """Return the module-scope names that the function's text may contain."""
         return self.names.mentioned(fn)
 
     def name_locals(self, fn: Function, namer: Namer | None = None) -> None:
-        """Give every parameter and local its name in the text."""
+        """Assign a name in the text to every parameter and local."""
         self.local_namer = namer or self.names.namer.inner(self.mentioned(fn))
         self.locals = {p.name: self.local_namer.name(p.name) for p in fn.params}
         self.variables = set()
@@ -141,7 +159,7 @@ class FunctionWriter(ExpressionWriter):
                     if isinstance(stmt, Var):
                         self.variables.add(name)
                 case For(name):
-                    # ``for _ in range(n)``: the customary name instead.
+                    # ``for _ in range(n)``: use the name i.
                     self.locals[name] = self.local_namer.name(name if name.strip("_") else "i")
                 case _:
                     pass
@@ -149,14 +167,14 @@ class FunctionWriter(ExpressionWriter):
     variables: set[str]
 
     def block(self, body: tuple[Stmt, ...], *, tail: bool = False) -> None:
-        """Append statements; ``tail``: nothing of the function is run after them."""
+        """Append statements; ``tail`` means that the function ends after them."""
         for i, stmt in enumerate(body):
             self.statement(stmt, tail=tail and i == len(body) - 1)
             if isinstance(stmt, Return | Break | Continue):
                 return
 
     def inner(self, body: tuple[Stmt, ...], *, tail: bool = False) -> None:
-        """Append a block one step in."""
+        """Append a block, indented by one step."""
         self.depth += 1
         self.block(body, tail=tail)
         self.depth -= 1
@@ -189,15 +207,21 @@ class FunctionWriter(ExpressionWriter):
                 assert_never(stmt)
 
     def bind(self, name: str, value: Expr, *, mutable: bool) -> None:
-        """Append the binding of a local."""
+        """Append the declaration of a local.
+
+        Args:
+            name: The IR name of the local.
+            value: Its value.
+            mutable: Whether it is assigned again.
+        """
         code = self.expression(value)
         if not mutable and isinstance(value, Construct) and value in self.tables:
-            self.locals[name] = code.text  # the table itself serves
+            self.locals[name] = code.text  # use the table itself
             return
         self.line(self.declaration(self.locals[name], code, value.type, mutable=mutable))
 
     def write_return(self, value: Code, *, tail: bool) -> None:
-        """Append the end of the function with a value."""
+        """Append a return of a value; ``tail`` means that it is the last statement."""
         self.line(f"return {value.text};")
 
     def _assign_statement(self, target: Expr, value: Expr) -> None:
@@ -220,7 +244,7 @@ class FunctionWriter(ExpressionWriter):
             case Swizzle(base, lanes, type) if len(lanes) > 1:
                 self.assign_swizzle(self.target(base), lanes, value, type)
             case Index(Swizzle() as part):
-                # An element of picked lanes: change a copy of them and put it back.
+                # An element of a swizzle: change a copy of the swizzle, and write it back.
                 copy = self.temporary("lanes", self.expression(part), part.type, mutable=True)
                 self.line(f"{self.target_index(copy.text, target)} = {value.text};")
                 self._assign(part, copy)
@@ -228,7 +252,7 @@ class FunctionWriter(ExpressionWriter):
                 self.line(f"{self.target(target)} = {value.text};")
 
     def target(self, target: Expr) -> str:
-        """What is assigned to, as text."""
+        """Return the text of an assignment's target."""
         match target:
             case Read(name):
                 return self.locals[name]
@@ -253,7 +277,7 @@ class FunctionWriter(ExpressionWriter):
             test = self.expression(following.condition)
             self.depth -= 1
             if len(self.lines) > mark:
-                # The condition has lines of its own: it needs a block.
+                # The condition needs statements, so it needs a block.
                 needed = self.lines[mark:]
                 del self.lines[mark:]
                 self.line("} else {")
@@ -279,7 +303,7 @@ class FunctionWriter(ExpressionWriter):
         needed: list[Line] = self.lines[mark:]
         del self.lines[mark:]
         if needed:
-            # The condition has lines of its own, computed again for every round.
+            # The condition needs statements, which run again in every iteration.
             self.line("while (true) {")
             self.lines += needed
             self.depth += 1
@@ -311,19 +335,19 @@ class FunctionWriter(ExpressionWriter):
         self.line("}")
 
     def _is_fixed(self, e: Expr) -> bool:
-        """Cheap to read again in each round, and then still the same."""
+        """Return whether an expression is cheap to read in each iteration and never changes."""
         if isinstance(e, Read):
             return e.name not in self.variables
         return isinstance(e, Const | Uniform | PerFrame)
 
     def _counted_for(self, stmt: For) -> None:
-        """A loop whose variable could pass the end of the int range: its rounds are counted."""
+        """Append a loop that counts its iterations, because its variable could overflow."""
         name, step = self.locals[stmt.name], stmt.step
         start = self.temporary(f"{name}_start", self.expression(stmt.start), INT)
         stop = self.temporary(f"{name}_stop", self.expression(stmt.stop), INT)
         low, high = (start, stop) if step > 0 else (stop, start)
         span = infix("-", Precedence.SUM, self.unsigned(high), self.unsigned(low))
-        # ceil(span / step) without leaving 32 bits; the loop is not entered when it is empty.
+        # ceil(span / step) without overflow; an empty loop is not entered.
         rounds = f"({span.text} - 1u) / {abs(step)}u + 1u"
         last = self.temporary(f"{name}_rounds", Code(rounds, Precedence.SUM), UINT)
         entered = infix("<", Precedence.RELATION, low, high)
@@ -344,7 +368,7 @@ class FunctionWriter(ExpressionWriter):
 
 
 def _cannot_overflow(stmt: For) -> bool:
-    """Whether the variable after the last round is certainly an int."""
+    """Return whether the variable cannot overflow after the last iteration."""
     step, start, stop = stmt.step, stmt.start, stmt.stop
     if abs(step) == 1:
         return True

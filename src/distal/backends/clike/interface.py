@@ -1,8 +1,7 @@
-"""What a host must provide to run a text, as a dictionary that JSON can carry.
+"""Describe what a host must provide to run a text, as JSON data.
 
-Input: the module and the names of its things in the text. Output: uniforms, textures and buffers
-with everything a host or a person's control panel asks of them. Each backend adds its own
-``stages`` and ``frame``.
+Input: the module, and the names in the text. Output: uniforms, textures and buffers with all data
+that a host or a control panel needs. Each backend adds ``stages`` and ``frame``.
 """
 
 from __future__ import annotations
@@ -17,12 +16,12 @@ from distal.version import __version__
 
 
 def plain(value: Any) -> Any:
-    """Tuples as lists, as JSON reads them back."""
+    """Return the value with tuples converted to lists, as JSON reads them."""
     return [plain(v) for v in value] if isinstance(value, tuple | list) else value
 
 
 def uniform_entry(uniform: UniformDeclaration, spelled: str) -> dict[str, Any]:
-    """One uniform: ``name`` is the author's side of it, ``uniform`` what the text calls it."""
+    """Return the entry of a uniform: ``name`` is the author's name, ``uniform`` the text's."""
     return {
         "name": uniform.name,
         "uniform": spelled,
@@ -34,7 +33,7 @@ def uniform_entry(uniform: UniformDeclaration, spelled: str) -> dict[str, Any]:
 
 
 def texture_entry(texture: ResourceDeclaration, spelled: str) -> dict[str, Any]:
-    """One texture. Rows are uploaded bottom row first: coordinate (0, 0) is the lower left."""
+    """Return the entry of a texture; rows are uploaded bottom first: (0, 0) is the lower left."""
     return {
         "name": texture.name,
         "uniform": spelled,
@@ -46,14 +45,20 @@ def texture_entry(texture: ResourceDeclaration, spelled: str) -> dict[str, Any]:
 
 
 def buffer_entry(buffer: ResourceDeclaration, spelled: str) -> dict[str, Any]:
-    """One read-only buffer; with its ``values`` where the program's own tables are in it."""
+    """Return the entry of a read-only buffer; with its ``values`` if it holds a constant table."""
     assert isinstance(buffer.type, Buffer)
     entry = {"name": buffer.name, "uniform": spelled, "element": str(buffer.type.element)}
     return entry if buffer.values is None else entry | {"values": plain(buffer.values)}
 
 
 def interface(module: Module, target: Target, names: ModuleNames) -> dict[str, Any]:
-    """The part of the interface that all targets share."""
+    """Return the part of the interface that all targets share.
+
+    Args:
+        module: The module after the passes.
+        target: The target.
+        names: The names in the text.
+    """
     return {
         "distal": __version__,
         "target": target.name,

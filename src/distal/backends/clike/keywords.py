@@ -1,8 +1,7 @@
-"""Words that a target keeps for itself.
+"""Reserved words of the targets.
 
-A name of the author's that is one of them is written otherwise (``distal.backends.clike.names``).
-The GLSL lists are the union over all versions that we write, so that a function has the same name
-in each of them.
+A name of the author that is a reserved word is changed (``distal.backends.clike.names``). The GLSL
+lists are the union over all supported versions, so that a function has the same name in each.
 
 Sources: The OpenGL ES Shading Language 3.00.6, sections 3.8 (keywords) and 8 (functions); 1.00.17,
 sections 3.6 and 8; The OpenGL Shading Language 3.30.6, sections 3.6 and 8; and the words that 4.60
@@ -63,7 +62,7 @@ GLSL_KEYWORDS: Final = (
     | {f"{stem}{size}" for stem in ("mat", "dmat") for size in _MATRIX_SIZES}
 )
 
-# The method of arrays: glslang takes each ``.length`` for it, that of a struct too.
+# The method of arrays: glslang treats every ``.length`` as this method, even of a struct.
 GLSL_METHODS: Final = frozenset({"length"})
 
 GLSL_FUNCTIONS: Final = _words(
@@ -113,7 +112,7 @@ WGSL_KEYWORDS: Final = _words(
     """
 )
 
-# Not keywords: a declaration of ours could hide them, and later text would mean something else.
+# Not keywords, but a declaration could shadow them and change the meaning of later text.
 WGSL_PREDECLARED: Final = (
     _words(
         """
@@ -148,7 +147,7 @@ WGSL_PREDECLARED: Final = (
     | {f"mat{size}{letter}" for size in _MATRIX_SIZES for letter in ("", "f", "h")}
 )
 
-# Names that the hosts a text is given to declare before it, and what a host replaces in a text.
+# Names that a host declares before the text, and macros that a host replaces in it.
 SHADERTOY_NAMES: Final = _words(
     """
     iResolution iTime iTimeDelta iFrame iFrameRate iChannelTime iChannelResolution iMouse iDate
@@ -157,12 +156,12 @@ SHADERTOY_NAMES: Final = _words(
     """
 )
 SHADERTOY_MACROS: Final = frozenset({"HW_PERFORMANCE"})
-# glslCanvas has 8 texture units at least; each picture of data-textures has the next number.
+# glslCanvas has at least 8 texture units; pictures of data-textures are numbered in order.
 GLSL_CANVAS_NAMES: Final = _words(
     "u_resolution u_time u_delta u_date u_mouse u_frame a_position a_texcoord v_texcoord"
 ) | {f"{stem}{i}" for stem in ("u_tex", "u_buffer") for i in range(32)}
 GLSL_CANVAS_MACROS: Final = frozenset({"PLATFORM_WEBGL"})
-# VVISF-GL and interactive-shader-format-js. Both replace the parts, also inside longer names.
+# VVISF-GL and interactive-shader-format-js. Both replace the parts even inside longer names.
 ISF_NAMES: Final = _words(
     "PASSINDEX RENDERSIZE TIME TIMEDELTA FRAMEINDEX DATE VERTEXDATA position inputImage"
 )
@@ -174,6 +173,6 @@ ISF_PARTS: Final = (
 
 
 def isf_picture_names(picture: str) -> frozenset[str]:
-    """What an ISF host declares besides a picture of that name."""
+    """Return the names that an ISF host declares in addition to a picture with this name."""
     stems = ("imgRect", "imgSize", "flip", "normTexCoord", "texCoord")
     return frozenset(f"_{picture}_{stem}" for stem in stems)

@@ -1,4 +1,4 @@
-"""Numbers as GLSL and WGSL both read them."""
+"""Write number literals that are valid in GLSL and WGSL."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ INT_MIN = -(2**31)
 
 
 def _rounded(value: float) -> float:
-    """The nearest 32-bit float."""
+    """Return the nearest 32-bit float."""
     result: float = struct.unpack("<f", struct.pack("<f", value))[0]
     return result
 
 
 def float_literal(value: float, span: Span | None = None) -> str:
-    """The shortest decimal that reads back as the 32-bit float nearest to ``value``.
+    """Return the shortest decimal that reads back as the 32-bit float nearest to ``value``.
 
     Raises:
         CompileError: The value is too large for 32 bits.
@@ -38,7 +38,7 @@ def float_literal(value: float, span: Span | None = None) -> str:
 
 
 def _positional(digits: str, exponent: int) -> str:
-    """``digits`` as d.ddd times ten to the ``exponent``, in full where that is short."""
+    """Return d.ddd times ten to the ``exponent``, without an exponent if that is short."""
     digits = digits.rstrip("0") or "0"
     if digits == "0":
         return "0.0"
@@ -52,5 +52,5 @@ def _positional(digits: str, exponent: int) -> str:
 
 
 def int_literal(value: int) -> str:
-    """A decimal int; the lowest one as a difference, since its magnitude is no int."""
+    """Return a decimal int; the lowest int is a difference, because its magnitude is not an int."""
     return "-2147483647 - 1" if value == INT_MIN else str(value)

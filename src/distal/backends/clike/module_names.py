@@ -1,4 +1,4 @@
-"""Which name each thing of a module has in a text, and which things a part of a module uses."""
+"""Name everything of a module in a text, and find what a part of a module uses."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from distal.ir.walk import expressions_in, nodes_in
 
 @dataclass(frozen=True, slots=True)
 class Vocabulary:
-    """What a target reserves.
+    """The names that a target reserves.
 
     Attributes:
-        fields: For a struct's fields too: keywords and macros.
-        names: For everything else: those, what the language predeclares, what the host declares,
-            and what the writer itself declares at module scope.
+        fields: Reserved for fields of structs: keywords and macros.
+        names: Reserved for all other names: the same, and the names that the language, the host
+            or the writer declares at module scope.
     """
 
     fields: Reserved
@@ -28,27 +28,27 @@ class Vocabulary:
 
 @dataclass(slots=True)
 class ModuleNames:
-    """Names of module scope; each map goes from the IR's name to the text's."""
+    """The names of module scope; each dictionary maps an IR name to the name in the text."""
 
     namer: Namer
     uniforms: dict[str, str] = field(default_factory=dict)
     resources: dict[str, str] = field(default_factory=dict)
-    accessors: dict[str, str] = field(default_factory=dict)  # reads one texel or element
-    counts: dict[str, str] = field(default_factory=dict)  # how many elements a buffer has
+    accessors: dict[str, str] = field(default_factory=dict)  # read one texel or element
+    counts: dict[str, str] = field(default_factory=dict)  # the number of elements of a buffer
     samplers: dict[str, str] = field(default_factory=dict)
     frame: dict[str, str] = field(default_factory=dict)
     functions: dict[str, str] = field(default_factory=dict)
-    tables: list[str] = field(default_factory=list)  # free for tables of literals
-    constants: list[str] = field(default_factory=list)  # free for literals kept in variables
+    tables: list[str] = field(default_factory=list)  # reserved for tables of literals
+    constants: list[str] = field(default_factory=list)  # for literals that are stored in variables
     structs: dict[Type, str] = field(default_factory=dict)
     fields: dict[tuple[Struct, str], str] = field(default_factory=dict)
 
     def local_namer(self) -> Namer:
-        """A namer for a function of the writer's own: it hides nothing of module scope."""
+        """Return a namer for a function that the writer adds; it shadows no module-scope name."""
         return self.namer.inner()
 
     def mentioned(self, function: Function) -> frozenset[str]:
-        """The module-scope names that a function's text may mention, the writer's own aside."""
+        """Return the module-scope names that a function's text may contain, except the writer's."""
         found = {self.structs[t] for t in types_of(function) if t in self.structs}
         found |= {*self.tables, *self.constants}
         for e in expressions_in(function.body):
@@ -75,14 +75,14 @@ def name_module(
     *,
     has_members: bool = False,
 ) -> ModuleNames:
-    """Names for everything in a module.
+    """Assign a name to everything in a module.
 
     Args:
-        module: What is named.
-        vocabulary: What nothing may be called.
-        fixed_uniforms: Uniforms whose text is decided by the host.
-        fixed_resources: The same of textures.
-        has_members: Whether uniforms and per-frame values are members of structs of the text's own.
+        module: The module.
+        vocabulary: The reserved names.
+        fixed_uniforms: The text of the uniforms that the host provides.
+        fixed_resources: The names of the textures that the host provides.
+        has_members: Whether the text declares uniforms and per-frame values as members of structs.
     """
     namer = Namer(vocabulary.names)
     names = ModuleNames(namer)
@@ -114,7 +114,7 @@ def name_module(
 
 
 def all_expressions(module: Module) -> Iterator[Expr]:
-    """Every expression of every function and of the per-frame part."""
+    """Yield every expression of all functions and of the per-frame part."""
     yield from nodes_in(*(value for _, value in module.frame))
     for function in module.functions:
         yield from expressions_in(function.body)
@@ -129,7 +129,7 @@ def _array_name(type: Type) -> str:
 
 
 def reachable(module: Module, roots: Iterable[Expr]) -> tuple[Function, ...]:
-    """The functions that expressions call, directly or not, callees first."""
+    """Return the functions that expressions call, directly or indirectly, callees first."""
     wanted = {e.function for e in nodes_in(*roots) if isinstance(e, Call)}
     found = []
     for function in reversed(module.functions):
@@ -140,12 +140,12 @@ def reachable(module: Module, roots: Iterable[Expr]) -> tuple[Function, ...]:
 
 
 def called_by(function: Function) -> set[str]:
-    """The functions that a function calls itself."""
+    """Return the names of the functions that a function calls directly."""
     return {e.function for e in expressions_in(function.body) if isinstance(e, Call)}
 
 
 def types_in(module: Module, functions: Iterable[Function]) -> Iterator[Type]:
-    """The structs and arrays that functions and the per-frame part use, what they hold first."""
+    """Yield the structs and arrays that functions and the per-frame part use, inner types first."""
     seen: set[Type] = set()
     frame = [value for _, value in module.frame]
     for e in nodes_in(*frame):
@@ -155,7 +155,7 @@ def types_in(module: Module, functions: Iterable[Function]) -> Iterator[Type]:
 
 
 def types_of(function: Function, seen: set[Type] | None = None) -> Iterator[Type]:
-    """The structs and arrays that a function uses, those in ``seen`` left out."""
+    """Yield the structs and arrays that a function uses, except those in ``seen``."""
     seen = set() if seen is None else seen
     for param in function.params:
         yield from _parts(param.type, seen)

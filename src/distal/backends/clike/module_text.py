@@ -1,4 +1,4 @@
-"""A module as text backends start on it, and the finished lines as an artifact ends with them."""
+"""Prepare a module for a text backend, and join the finished lines to a text."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from distal.ir.walk import map_expressions, substitute
 
 
 def without_frame(module: Module) -> Module:
-    """A ``@func``'s module with its per-frame values back in place: a library has no frame."""
+    """Return a ``@func``'s module with its per-frame values inlined: a library has no frames."""
     if module.kind is EntryKind.IMAGE or not module.frame:
         return module
     values: dict[Expr, Expr] = {}
@@ -28,13 +28,13 @@ def without_frame(module: Module) -> Module:
 
 
 def comment_text(text: str) -> str:
-    """Text for the end of a line: old compilers refuse other letters even there."""
+    """Return text for a comment in ASCII: old compilers reject other characters even there."""
     plain = unicodedata.normalize("NFKD", text).replace("\\", "/")
     return "".join(c for c in plain if " " <= c <= "~")
 
 
 def uniform_comment(uniform: UniformDeclaration) -> str:
-    """What a comment says of a parameter: its label and range."""
+    """Return a comment with a parameter's label and range; "" if it has no label."""
     about = dict(uniform.interface)
     label = comment_text(str(about.get("label") or ""))
     if not label:
@@ -45,7 +45,7 @@ def uniform_comment(uniform: UniformDeclaration) -> str:
 
 
 def joined(lines: Iterable[Line]) -> tuple[str, tuple[tuple[str, int] | None, ...]]:
-    """The text, and for each of its lines the author's file and line."""
+    """Return the text, and the author's file and line for each of its lines."""
     kept = list(wrapped(lines))
     while kept and not kept[0].text:
         kept.pop(0)

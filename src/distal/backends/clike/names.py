@@ -1,7 +1,7 @@
-"""Names in emitted text: the author's own where the target allows, made safe and unique.
+"""Make the names in emitted text: the author's names if possible, else changed to be valid.
 
-Input: names of the IR. Output: identifiers that GLSL and WGSL both take as identifiers: ASCII, no
-double underscore, of bounded length, none that the target reserves. Equal input gives equal names.
+Input: names of the IR. Output: unique identifiers that are valid in GLSL and WGSL: ASCII, without
+double underscores, of limited length, not reserved by the target. Equal input gives equal names.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 _GREEK = re.compile(r"GREEK (?:SMALL|CAPITAL) LETTER (?:FINAL )?(\w+)")
-# WebGL 1 refuses identifiers of more than 256 characters; numbers may be appended to this.
+# WebGL 1 rejects identifiers of more than 256 characters; this leaves room for numbers.
 _LONGEST: Final = 200
 
 
 @dataclass(frozen=True, slots=True)
 class Reserved:
-    """What no name of the author's may be in a text.
+    """The names that a text must not declare.
 
     Attributes:
-        words: Keywords, built-ins, and what the text or its host declares.
-        prefixes: What no name may begin with.
-        parts: What no name may contain: a host replaces it wherever it stands. Each has an
-            underscore, and is harmless without.
+        words: Keywords, built-ins, and the names that the text or its host declares.
+        prefixes: No name may begin with these.
+        parts: No name may contain these, because a host replaces them anywhere. Each contains an
+            underscore; without it, the part is harmless.
     """
 
     words: frozenset[str]
@@ -40,12 +40,12 @@ class Reserved:
         )
 
     def __or__(self, words: Iterable[str]) -> Reserved:
-        """The same with more words."""
+        """Return a copy with more words."""
         return replace(self, words=self.words.union(words))
 
 
 def _letter(char: str) -> str:
-    """A letter that no target takes, in letters that each takes: a Greek one by its name."""
+    """Return a non-ASCII letter as ASCII letters; a Greek letter becomes its name."""
     if char.isascii():
         return char
     plain = "".join(c for c in unicodedata.normalize("NFKD", char) if c.isascii())
@@ -56,15 +56,15 @@ def _letter(char: str) -> str:
 
 
 def safe_name(wanted: str, reserved: Reserved) -> str:
-    """``wanted`` if the target takes it as a name, else something close to it."""
+    """Return ``wanted`` if it is a valid name, else a similar valid name."""
     name = "".join(map(_letter, wanted))
-    # Names with two underscores in a row belong to the implementation (GLSL) or are refused (WGSL).
+    # Double underscores are reserved for the implementation (GLSL) or invalid (WGSL).
     name = re.sub(r"_{2,}", "_", re.sub(r"\W", "_", name))[:_LONGEST]
     if name in ("", "_"):
         name = "unused"
     for part in reserved.parts:
         name = name.replace(part, part.replace("_", ""))
-    # Also "gl" itself: with a number it is gl_2.
+    # Also "gl" itself: with a number it would become gl_2.
     if f"{name}_".startswith(reserved.prefixes):
         name = f"own_{name.lstrip('_')}"
     if name[0].isdigit():
@@ -73,18 +73,21 @@ def safe_name(wanted: str, reserved: Reserved) -> str:
 
 
 class Namer:
-    """Hands out names of one scope, no name twice."""
+    """Makes unique names for one scope."""
 
     def __init__(self, reserved: Reserved, taken: Iterable[str] = ()) -> None:
         self._reserved = reserved
         self._taken = set(taken)
 
     def inner(self, visible: Iterable[str] | None = None) -> Namer:
-        """A namer of a scope inside, whose names hide none of ``visible``; None: of all so far."""
+        """Return a namer for an inner scope; its names do not shadow those in ``visible``.
+
+        None for ``visible`` means all names made so far.
+        """
         return Namer(self._reserved, self._taken if visible is None else visible)
 
     def name(self, wanted: str) -> str:
-        """A free name, ``wanted`` itself if it can be."""
+        """Return an unused name: ``wanted`` if possible."""
         safe = safe_name(wanted, self._reserved)
         stem = safe.rstrip("_")
         name, count = safe, 2

@@ -1,10 +1,10 @@
-"""Per-frame values as few flat four-component vectors, from the vertex to the fragment stage.
+"""Pack per-frame values into few flat vectors, to pass them from the vertex to the fragment stage.
 
-Input: names and types of values. Output: for each component, its vector and lane; and, as GLSL,
-what each vector is made of and how each value is taken out again. WebGL 2 guarantees 15 vectors
-between the stages. Floats travel as floats; ints, uints and bools as ints, because an int's bits
-sent as a float may be a denormal or a NaN and arrive changed. When vectors run short, floats fill
-the spare lanes of int vectors by their bits, which is safe in that direction.
+Input: names and types of values. Output: the vector and lane of each component; and GLSL
+expressions that fill each vector and that extract each value. WebGL 2 guarantees 15 vectors of four
+components between the stages. Floats are passed as floats; ints, uints and bools as ints, because
+an int's bits as a float may be a denormal or a NaN and be changed on the way. If there are too few
+vectors, the bits of floats fill unused lanes of int vectors, which is safe in this direction.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ LANES = "xyzw"
 
 @dataclass(frozen=True, slots=True)
 class PackedLane:
-    """Where one component travels: ``vectors[vector]``, lane 0 to 3."""
+    """The place of one component: lane 0 to 3 of ``vectors[vector]``."""
 
     integer: bool
     vector: int
@@ -29,13 +29,13 @@ class PackedLane:
 
 @dataclass(frozen=True, slots=True)
 class Packing:
-    """Where everything travels.
+    """The places of all values.
 
     Attributes:
         values: Names and types, in order.
         places: For each value, the place of each of its components.
-        float_vectors: How many vec4; their numbers come first.
-        int_vectors: How many ivec4.
+        float_vectors: The number of vec4; they are numbered first.
+        int_vectors: The number of ivec4.
     """
 
     values: tuple[tuple[str, Type], ...]
@@ -45,10 +45,10 @@ class Packing:
 
 
 def pack(values: tuple[tuple[str, Type], ...]) -> Packing:
-    """Find a place for every component.
+    """Assign a place to every component.
 
     Raises:
-        AssertionError: They are more than 60 components: the frequency pass chose too many.
+        AssertionError: There are more than 60 components: the frequency pass selected too many.
     """
     floats = [(n, t) for n, t in values if kind_of(t) is Kind.FLOAT]
     ints = [(n, t) for n, t in values if kind_of(t) is not Kind.FLOAT]
@@ -62,7 +62,7 @@ def pack(values: tuple[tuple[str, Type], ...]) -> Packing:
 
 
 def _whole(values: list[tuple[str, Type]]) -> tuple[dict[str, list[tuple[int, int]]], int]:
-    """Vectors and columns kept in one vector each: largest first, into the first that fits."""
+    """Place each vector or column within one packed vector: largest first, first fit."""
     pieces = [
         (_column_size(t), order, n, column)
         for order, (n, t) in enumerate(values)
@@ -97,7 +97,7 @@ def _dense(
     floats: list[tuple[str, Type]],
     ints: list[tuple[str, Type]],
 ) -> Packing:
-    """No lane left empty, values running over from one vector into the next."""
+    """Use every lane; a value may continue in the next vector."""
     float_lanes = [n for n, t in floats for _ in range(component_count(t))]
     int_lanes = [n for n, t in ints for _ in range(component_count(t))]
     float_count, int_count = -(-len(float_lanes) // 4), -(-len(int_lanes) // 4)
@@ -119,8 +119,8 @@ def _dense(
 
 @dataclass(frozen=True, slots=True)
 class _Component:
-    base: str  # the scalar or vector it is a lane of
-    whole: int  # how many lanes the base has
+    base: str  # the scalar or vector that contains it
+    whole: int  # the number of lanes of the base
     lane: int
     kind: Kind
 
@@ -141,7 +141,7 @@ def _components(text: str, type: Type) -> list[_Component]:
 
 
 def vector_texts(packing: Packing, texts: dict[str, str]) -> list[str]:
-    """For each vector the GLSL expression that fills it, from the values' texts."""
+    """Return the GLSL expression that fills each vector, from the texts of the values."""
     count = packing.float_vectors + packing.int_vectors
     lanes: list[list[_Component | None]] = [[None] * 4 for _ in range(count)]
     integer = [i >= packing.float_vectors for i in range(count)]
@@ -177,7 +177,14 @@ def _as_int(text: str, kind: Kind, count: int) -> str:
 
 
 def value_text(packing: Packing, name: str, type: Type, vectors: list[str]) -> str:
-    """The GLSL expression that takes a value out of the vectors of those names."""
+    """Return the GLSL expression that extracts a value from the vectors.
+
+    Args:
+        packing: The places of all values.
+        name: The value's name.
+        type: The value's type.
+        vectors: The names of the vectors.
+    """
     kind = kind_of(type)
     assert kind is not None
     places = packing.places[name]
@@ -192,7 +199,7 @@ def value_text(packing: Packing, name: str, type: Type, vectors: list[str]) -> s
 
 
 def _taken(places: tuple[PackedLane, ...], type: Type, vectors: list[str]) -> str:
-    """A scalar or vector out of its lanes."""
+    """Return a scalar or vector, extracted from its lanes."""
     kind = kind_of(type)
     runs = []
     for (vector, integer), run in groupby(places, lambda place: (place.vector, place.integer)):

@@ -1,7 +1,7 @@
-"""Long lines of C-like text, broken where a person would break them.
+"""Wrap long lines of C-like text at readable places.
 
-Input: one line. Output: the same text on as many lines as it takes, broken after a comma or before
-an operator, outside as many brackets as possible. No token changes.
+Input: one line. Output: the same tokens on several lines, broken after a comma or before an
+operator, inside as few brackets as possible.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from distal.backends.clike.code import Line
 
 WIDTH = 100
 _INDENT = " " * 8
-# After ", " and before " + " and the like; never inside the header of a for loop.
+# After ", " and before an operator such as " + "; never inside the header of a for loop.
 _BREAK = re.compile(r"(?<=, )|(?<= )(?=(?:[-+*/?:|&]|&&|\|\||==|!=|<=?|>=?) )")
 _LOOSENESS = {"?": 3, ":": 3, "|": 2, "&": 2, "+": 1, "-": 1}
 
 
 def wrapped(lines: Iterable[Line]) -> Iterator[Line]:
-    """Lines of at most ``WIDTH`` characters, where they can be broken."""
+    """Yield lines of at most ``WIDTH`` characters, as far as they can be broken."""
     for line in lines:
         if len(line.text) <= WIDTH or "//" in line.text or line.text.lstrip().startswith("for "):
             yield line
@@ -40,7 +40,7 @@ def _pieces(text: str) -> Iterator[str]:
 
 
 def _best_break(text: str, first: int) -> int | None:
-    """In the fewest brackets, then at the operator that binds least, then the last in the width."""
+    """Return the best break: the fewest brackets, then the loosest operator, then the last."""
     best: tuple[int, int, int] | None = None
     depths = _depths(text)
     for match in _BREAK.finditer(text, first + 1, WIDTH):

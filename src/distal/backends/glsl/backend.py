@@ -1,8 +1,8 @@
-"""GLSL: WebGL 2 (ES 3.00), desktop 3.30, WebGL 1 (ES 1.00), glslCanvas, ISF and Shadertoy.
+"""The GLSL backend: WebGL 2 (ES 3.00), desktop 3.30, WebGL 1 (ES 1.00), glslCanvas, ISF, Shadertoy.
 
-Input: a module that has been through the passes. Output: its fragment text, the vertex text where
-there is one, and the interface. The text of functions and of programs is written by
-``distal.backends.glsl.writer`` and ``distal.backends.glsl.stages``.
+Input: a module after the passes. Output: its fragment text, its vertex text if the target has one,
+and the interface. ``distal.backends.glsl.writer`` writes functions, and
+``distal.backends.glsl.stages`` whole programs.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ _TRUST: Final = {i.name: trust_macro(i.name) for i in INTRINSICS.values() if i.c
 
 
 def emit(module: Module, target: Target) -> Artifact:
-    """Write the whole program.
+    """Return the whole program.
 
     Raises:
-        CompileError: The target cannot say what the author wrote.
+        CompileError: The target cannot express the author's code.
     """
     assert isinstance(target, GlslTarget), target
     program = _program(without_frame(module), target)
     module = program.module
     text, places = joined(fragment_lines(program))
-    # Not among the lines that are broken to a width: the comment's texts are data.
+    # The header is added after wrapping, because its comment is data.
     text = "".join(f"{line}\n" for line in program.header) + text
     places = (*(None for _ in program.header), *places)
     if target.frame is not FramePlace.VERTEX or module.kind is not EntryKind.IMAGE:
@@ -57,8 +57,8 @@ def emit(module: Module, target: Target) -> Artifact:
 
 
 def vocabulary(target: GlslTarget) -> Vocabulary:
-    """What no name of the author's may be in a text for the target."""
-    # A macro takes its word from everything: from locals and fields too.
+    """Return the names that are reserved in a text for the target."""
+    # A macro replaces its word everywhere, even in names of locals and fields.
     macros = target.host_macros.union(_TRUST.values() if target.rough else ())
     words = GLSL_KEYWORDS | GLSL_METHODS | macros
     fields = Reserved(words, (*GLSL_PREFIXES, *target.host_prefixes), target.host_parts)
@@ -90,7 +90,7 @@ def _program(module: Module, target: GlslTarget) -> GlslProgram:
 
 
 def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
-    """The per-frame values that the fragment stage reads."""
+    """Return the per-frame values that the fragment stage reads."""
     entry = module.function(module.entry)
     functions = reachable(module, expressions_in(entry.body))
     read = per_frame_reads_in((*functions, entry))
@@ -98,7 +98,7 @@ def _sent(module: Module) -> tuple[tuple[str, Type], ...]:
 
 
 def _trust(module: Module) -> dict[str, str]:
-    """The macros that the fragment text knows, by the built-ins whose careful functions it has."""
+    """Return the macros of the fragment text, by the built-ins whose careful functions it has."""
     entry = module.function(module.entry)
     functions = (*reachable(module, expressions_in(entry.body)), entry)
     natives = {f.native for f in functions}
@@ -116,17 +116,17 @@ def _interface(program: GlslProgram, target: GlslTarget) -> dict[str, Any]:
     module, names = program.module, program.names
     result = interface(module, target, names)
     if program.constants:
-        # Nothing sets them, though the text has them by name.
+        # They are constants in the text, so a host cannot set them.
         apart = [u for u in result["uniforms"] if u["name"] in program.constants]
         result["uniforms"] = [u for u in result["uniforms"] if u not in apart]
         result["constants"] = apart
     for uniform in result["uniforms"]:
-        # The text makes a vector of what the place hands in: u_mouse of vec4(u_mouse, 0.0, 0.0).
+        # The text builds a vector from the host's value: u_mouse in vec4(u_mouse, 0.0, 0.0).
         spelled = uniform["uniform"].removeprefix("vec4(").removeprefix("vec3(")
         uniform["uniform"] = spelled.partition(",")[0].partition(" ")[0]
     result["version"] = target.version
     if target.rough:
-        # Built-in: what a host defines that found its driver's own good (in the fragment stage).
+        # The macro that a host defines if its driver's built-in is accurate (fragment stage).
         result["trust"] = _trust(module)
     for buffer in result["buffers"]:
         buffer["count"] = names.counts[buffer["name"]]

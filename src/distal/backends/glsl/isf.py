@@ -1,10 +1,10 @@
-"""ISF, the Interactive Shader Format of video tools: a shader under a comment that describes it.
+"""ISF, the Interactive Shader Format of video tools: a shader after a comment that describes it.
 
-Input: a module shaped for the target. Output: the comment's JSON with an input for each parameter,
-what these are in the text, and the functions that read imported pictures. The host declares
-everything that the JSON names (https://docs.isf.video, "ISF JSON Reference" and "Automatically
-Generated Variables"). It has no input of three coordinates and none without a range: such a point
-becomes three numbers, and gets a range around its default.
+Input: a module after the passes for the target. Output: the comment's JSON with an input for each
+parameter, the text of each parameter in the shader, and the functions that read imported pictures.
+The host declares everything that the JSON names (https://docs.isf.video, "ISF JSON Reference" and
+"Automatically Generated Variables"). ISF has no inputs with three coordinates and no inputs without
+a range: such a point becomes three numbers, with a range around its default.
 """
 
 # ruff: noqa: D102  (documented where they are declared)
@@ -27,7 +27,7 @@ from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, Unifo
 from distal.ir.types import Texture, TextureShape
 from distal.version import __version__
 
-MOST_LISTED: Final = 64  # a menu of more whole numbers than these is no menu
+MOST_LISTED: Final = 64  # the longest menu of whole numbers; more values get no menu
 _AXES: Final = "xyz"
 
 
@@ -37,9 +37,9 @@ class IsfHeader:
 
     Attributes:
         lines: The comment with the JSON.
-        texts: Parameter -> what the shader reads it as.
+        texts: Parameter -> its text in the shader.
         resources: Texture -> its name in the JSON.
-        names: What the host will have declared.
+        names: The names that the host declares.
     """
 
     lines: tuple[str, ...]
@@ -49,10 +49,10 @@ class IsfHeader:
 
     @classmethod
     def of(cls, module: Module, reserved: Reserved) -> IsfHeader:
-        """The header of a module.
+        """Return the header of a module.
 
         Raises:
-            CompileError: It reads what no host can give it.
+            CompileError: It reads a resource that no ISF host can provide.
         """
         namer = Namer(reserved)
         inputs: list[dict[str, Any]] = []
@@ -84,7 +84,7 @@ class IsfHeader:
 
 
 def _comment(described: dict[str, Any]) -> tuple[str, ...]:
-    """The JSON as a comment, an input to a line."""
+    """Return the JSON as a comment, with one input per line."""
     lines = ["/*{"]
     for key, value in described.items():
         comma = "," if key != next(reversed(described)) else ""
@@ -93,12 +93,12 @@ def _comment(described: dict[str, Any]) -> tuple[str, ...]:
             lines += [f'    "{key}": [', *rows[:-1], rows[-1].rstrip(","), f"    ]{comma}"]
         else:
             lines.append(f'    "{key}": {json.dumps(value)}{comma}')
-    # "*/" in a label would end the comment; JSON allows the stroke to be escaped.
+    # "*/" in a label would end the comment; JSON allows an escaped slash.
     return (*(line.replace("*/", "*\\/") for line in lines), "}*/", "")
 
 
 def _names(uniform: UniformDeclaration) -> tuple[str, ...]:
-    """The wanted names of a parameter's inputs: only a point of three has more than one."""
+    """Return the preferred names of a parameter's inputs; only a 3D point has more than one."""
     is_place = dict(uniform.interface)["kind"] == "point" and len(uniform.default) == 3
     return tuple(f"{uniform.name}_{axis}" for axis in _AXES) if is_place else (uniform.name,)
 
@@ -110,7 +110,7 @@ def _text(names: tuple[str, ...], uniform: UniformDeclaration) -> str:
 
 
 def _inputs(names: tuple[str, ...], uniform: UniformDeclaration) -> Iterable[dict[str, Any]]:
-    """The inputs of a parameter."""
+    """Yield the inputs of a parameter."""
     about = dict(uniform.interface)
     name, label, default = names[0], str(about["label"]), uniform.default
     named = {"NAME": name, "LABEL": label}
@@ -133,7 +133,7 @@ def _inputs(names: tuple[str, ...], uniform: UniformDeclaration) -> Iterable[dic
             listed = {"VALUES": list(range(len(options))), "LABELS": options}
             yield named | {"TYPE": "long", "DEFAULT": default} | listed
         case "color":
-            # The host passes its picker's numbers unchanged; the scene reads linear light.
+            # The host passes its picker's values unchanged, and the scene reads linear light.
             labelled = {"NAME": name, "LABEL": f"{label} (linear)"}
             yield labelled | {"TYPE": "color", "DEFAULT": [*default, 1.0]}
         case "point" if len(default) == 2:
@@ -158,7 +158,7 @@ def _range(about: dict[str, Any]) -> dict[str, Any]:
 
 
 def _reach(default: tuple[float, ...]) -> tuple[float, float]:
-    """A range around the origin that holds a point well inside."""
+    """Return a range around the origin, twice as large as the point's largest coordinate."""
     reach = max(1.0, 2.0 * max(map(abs, default)))
     return -reach, reach
 
@@ -178,7 +178,7 @@ def _point(
 
 
 def _file_name(resource: ResourceDeclaration) -> str:
-    """The name of the file that a texture is in: the author puts it beside the shader."""
+    """Return the name of a texture's file, which the author puts beside the shader."""
     if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
         raise CompileError.at(
             f"ISF imports pictures only, and the scene reads '{resource.name}' ({resource.type})",
@@ -195,17 +195,17 @@ def _file_name(resource: ResourceDeclaration) -> str:
 
 
 class IsfWriter(Glsl100Writer):
-    """GLSL ES 1.00 in which pictures are read by functions of the host."""
+    """Writes GLSL ES 1.00 in which functions of the host read pictures."""
 
     def sample(self, resource: Resource, coord: Code) -> Code:
         return self.call(self.names.accessors[resource.name], [coord])
 
 
 def sampler_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
-    """The function that samples a picture.
+    """Return the function that samples a picture.
 
-    Hosts replace IMG_NORM_PIXEL by a search for the next closing bracket, so that its second
-    argument is a plain name; and they do not say what lies outside a picture.
+    Hosts replace IMG_NORM_PIXEL textually up to the next closing bracket, so its second argument
+    must be a plain name. Values outside a picture are undefined, so the coordinate is wrapped.
     """
     name, function = names.resources[resource.name], names.accessors[resource.name]
     coord, inside = map(names.local_namer().name, ("coord", "inside"))

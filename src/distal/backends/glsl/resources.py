@@ -1,8 +1,8 @@
-"""Textures and buffers in GLSL: samplers, and the functions that read single elements.
+"""Write textures and buffers in GLSL: samplers, and functions that read single elements.
 
-Input: a resource's declaration. Output: lines of GLSL. A buffer is a texture of one texel an
-element, row by row, in a width of the host's choice, and a uniform with the count: WebGL 2 has no
-other.
+Input: a resource's declaration. Output: lines of GLSL. A buffer is a texture with one texel per
+element, row by row, whose width the host chooses, and a uniform with the count: WebGL 2 has no
+storage buffers.
 """
 
 from __future__ import annotations
@@ -29,7 +29,13 @@ _BUFFER_SAMPLERS = {
 def resource_lines(
     resource: ResourceDeclaration, names: ModuleNames, target: GlslTarget
 ) -> list[str]:
-    """The declaration of a resource."""
+    """Return the declaration of a resource.
+
+    Args:
+        resource: The resource.
+        names: The names in the text.
+        target: The target.
+    """
     name = names.resources[resource.name]
     if isinstance(resource.type, Texture):
         if not target.declares_textures:
@@ -45,7 +51,7 @@ def resource_lines(
 
 
 def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
-    """The function that reads one texel or element, the index clamped."""
+    """Return the function that reads one texel or element; it clamps the index."""
     name, function = names.resources[resource.name], names.accessors[resource.name]
     local = names.local_namer().name
     index = local("index")
@@ -75,9 +81,9 @@ def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[st
 
 
 def _cube_accessor(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
-    """A cube's texel: sampled at its very centre, since GLSL fetches none from a cube.
+    """Return the function that reads a cube's texel by sampling at its centre.
 
-    The direction through a face's centre and axes: OpenGL ES 3.0.6, table 3.21.
+    GLSL has no ``texelFetch`` for cubes. Directions of the faces: OpenGL ES 3.0.6, table 3.21.
     """
     name, function = names.resources[resource.name], names.accessors[resource.name]
     local = names.local_namer().name

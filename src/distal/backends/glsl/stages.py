@@ -1,8 +1,8 @@
-"""Complete GLSL programs: what surrounds the functions in each place a text is used.
+"""Write complete GLSL programs: declarations and entry points around the functions.
 
-Input: a module shaped for a GLSL target. Output: the fragment text and, for WebGL 2 and desktop GL,
-the vertex text that computes the per-frame part. How a function looks is said in
-``distal.backends.glsl.writer``.
+Input: a module after the passes for a GLSL target. Output: the fragment text and, for WebGL 2 and
+desktop GL, the vertex text that computes the per-frame part. ``distal.backends.glsl.writer`` writes
+the functions.
 """
 
 from __future__ import annotations
@@ -42,33 +42,33 @@ _ES100_TYPES = {"resolution": "vec2 u_resolution", "time": "float u_time", "mous
 
 @dataclass(frozen=True, slots=True)
 class GlslProgram:
-    """What the stages are written from."""
+    """The data that all stages of one program share."""
 
     module: Module
     names: ModuleNames
     target: GlslTarget
-    fixed: dict[str, str]  # uniforms that the place provides
-    constants: frozenset[str]  # numbers that do not fit among the uniforms
+    fixed: dict[str, str]  # the texts of the uniforms that the host provides
+    constants: frozenset[str]  # numbers that exceed the limit of uniforms
     packing: Packing | None
     vectors: list[str]  # the names of the packed vectors
-    header: tuple[str, ...] = ()  # comments that the place reads
+    header: tuple[str, ...] = ()  # comments that the host reads
 
     def writer(self) -> GlslWriter:
-        """A writer for one stage."""
+        """Return a new writer for one stage."""
         kind = Glsl100Writer if self.target.family == "glsl100" else GlslWriter
         kind = IsfWriter if self.target.described else kind
         return kind(self.names, Expense(self.module), self.fixed)
 
 
 def fragment_lines(program: GlslProgram) -> list[Line]:
-    """The fragment stage; of a ``@func`` its functions alone."""
+    """Return the fragment stage; for a ``@func`` only its functions."""
     module = program.module
     entry = module.function(module.entry)
     is_image = module.kind is EntryKind.IMAGE
     writer = program.writer()
     writer.leaves_choice = True
     roots: list[Expr] = list(expressions_in(entry.body))
-    here = program.packing is None  # the per-frame part is computed in this stage
+    here = program.packing is None  # whether this stage computes the per-frame part
     frame = [value for _, value in module.frame] if here else []
     functions = reachable(module, [*roots, *frame])
     _write_functions(writer, functions if is_image else (*functions, entry))
@@ -88,10 +88,10 @@ def fragment_lines(program: GlslProgram) -> list[Line]:
 
 
 def vertex_lines(program: GlslProgram) -> list[Line]:
-    """The vertex stage: one triangle over the whole picture, and the per-frame part.
+    """Return the vertex stage: one triangle over the whole picture, and the per-frame part.
 
-    Three vertices cost nothing, and nobody measures the driver's functions in this stage: the
-    careful ones always stand here.
+    This stage always uses the careful functions: their cost for three vertices is negligible, and
+    the driver's built-ins are not measured in this stage.
     """
     module = program.module
     writer = program.writer()
@@ -166,7 +166,7 @@ def _write_main(
 
 
 def _write_frame(program: GlslProgram, writer: GlslWriter, in_functions: set[str]) -> None:
-    """Compute the per-frame values; those that functions read are globals, the rest locals."""
+    """Append the per-frame values; those that functions read are globals, the others locals."""
     for name, value in program.module.frame:
         spelled = program.names.frame[name]
         code = writer.expression(value)

@@ -1,7 +1,6 @@
-"""The GLSL targets, one declaration each: WebGL 2, desktop 3.30, WebGL 1, and three hosts.
+"""Declare the GLSL targets: WebGL 2, desktop 3.30, WebGL 1, and three hosts.
 
-Input: nothing. Output: ``TARGETS``. Imports no writer: the declarations are read whenever
-``distal`` starts.
+Imports no writer, because the declarations are read whenever ``distal`` starts.
 """
 
 from __future__ import annotations
@@ -35,27 +34,27 @@ Resources: TypeAlias = tuple[ResourceDeclaration, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GlslTarget(TextTarget):
-    """One version of GLSL in one place.
+    """One version of GLSL for one host.
 
     Attributes:
         version: The version of the language, without "#version".
-        head: The lines before everything else.
-        output: What the entry assigns the color to.
+        head: The first lines of the text.
+        output: The variable to which the entry function assigns the color.
         coord: The text of the pixel's coordinate.
-        main: The line that opens the entry.
-        frame_uniforms: Who declares what every picture has: time, resolution ...
+        main: The first line of the entry function.
+        frame_uniforms: Who declares the frame's values: time, resolution ...
         numbers: Who declares a scene's numbers.
         initialised: Whether a uniform's declaration may give its default.
-        texts: Frame values that the place provides under its own names.
+        texts: The texts of the frame's values that the host provides under other names.
         host_names: Names that the host declares before the text.
-        host_macros: What the host replaces as a whole word.
-        host_prefixes: What no name may begin with there.
-        host_parts: What the host replaces also inside longer names.
-        resource_names: The names that the host gives to textures; None: the author's.
+        host_macros: Words that the host replaces.
+        host_prefixes: No name may begin with these.
+        host_parts: Texts that the host replaces even inside longer names.
+        resource_names: Returns the host's names for textures; None: the author's names.
         declares_textures: Whether the text declares its textures.
-        sampler_precision: What stands before a sampler's type.
+        sampler_precision: The precision qualifier of a sampler's type.
         described: Whether the text begins with ISF's description of its inputs as JSON, and
-            reads pictures by ISF's functions (``glsl.isf``).
+            reads pictures with ISF's functions (``glsl.isf``).
     """
 
     backend: ClassVar[str] = "distal.backends.glsl.backend"
@@ -84,16 +83,16 @@ class GlslTarget(TextTarget):
 
     @property
     def written_names(self) -> frozenset[str]:
-        """The names that its texts contain: no name of the author's is one of them."""
+        """The names that its texts contain; the author's names must be different."""
         texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
         return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
 
 
 def shadertoy_channels(resources: Resources) -> dict[str, str]:
-    """Resource -> channel.
+    """Return the Shadertoy channel of each resource.
 
     Raises:
-        CompileError: There are more than the place has, or a buffer, which it cannot hold.
+        CompileError: There are more textures than channels, or a buffer.
     """
     for resource in resources:
         if isinstance(resource.type, Buffer):
@@ -111,10 +110,10 @@ def shadertoy_channels(resources: Resources) -> dict[str, str]:
 
 
 def canvas_textures(resources: Resources) -> dict[str, str]:
-    """Resource -> the name that glslCanvas gives the textures of ``data-textures``, in order.
+    """Return glslCanvas's name for each resource: the textures of ``data-textures``, in order.
 
     Raises:
-        CompileError: There is a texture that the place cannot hold.
+        CompileError: There is a resource that is not a flat texture.
     """
     for resource in resources:
         if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
@@ -175,7 +174,7 @@ _WEBGL_1 = GlslTarget(
     texts={
         "resolution": "u_resolution",
         "time": "u_time",
-        # The place says where the mouse is, and nothing of its buttons.
+        # The host provides the mouse's position, but not its buttons.
         "mouse": "vec4(u_mouse, 0.0, 0.0)",
         "index": "u_frame",
     },
@@ -201,7 +200,7 @@ _ISF = replace(
     place="ISF 2, the Interactive Shader Format",
     use="Put this file into your host's folder for ISF generators; its controls appear there.",
     suffix=".fs",
-    # Not gl_FragCoord: a host may draw into a part of its target.
+    # Not gl_FragCoord, because a host may draw into a part of its target.
     coord="isf_FragNormCoord * RENDERSIZE",
     frame_uniforms=Declares.PLACE,
     parameters=Declares.PLACE,
@@ -209,7 +208,7 @@ _ISF = replace(
     texts={
         "resolution": "RENDERSIZE",
         "time": "TIME",
-        # The place has no mouse: an input of ours says where it would be, in shares of the picture.
+        # The host has no mouse: an additional input is its position, as a fraction of the picture.
         "mouse": f"vec4({ISF_MOUSE} * RENDERSIZE, 0.0, 0.0)",
         "index": "FRAMEINDEX",
     },

@@ -1,8 +1,8 @@
-"""Uniforms as GLSL declares them, and how many of a scene's numbers fit.
+"""Write uniforms in GLSL, and select the numbers that exceed the limit of uniforms.
 
-Input: the uniforms of a module. Output: their lines. WebGL 2 guarantees 224 vectors to a fragment
-stage and packs smaller values into them (GLSL ES 3.00, appendix A.7). A scene may have thousands of
-numbers: those beyond are constants, under the same names.
+Input: the uniforms of a module. Output: their lines. WebGL 2 guarantees 224 vectors for a fragment
+stage, and packs smaller values into them (GLSL ES 3.00, appendix A.7). A scene may have thousands
+of numbers: those that exceed the limit become constants with the same names.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from distal.backends.clike.module_text import uniform_comment
 from distal.ir.nodes import Origin, UniformDeclaration
 from distal.ir.types import FLOAT, UINT, Matrix, Scalar, Type, Vector
 
-ROOM: Final = 200  # vectors; the rest of the 224 is the driver's and the host's
+ROOM: Final = 200  # vectors; the rest of the 224 is for the driver and the host
 
 BEYOND_ROOM_COMMENT: Final = (
     "// Numbers beyond what a stage has room for are constants: they need a new text to change."
@@ -24,7 +24,7 @@ BEYOND_ROOM_COMMENT: Final = (
 
 
 def beyond_room(uniforms: Sequence[UniformDeclaration]) -> frozenset[str]:
-    """The numbers that become constants: the last ones, in the order of their declaration."""
+    """Return the numbers that become constants: the last ones in the order of declaration."""
     widths: Counter[int] = Counter()
     for uniform in uniforms:
         if uniform.origin is not Origin.NUMBER:
@@ -42,7 +42,7 @@ def beyond_room(uniforms: Sequence[UniformDeclaration]) -> frozenset[str]:
 
 
 def _rows(type: Type) -> tuple[int, ...]:
-    """The widths of the rows that a value takes."""
+    """Return the widths of the rows that a value occupies."""
     match type:
         case Scalar():
             return (1,)
@@ -55,26 +55,26 @@ def _rows(type: Type) -> tuple[int, ...]:
 
 
 def _vectors(widths: Counter[int]) -> int:
-    """The vectors they take, packed: a scalar beside a vec3, two vec2 in one."""
+    """Return the number of vectors after packing: a scalar beside a vec3, two vec2 in one."""
     spare = widths[3] + 2 * (widths[2] % 2)
     pairs = -(-widths[2] // 2)
     return widths[4] + widths[3] + pairs + -(-max(0, widths[1] - spare) // 4)
 
 
 def constant_line(uniform: UniformDeclaration, spelled: str) -> str:
-    """A uniform's value as a constant of its name."""
+    """Return a uniform's default as a constant with its name."""
     value = default_text(uniform)
     return f"const {uniform.type} {spelled} = {value};{uniform_comment(uniform)}"
 
 
 def constant_lines(uniforms: Iterable[tuple[UniformDeclaration, str]]) -> list[str]:
-    """The numbers beyond the limit, under a line that says why."""
+    """Return the numbers that exceed the limit, after a comment with the reason."""
     lines = [constant_line(uniform, spelled) for uniform, spelled in uniforms]
     return ["", BEYOND_ROOM_COMMENT, *lines] if lines else []
 
 
 def default_text(uniform: UniformDeclaration) -> str:
-    """A uniform's default as a GLSL constant."""
+    """Return a uniform's default as a GLSL constant."""
     default = uniform.default
     if isinstance(default, bool):
         return "true" if default else "false"

@@ -1,7 +1,7 @@
-"""Functions in GLSL: the versions ES 3.00 and 3.30, and what ES 1.00 says otherwise.
+"""Write functions in GLSL: the versions ES 3.00 and 3.30, and the differences of ES 1.00.
 
-Input: IR functions shaped for a GLSL target. Output: their text. It does not know about stages,
-inputs and outputs (``distal.backends.glsl.stages``).
+Input: IR functions after the passes for a GLSL target. Output: their text. Does not depend on
+stages, inputs and outputs (``distal.backends.glsl.stages``).
 """
 
 # ruff: noqa: D102  (documented where they are declared)
@@ -64,24 +64,38 @@ _COMPARISONS = {
 
 
 def trust_macro(native: str) -> str:
-    """What a host defines to have the driver's own built-in in place of the careful function."""
+    """Return the macro that selects the driver's built-in instead of the careful function."""
     return f"TRUST_{native.upper()}"
 
 
 class GlslWriter(FunctionWriter):
-    """Writes GLSL functions."""
+    """Writes GLSL functions.
+
+    Attributes:
+        expense: The costs of functions.
+        uniform_texts: The texts of the uniforms that are not declared by name.
+        output: The variable that ``main`` assigns instead of returning; None in other functions.
+        leaves_choice: Whether a macro of the host selects between the driver's built-ins and the
+            careful functions.
+    """
 
     family = "glsl"
 
     def __init__(
         self, names: ModuleNames, expense: Expense, uniform_texts: Mapping[str, str]
     ) -> None:
-        """Args: the module's names and costs; texts of uniforms not declared by name."""
+        """Create a writer.
+
+        Args:
+            names: The names in the text.
+            expense: The costs of functions.
+            uniform_texts: The texts of the uniforms that are not declared by name.
+        """
         super().__init__(names)
         self.expense = expense
         self.uniform_texts = uniform_texts
-        self.output: str | None = None  # what main assigns where another function returns
-        self.leaves_choice = False  # the driver's own or the careful function, as the host likes
+        self.output: str | None = None
+        self.leaves_choice = False
 
     # Types
 
@@ -99,11 +113,11 @@ class GlslWriter(FunctionWriter):
                 assert_never(type)
 
     def stored_name(self, type: Type) -> str:
-        """A type as an element: neither version has arrays of arrays, so a struct holds them."""
+        """Return a type's name as an element; a struct wraps an array, as GLSL has no nested ones."""
         return self.names.structs[type] if isinstance(type, Array) else self.type_name(type)
 
     def struct_lines(self, type: Type, held: bool) -> list[str]:
-        """The declaration of a struct, or of the struct that holds an array that is ``held``."""
+        """Return the declaration of a struct, or of the struct that wraps a ``held`` array."""
         match type:
             case Struct(_, fields):
                 members = [f"{self.type_name(t)} {self.names.fields[type, n]};" for n, t in fields]
@@ -139,7 +153,7 @@ class GlslWriter(FunctionWriter):
         if fn.native is None or not self.leaves_choice:
             super().function(fn)
             return
-        # Under the same name, so that no macro takes a word away from the author's own names.
+        # Both have the same name, so that no macro replaces one of the author's names.
         self.open_function(fn)
         reads = tuple(Read(p.name, p.type) for p in fn.params)
         native = self.expression(Builtin(fn.native, reads, fn.result))
@@ -202,7 +216,7 @@ class GlslWriter(FunctionWriter):
                 assert_never(type)
 
     def held_zero(self, element: Type) -> str:
-        """A zero as it stands inside an array."""
+        """Return a zero as an element of an array."""
         zero = self.zero(element)
         return f"{self.stored_name(element)}({zero})" if isinstance(element, Array) else zero
 
@@ -229,7 +243,7 @@ class GlslWriter(FunctionWriter):
     def bool_vector_binary(self, op: BinaryOp, lhs: Code, rhs: Code, type: Type) -> Code:
         if op is BinaryOp.XOR:
             return self.call("notEqual", [lhs, rhs])
-        # No version has && or & of bool vectors: count what is true, as floats.
+        # GLSL has no && or & of bool vectors: compute with 0.0 and 1.0.
         as_floats = f"vec{component_count(type)}"
         sides = (self.call(as_floats, [side]) for side in (lhs, rhs))
         operator = ("*", Precedence.PRODUCT) if op is BinaryOp.AND else ("+", Precedence.SUM)
@@ -256,10 +270,11 @@ class GlslWriter(FunctionWriter):
         return Code(f"{test} ? {first} : {no.text}", Precedence.TERNARY)
 
     def _is_picked(self, e: Select) -> bool:
-        """Whether both values are computed: ``?:`` may be a branch, ``mix`` by a bool never is.
+        """Return whether to compute both values: ``?:`` may become a branch, ``mix`` never does.
 
-        SwiftShader's time for a loop doubles with each branch of two equal ways in it: of nine
-        scenes of the gallery it compiled none before the memory ran out, and takes a second so.
+        SwiftShader's time to compile a loop doubles with each branch that has two equally long
+        sides. It compiled none of nine scenes of the gallery before the memory ran out; with
+        ``mix`` it takes a second.
         """
         if isinstance(e.type, Matrix) or kind_of(e.type) is not Kind.FLOAT:
             return False
@@ -315,7 +330,7 @@ class GlslWriter(FunctionWriter):
 
 
 class Glsl100Writer(GlslWriter):
-    """GLSL ES 1.00: arrays are no values there, so each becomes a struct of its elements."""
+    """Writes GLSL ES 1.00, where arrays are not values: each becomes a struct of its elements."""
 
     family = "glsl100"
 
