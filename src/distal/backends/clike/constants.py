@@ -26,7 +26,7 @@ _OPERATIONS = Unary | Binary | MatMul | Compare | Logical | Select | Cast | Buil
 
 
 def is_table(e: Expr) -> bool:
-    """Return whether an expression is an array of literals, which is declared outside functions."""
+    """Return whether an expression is an array of literals, declared outside the functions."""
     if not isinstance(e, Construct) or not isinstance(e.type, Array):
         return False
     literal = (Const, Splat, Compose, Construct)
@@ -34,9 +34,9 @@ def is_table(e: Expr) -> bool:
 
 
 def is_literal_operation(e: Expr) -> bool:
-    """Return whether an expression is an operation on literals only, except a sign before a literal.
+    """Return whether an expression is an operation on literals only, other than a negated one.
 
-    WGSL computes it at compile time, in another precision, and rejects a result that is not finite.
+    WGSL computes it at compile time, in another precision, and rejects results that are infinite.
     """
     if not isinstance(e, _OPERATIONS):
         return False

@@ -31,5 +31,5 @@ class Expense:
         return 1 + (self._functions.get(e.function, 0) if isinstance(e, Call) else 0)
 
     def of(self, e: Expr) -> int:
-        """Return the number of operations of an expression, including the functions that it calls."""
+        """Return the number of operations of an expression and of the functions that it calls."""
         return sum(map(self._own, nodes_in(e)))

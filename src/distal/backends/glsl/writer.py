@@ -113,7 +113,7 @@ class GlslWriter(FunctionWriter):
                 assert_never(type)
 
     def stored_name(self, type: Type) -> str:
-        """Return a type's name as an element; a struct wraps an array, as GLSL has no nested ones."""
+        """Return a type's name as an element; a struct wraps arrays, because they cannot nest."""
         return self.names.structs[type] if isinstance(type, Array) else self.type_name(type)
 
     def struct_lines(self, type: Type, held: bool) -> list[str]:

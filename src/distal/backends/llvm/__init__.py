@@ -1,8 +1,8 @@
-"""Vector code for the CPU, as LLVM text: one lane per pixel.
+"""The LLVM backend: vector code for the CPU, as LLVM text, with one lane per pixel.
 
-Input: a module after the passes and the shape of the machine's vectors. Output: LLVM text with the
-kernels of ``distal.backends.llvm.kernels``. Needs no LLVM: turning the text into machine code is a
-device's business.
+Input: a module after the passes, and the shape of the machine's vectors. Output: LLVM text with the
+kernels of ``distal.backends.llvm.kernels``. Does not need LLVM: the CPU device compiles the text to
+machine code.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ TARGET = Target(
 
 
 def emit_for(module: Module, lanes: Lanes) -> Artifact:
-    """The LLVM text of a module for one shape of vectors."""
-    # A kernel found in the cache is run without any of this.
+    """Return the LLVM text of a module for one shape of vectors."""
+    # Imported here, because a kernel from the cache needs none of it.
     from distal.backends.llvm.kernels import kernels  # noqa: PLC0415
     from distal.backends.llvm.program import LaneProgram  # noqa: PLC0415
 
@@ -41,7 +41,7 @@ def emit_for(module: Module, lanes: Lanes) -> Artifact:
 
 
 def emit(module: Module, target: Target) -> Artifact:
-    """The LLVM text of a module, for vectors of eight floats, two in flight."""
+    """Return the LLVM text of a module, for two vectors of eight floats per value."""
     assert target.family == TARGET.family
     return emit_for(module, Lanes())
 

@@ -1,8 +1,8 @@
-"""Operations on leaves: once when every operand is uniform, else once for each chunk.
+"""Write operations on leaves: once if all operands are uniform, else once for each chunk.
 
 Input: leaves. Output: instructions in a ``LlvmWriter``, and leaves that name their results. A
-uniform operand is broadcast as late as possible, and once for each stretch of code that is certain
-to run together. Knows nothing of IR nodes, variables or control flow.
+uniform operand is broadcast as late as possible, and only once in code that always runs together.
+Does not depend on IR nodes, variables or control flow.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from distal.backends.llvm.writer import LlvmWriter
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind
 
-# What CONVENTIONS allows: fusing a product with a sum, and taking no care of zero's sign.
+# The allowed freedoms: to fuse a product with a sum, and to ignore the sign of zero.
 FLAGS = "nsz contract"
 
 _FLOAT_COMPARE = {
@@ -43,7 +43,7 @@ _INTEGER_OPS = {
 
 
 class LaneArithmetic:
-    """Writes operations; keeps the broadcasts of uniform leaves."""
+    """Writes operations, and caches the broadcasts of uniform leaves."""
 
     def __init__(self, lanes: Lanes, writer: LlvmWriter, declarations: set[str]) -> None:
         self.lanes = lanes
@@ -52,7 +52,7 @@ class LaneArithmetic:
         self._scopes: list[dict[object, Any]] = [{}]
 
     def enter(self) -> None:
-        """Begin code that may not run: what it ``once`` made is not seen after ``leave``."""
+        """Begin code that may not run; values of ``once`` in it are not used after ``leave``."""
         self._scopes.append({})
 
     def leave(self) -> None:
@@ -60,7 +60,7 @@ class LaneArithmetic:
         self._scopes.pop()
 
     def once(self, key: object, make: Callable[[], Any]) -> Any:
-        """What ``make`` wrote for ``key``; written again where the first may not have run."""
+        """Return the result of ``make`` for ``key``, cached while its code is certain to run."""
         for scope in self._scopes:
             if key in scope:
                 return scope[key]
@@ -70,11 +70,11 @@ class LaneArithmetic:
     # Leaves
 
     def constant(self, value: bool | int | float, kind: Kind) -> Leaf:
-        """A literal."""
+        """Return a literal."""
         return Leaf(kind, (self.lanes.literal(value, kind),), True, True)
 
     def vectors(self, leaf: Leaf) -> tuple[str, ...]:
-        """The chunks of a leaf, broadcast when it is uniform."""
+        """Return the chunks of a leaf; a uniform leaf is broadcast."""
         if not leaf.uniform:
             return leaf.names
         scalar, (name,) = self.lanes.scalar(leaf.kind), leaf.names
@@ -84,18 +84,24 @@ class LaneArithmetic:
         return (chunk,) * self.lanes.chunks
 
     def broadcast(self, name: str, kind: Kind) -> str:
-        """A vector with a scalar in each lane."""
+        """Return a vector with a scalar in each lane."""
         scalar, vector = self.lanes.scalar(kind), self.lanes.vector(kind)
         first = self.writer.value(f"insertelement {vector} poison, {scalar} {name}, i64 0")
         spread = f"shufflevector {vector} {first}, {vector} poison, "
         return self.writer.value(spread + f"<{self.lanes.width} x i32> zeroinitializer")
 
     def spread(self, leaf: Leaf) -> Leaf:
-        """The leaf with a vector for each chunk."""
+        """Return the leaf with a vector for each chunk."""
         return leaf if not leaf.uniform else Leaf(leaf.kind, self.vectors(leaf), False)
 
     def apply(self, result: Kind, template: str, *operands: Leaf) -> Leaf:
-        """Write an instruction; ``{0}`` is an operand, ``{t0}`` its type, ``{r}`` the result's."""
+        """Write an instruction for scalars or for each chunk.
+
+        Args:
+            result: The kind of the result.
+            template: ``{0}`` is the first operand, ``{t0}`` its type, ``{r}`` the result's type.
+            operands: The operands.
+        """
         lanes, uniform = self.lanes, all(o.uniform for o in operands)
         types = {f"t{i}": lanes.type(o.kind, uniform=uniform) for i, o in enumerate(operands)}
         types["r"] = lanes.type(result, uniform=uniform)
@@ -104,7 +110,14 @@ class LaneArithmetic:
         return Leaf(result, names, uniform)
 
     def intrinsic(self, name: str, result: Kind, *operands: Leaf, rest: str = "") -> Leaf:
-        """Write a call of an overloaded LLVM intrinsic; ``rest`` follows the operands."""
+        """Write a call of an overloaded LLVM intrinsic.
+
+        Args:
+            name: The intrinsic's name, without ``llvm.`` and type suffixes.
+            result: The kind of the result.
+            operands: The operands.
+            rest: Text of further arguments after the operands.
+        """
         lanes, uniform = self.lanes, all(o.uniform for o in operands)
         width = "" if uniform else f"v{lanes.width}"
         suffix = f".{width}{_letters(lanes.scalar(result))}"
@@ -123,7 +136,13 @@ class LaneArithmetic:
     # Operations of the language
 
     def select(self, condition: Leaf, yes: Leaf, no: Leaf) -> Leaf:
-        """``yes`` where the condition holds."""
+        """Return ``yes`` in the lanes where the condition holds, else ``no``.
+
+        Args:
+            condition: A bool.
+            yes: The value if the condition holds.
+            no: The value if it does not.
+        """
         if yes == no:
             return yes
         if condition.constant:
@@ -131,7 +150,7 @@ class LaneArithmetic:
         flags = f" {FLAGS}" if yes.kind is Kind.FLOAT else ""
         form = f"select{flags} {{t0}} {{0}}, {{t1}} {{1}}, {{t2}} {{2}}"
         if condition.uniform and not (yes.uniform and no.uniform):
-            # One scalar condition picks whole vectors.
+            # A scalar condition selects whole vectors.
             vector = self.lanes.vector(yes.kind)
             pairs = zip(self.vectors(yes), self.vectors(no), strict=True)
             return Leaf(
@@ -147,7 +166,13 @@ class LaneArithmetic:
         return self.apply(yes.kind, form, condition, yes, no)
 
     def compare(self, op: CompareOp, lhs: Leaf, rhs: Leaf) -> Leaf:
-        """``lhs op rhs``."""
+        """Return the comparison ``lhs op rhs``.
+
+        Args:
+            op: The comparison.
+            lhs: The left operand.
+            rhs: The right operand, of the same kind.
+        """
         if lhs.kind is Kind.FLOAT:
             form = f"fcmp {_FLOAT_COMPARE[op]} {{t0}} {{0}}, {{1}}"
         elif op in _ORDER:
@@ -158,7 +183,13 @@ class LaneArithmetic:
         return self.apply(Kind.BOOL, form, lhs, rhs)
 
     def binary(self, op: BinaryOp, lhs: Leaf, rhs: Leaf) -> Leaf:
-        """``lhs op rhs`` of one component."""
+        """Return ``lhs op rhs`` of one component.
+
+        Args:
+            op: The operator.
+            lhs: The left operand.
+            rhs: The right operand, of the same kind.
+        """
         kind = lhs.kind
         if kind is Kind.FLOAT:
             return self._float_binary(op, lhs, rhs)
@@ -190,11 +221,11 @@ class LaneArithmetic:
         return self.binary(BinaryOp.SUB, lhs, self.binary(BinaryOp.MUL, rhs, floored))
 
     def divide(self, lhs: Leaf, rhs: Leaf) -> Leaf:
-        """``lhs / rhs`` of floats, correctly rounded."""
+        """Return ``lhs / rhs`` of floats, correctly rounded."""
         return self.apply(Kind.FLOAT, f"fdiv {FLAGS} {{t0}} {{0}}, {{1}}", lhs, rhs)
 
     def _floored(self, lhs: Leaf, rhs: Leaf) -> tuple[Leaf, Leaf]:
-        """``lhs // rhs`` and ``lhs % rhs`` of ints; x // 0 = x, x % 0 = 0."""
+        """Return ``lhs // rhs`` and ``lhs % rhs`` of ints; x // 0 = x, x % 0 = 0."""
         kind = lhs.kind
         divisor = int(rhs.names[0]) if rhs.constant else 0
         if divisor > 0 and divisor & (divisor - 1) == 0:
@@ -208,7 +239,7 @@ class LaneArithmetic:
         remainder = self.binary(BinaryOp.SUB, lhs, self.binary(BinaryOp.MUL, quotient, rhs))
         zero = self.constant(0, kind)
         if kind is Kind.INT:
-            # Toward zero becomes downward where the remainder has not the divisor's sign.
+            # Round down instead of toward zero if the remainder's sign is not the divisor's.
             signs = self.compare(CompareOp.LT, self.binary(BinaryOp.XOR, remainder, rhs), zero)
             inexact = self.compare(CompareOp.NE, remainder, zero)
             wrong = self.apply(Kind.BOOL, "and {t0} {0}, {1}", signs, inexact)
@@ -217,18 +248,18 @@ class LaneArithmetic:
             more = self.binary(BinaryOp.ADD, remainder, rhs)
             remainder = self.select(wrong, more, remainder)
         if not rhs.constant:
-            # The quotient was taken by 1 where the divisor is 0, so it is lhs there.
+            # If the divisor is 0, the division used 1, so the quotient is lhs.
             nothing = self.compare(CompareOp.EQ, rhs, zero)
             quotient = self.select(nothing, lhs, quotient)
             remainder = self.select(nothing, zero, remainder)
         return quotient, remainder
 
     def truncated_quotient(self, lhs: Leaf, rhs: Leaf) -> Leaf:
-        """Quotient of ints toward zero, by 1 where the divisor is 0; wraps; never traps.
+        """Return the quotient of ints toward zero; it wraps, never traps, and x / 0 is x.
 
-        In doubles: a quotient of two 32-bit numbers that is not whole is further from the next
-        whole one than a double's rounding. Vector code has no integer division, and the scalar
-        one would stop the process on a zero.
+        Computed in doubles: a quotient of two 32-bit ints that is not whole differs from the next
+        whole number by more than a double's rounding error. Vector code has no integer division,
+        and scalar division by zero would stop the process.
         """
         kind = lhs.kind
         signed = kind is Kind.INT
@@ -252,26 +283,26 @@ class LaneArithmetic:
         return Leaf(kind, tuple(names), uniform)
 
     def negate(self, operand: Leaf) -> Leaf:
-        """``-operand``."""
+        """Return ``-operand``."""
         if operand.kind is Kind.FLOAT:
             return self.apply(Kind.FLOAT, f"fneg {FLAGS} {{t0}} {{0}}", operand)
         return self.binary(BinaryOp.SUB, self.constant(0, operand.kind), operand)
 
     def invert(self, operand: Leaf) -> Leaf:
-        """``not`` of a bool, ``~`` of an int."""
+        """Return ``not`` of a bool, or ``~`` of an int."""
         ones = self.constant(True if operand.kind is Kind.BOOL else -1, operand.kind)
         return self.apply(operand.kind, "xor {t0} {0}, {1}", operand, ones)
 
     def both(self, lhs: Leaf, rhs: Leaf) -> Leaf:
-        """``and`` of bools."""
+        """Return ``and`` of bools."""
         return self.apply(Kind.BOOL, "and {t0} {0}, {1}", lhs, rhs)
 
     def either(self, lhs: Leaf, rhs: Leaf) -> Leaf:
-        """``or`` of bools."""
+        """Return ``or`` of bools."""
         return self.apply(Kind.BOOL, "or {t0} {0}, {1}", lhs, rhs)
 
     def cast(self, operand: Leaf, kind: Kind) -> Leaf:
-        """The leaf as another kind."""
+        """Return the leaf converted to another kind."""
         source = operand.kind
         if source is kind:
             return operand
@@ -288,7 +319,7 @@ class LaneArithmetic:
         return Leaf(kind, operand.names, operand.uniform, operand.constant)
 
     def any_lane(self, leaf: Leaf) -> str:
-        """A scalar i1: whether a lane holds true."""
+        """Return a scalar i1: whether any lane is true."""
         if leaf.uniform:
             return leaf.names[0]
         mask = self.lanes.vector(Kind.BOOL)
@@ -298,19 +329,25 @@ class LaneArithmetic:
         bits = self.writer.value(f"bitcast {mask} {joined} to i{self.lanes.width}")
         return self.writer.value(f"icmp ne i{self.lanes.width} {bits}, 0")
 
-    # Truth values that go round a loop
+    # Loop-carried bools
 
     def carried(self, kind: Kind, *, uniform: bool) -> str:
-        """The type in which a leaf goes round a loop.
+        """Return the type of a loop-carried leaf.
 
-        Processors without mask registers keep truth values as whole lanes, which LLVM does only
-        on request: as vectors of i1 they would be packed and unpacked in each round.
+        Processors without mask registers represent bools as whole lanes. For vectors of i1, LLVM
+        would pack and unpack them in each iteration, so bools are carried as vectors of ints.
         """
         packed = kind is Kind.BOOL and not uniform and self.lanes.level != "avx512"
         return self.lanes.type(Kind.INT if packed else kind, uniform=uniform)
 
     def to_carried(self, kind: Kind, name: str, *, uniform: bool) -> str:
-        """A leaf's name at the end of a round."""
+        """Convert a leaf's name to its carried form, at the end of an iteration.
+
+        Args:
+            kind: The kind of the leaf.
+            name: The name of a scalar or of a chunk.
+            uniform: Whether the leaf is uniform.
+        """
         type, carried = self.lanes.type(kind, uniform=uniform), self.carried(kind, uniform=uniform)
         if type == carried:
             return name
@@ -319,14 +356,20 @@ class LaneArithmetic:
         return self.writer.value(f"sext {type} {name} to {carried}")
 
     def from_carried(self, kind: Kind, name: str, *, uniform: bool) -> str:
-        """A leaf's name at the start of a round."""
+        """Convert a leaf's name from its carried form, at the start of an iteration.
+
+        Args:
+            kind: The kind of the leaf.
+            name: The name of a scalar or of a chunk.
+            uniform: Whether the leaf is uniform.
+        """
         type, carried = self.lanes.type(kind, uniform=uniform), self.carried(kind, uniform=uniform)
         if type == carried:
             return name
         return self.writer.value(f"icmp slt {carried} {name}, zeroinitializer")
 
     def spread_all(self, leaves: Leaves) -> Leaves:
-        """Every leaf with a vector for each chunk."""
+        """Return all leaves with a vector for each chunk."""
         return tuple(map(self.spread, leaves))
 
 

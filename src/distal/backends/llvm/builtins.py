@@ -1,8 +1,8 @@
-"""The built-ins that the CPU computes itself.
+"""Write the built-ins that the CPU computes directly.
 
-Input: a built-in's name and its arguments' leaves. Output: the result's leaves. Every other
-built-in has been decomposed into calls of prelude functions before; in 64 bits, for which the
-prelude's polynomials are not exact enough, the elementary ones call the C library lane by lane.
+Input: a built-in's name, and the leaves of its arguments. Output: the leaves of the result. All
+other built-ins have been decomposed into calls of prelude functions. In 64 bits the prelude's
+polynomials are not accurate enough, so elementary functions call the C library lane by lane.
 """
 
 from __future__ import annotations
@@ -17,14 +17,21 @@ from distal.ir.limits import largest_power, smallest
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind, Matrix, Type
 
-# Names that LLVM has under another name; the rest of these are spelled alike.
+# LLVM's names of the rounding functions.
 _ROUNDING = {"floor": "floor", "ceil": "ceil", "round": "rint", "trunc": "trunc"}
 
 
 def builtin(
     arithmetic: LaneArithmetic, name: str, args: tuple[Leaves, ...], types: tuple[Type, ...]
 ) -> Leaves:
-    """A built-in applied to arguments."""
+    """Return the result of a built-in.
+
+    Args:
+        arithmetic: Writes the operations.
+        name: The built-in.
+        args: The leaves of each argument.
+        types: The types of the arguments.
+    """
     first = args[0]
     match name:
         case "dot":
@@ -43,7 +50,7 @@ def builtin(
             n = matrix.size
             return tuple(first[row * n + column] for column in range(n) for row in range(n))
         case _:
-            # A scalar beside a vector of another argument does not occur: rows are componentwise.
+            # The remaining built-ins are componentwise: all arguments have equally many leaves.
             assert all(leaf_count(t) == len(first) for t in types)
             return tuple(_component(arithmetic, name, row) for row in zip(*args, strict=True))
 
@@ -83,7 +90,7 @@ def _component(arithmetic: LaneArithmetic, name: str, args: Leaves) -> Leaf:
         case "floor" | "ceil" | "round" | "trunc":
             return arithmetic.intrinsic(_ROUNDING[name], kind, x)
         case "min":
-            # b < a ? b : a is x86's own minimum, NaN included.
+            # b < a ? b : a is x86's minimum instruction, even for NaN.
             return arithmetic.select(arithmetic.compare(CompareOp.LT, args[1], x), args[1], x)
         case "max":
             return arithmetic.select(arithmetic.compare(CompareOp.LT, x, args[1]), args[1], x)
@@ -120,7 +127,7 @@ def _sign(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
 
 
 def _bits_of(arithmetic: LaneArithmetic, x: Leaf, kind: Kind) -> Leaf:
-    """The bits of a float of 32 bits, whatever the precision."""
+    """Return the bits of a value as a 32-bit float, in either precision."""
     if arithmetic.lanes.precision == 32:
         return arithmetic.apply(kind, "bitcast {t0} {0} to {r}", x)
     names = []
@@ -134,7 +141,7 @@ def _bits_of(arithmetic: LaneArithmetic, x: Leaf, kind: Kind) -> Leaf:
 
 
 def _float_of(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
-    """The float of 32 bits with these bits, widened to the precision."""
+    """Return the 32-bit float with these bits, converted to the precision."""
     if arithmetic.lanes.precision == 32:
         return arithmetic.apply(Kind.FLOAT, "bitcast {t0} {0} to {r}", x)
     names = []
@@ -148,10 +155,10 @@ def _float_of(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
 
 
 def _library(arithmetic: LaneArithmetic, name: str, args: Leaves) -> Leaf:
-    """An elementary function of the C library; pow's first argument is held above 0."""
+    """Return an elementary function of the C library; the base of a power is clamped to 0."""
     if name in ("atan2", "raw_atan2"):
-        # On the axis the signs of zeros count for nothing; the library turns by pi for x = -0, and
-        # the other way round for y = -0.
+        # For y = 0 the result must not depend on the signs of zeros; the library returns pi for
+        # x = -0, and the negative angle for y = -0.
         zero, half_turn = (arithmetic.constant(a, Kind.FLOAT) for a in (0.0, math.pi))
         flat = arithmetic.compare(CompareOp.EQ, args[0], zero)
         behind = arithmetic.compare(CompareOp.LT, args[1], zero)

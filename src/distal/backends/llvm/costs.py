@@ -1,6 +1,6 @@
-"""How much work an expression or a block is, roughly in vector instructions.
+"""Estimate the cost of expressions and blocks, roughly in vector instructions.
 
-Input: expressions and blocks. Output: numbers that decide whether a branch around code pays.
+Input: expressions and blocks. Output: numbers that decide whether a branch around code saves time.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ from distal.ir.nodes import (
 from distal.ir.types import component_count, is_static, kind_of
 from distal.ir.walk import blocks, children, expressions, nodes_in
 
-_DIVISION = 8  # also of a square root: vector dividers take about eight multiplications' time
+_DIVISION = 8  # also for square roots: vector dividers take as long as about 8 multiplications
 _HEAVY = frozenset(("sqrt", "inversesqrt"))
 
 
 class LaneCosts:
-    """Costs within one module; a call costs what its function costs, a loop counts as endless."""
+    """Costs in one module; a call costs as much as its function, and a loop adds ``LOOP``."""
 
     LOOP = 1000
     MANY_ROUNDS = 2**31
@@ -51,11 +51,11 @@ class LaneCosts:
             self._rounds[function.name] = self.rounds(function.body)
 
     def function(self, name: str) -> int:
-        """The cost of a function's body."""
+        """Return the cost of a function's body."""
         return self._functions[name]
 
     def rounds(self, block: tuple[Stmt, ...]) -> int:
-        """How often the innermost loop of a block may go round, calls included."""
+        """Return the maximum iterations of a block's innermost loop, including called functions."""
         most = 1
         for stmt in block:
             for e in nodes_in(*expressions(stmt)):
@@ -72,11 +72,11 @@ class LaneCosts:
         return min(most, self.MANY_ROUNDS)
 
     def expression(self, *roots: Expr) -> int:
-        """The cost of expressions, what they share counted once."""
+        """Return the cost of expressions; shared parts are counted once."""
         return sum(self._node(e) for e in nodes_in(*roots))
 
     def block(self, block: tuple[Stmt, ...]) -> int:
-        """The cost of running every statement of a block once."""
+        """Return the cost of running every statement of a block once."""
         total = 0
         for stmt in block:
             total += self.expression(*expressions(stmt))
@@ -111,7 +111,7 @@ class LaneCosts:
 
 
 def constant_rounds(stmt: For) -> int | None:
-    """How often a loop goes round, if that is known."""
+    """Return the number of iterations of a loop, or None if it is not constant."""
     match stmt.start, stmt.stop:
         case Const(start), Const(stop):
             return len(range(int(start), int(stop), stmt.step))

@@ -1,8 +1,8 @@
-"""Expressions to leaves.
+"""Compute expressions as leaves.
 
-Input: IR expressions after the passes, and what the locals hold. Output: instructions and leaves.
-An expression is computed once in a statement, since nodes are interned; what several statements
-share the share pass has bound to a local. Knows no statement.
+Input: IR expressions after the passes, and the values of the locals. Output: instructions and
+leaves. An expression is computed once per statement, because nodes are interned; the share pass has
+bound expressions that several statements share to locals. Does not depend on statements.
 """
 
 from __future__ import annotations
@@ -67,14 +67,25 @@ from distal.ir.types import (
 if TYPE_CHECKING:
     from distal.backends.llvm.program import LaneProgram
 
-# A branch around one side of a conditional expression pays from about this much work on.
+# The cost of a conditional expression's side from which a branch around it saves time.
 BRANCH_COST = 40
 
 _Value = Leaves | Stored
 
 
 class LaneExpressions:
-    """Computes expressions for one function under construction."""
+    """Computes the expressions of one function.
+
+    Attributes:
+        program: The module.
+        uniformity: Which locals vary between lanes.
+        arithmetic: Writes operations.
+        writer: The text of the function.
+        storage: Writes loads and stores.
+        environment: The values of the locals.
+        mask: The active lanes; None: all.
+        memo: The values computed so far in the current statement.
+    """
 
     def __init__(
         self, program: LaneProgram, arithmetic: LaneArithmetic, uniformity: Uniformity
@@ -89,14 +100,14 @@ class LaneExpressions:
         self.memo: dict[Expr, Leaves] = {}
 
     def value(self, e: Expr) -> Leaves:
-        """The leaves of an expression."""
+        """Return the leaves of an expression."""
         known = self.memo.get(e)
         if known is None:
             known = self.memo[e] = self._compute(e)
         return known
 
     def scalar(self, e: Expr) -> Leaf:
-        """The one leaf of a scalar."""
+        """Return the single leaf of a scalar expression."""
         (leaf,) = self.value(e)
         return leaf
 
@@ -159,7 +170,7 @@ class LaneExpressions:
             case _:
                 assert_never(e)
 
-    # Loads of what is the same for all pixels
+    # Loads of values that are the same for all pixels
 
     def _loaded(self, run: str, slot: int, type: Type) -> Leaves:
         return tuple(self._slot(run, slot + i, kind) for i, kind in enumerate(leaf_kinds(type)))
@@ -196,7 +207,7 @@ class LaneExpressions:
         return leaf
 
     def _product(self, lhs: Expr, rhs: Expr) -> Leaves:
-        """Matrix product; matrices are runs of columns."""
+        """Return a matrix product; a matrix is stored by columns."""
         a, b = self.value(lhs), self.value(rhs)
         if isinstance(rhs.type, Matrix):
             n = rhs.type.size
@@ -242,7 +253,7 @@ class LaneExpressions:
         skip_no: bool,
         varies: bool,
     ) -> Leaves:
-        """One side, or both where lanes differ, with a branch around the dear ones."""
+        """Compute one side, or both if lanes differ, with a branch around an expensive side."""
         arithmetic = self.arithmetic
         if condition.uniform:
             return self._branched(condition.names[0], yes, no, varies)
@@ -261,7 +272,7 @@ class LaneExpressions:
         return tuple(arithmetic.select(condition, a, b) for a, b in rows)
 
     def within(self, condition: Leaf) -> tuple[str, ...]:
-        """The active lanes for which a condition holds, a vector for each chunk."""
+        """Return the active lanes where a condition holds, as a vector for each chunk."""
         if self.mask is not None:
             condition = self.arithmetic.both(Leaf(Kind.BOOL, self.mask, False), condition)
         return self.arithmetic.vectors(condition)
@@ -273,7 +284,7 @@ class LaneExpressions:
         no: Callable[[], Leaves] | None,
         varies: bool,
     ) -> Leaves:
-        """One side by a real branch; without ``no`` the other value is zero."""
+        """Select one side by a branch; without ``no`` the other value is zero."""
         writer, arithmetic, memo = self.writer, self.arithmetic, self.memo
         join = writer.label("join")
         labels = writer.label("yes"), writer.label("no") if no else join
@@ -302,7 +313,7 @@ class LaneExpressions:
         return self.merge(ends)
 
     def merge(self, ends: list[tuple[Leaves, str]]) -> Leaves:
-        """At the start of a block: the leaves that came from one of several blocks."""
+        """Write phis at the start of a block: leaves from several predecessor blocks."""
         merged = []
         for row in zip(*(leaves for leaves, _ in ends), strict=True):
             first = row[0]
@@ -324,7 +335,7 @@ class LaneExpressions:
     # Parts of values
 
     def _part(self, e: Index | Field) -> Leaves:
-        """A field or element; straight from memory where the whole lies there."""
+        """Return a field or element; it is loaded directly if the whole value is in memory."""
         if isinstance(e, Index) and isinstance(e.base.type, Buffer):
             return self._element_of_buffer(e)
         place = self.place(e)
@@ -343,7 +354,7 @@ class LaneExpressions:
         return self._picked(parts, self.scalar(e.index))
 
     def _picked(self, parts: list[Leaves], index: Leaf) -> Leaves:
-        """One of a few parts by a chain of selects."""
+        """Select one of a few parts by a chain of selects."""
         arithmetic = self.arithmetic
         picked = parts[0]
         for i, part in enumerate(parts[1:], 1):
@@ -353,7 +364,10 @@ class LaneExpressions:
         return picked
 
     def place(self, e: Expr) -> tuple[Stored, int, Leaf | None] | None:
-        """Where a part of a stored value lies: memory, leaf offset, and leaves to add if any."""
+        """Return the place of a part of a stored value, or None if the value is not in memory.
+
+        The place is the memory, the offset in leaves, and a computed number of leaves to add.
+        """
         match e:
             case Read(name):
                 held = self.environment[name]
@@ -391,14 +405,20 @@ class LaneExpressions:
         return stored, offset, steps
 
     def _spilled(self, e: Expr) -> Stored:
-        """A value put into memory to be indexed; a constant table lies there already."""
+        """Return a value in memory, to index it; constants become a table."""
         leaves = self.value(e)
         if all(leaf.constant for leaf in leaves):
             return Stored(e.type, self.program.table(leaves), True)
         return self.stored(e.type, leaves, uniform=all(leaf.uniform for leaf in leaves))
 
     def stored(self, type: Type, leaves: Leaves, *, uniform: bool) -> Stored:
-        """Put a value into memory of its own."""
+        """Store a value in newly allocated memory.
+
+        Args:
+            type: The type of the value.
+            leaves: The leaves of the value.
+            uniform: Whether the value is the same in all lanes.
+        """
         size = self.storage.size(type, uniform=uniform)
         self.program.take_memory(size, self.uniformity.function)
         place = self.storage.allocate(type, uniform=uniform)
@@ -408,7 +428,7 @@ class LaneExpressions:
     # Textures and buffers
 
     def _resource(self, resource: Expr, field: int) -> str:
-        """A word of a resource's row: its data's address, or one of three sizes."""
+        """Return a field of a resource's entry: the address of its data, or one of three sizes."""
         assert isinstance(resource, Resource)
         at = self.program.layout.resources[resource.name] * RESOURCE_BYTES + field * 8
         type = "i32" if field else "ptr"

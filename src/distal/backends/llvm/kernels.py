@@ -1,8 +1,8 @@
-"""The loops around a scene: tiles of a picture, the per-frame part, batches of points.
+"""Write the kernels: loops over the tiles of a picture or over points, and the per-frame part.
 
 Input: a ``LaneProgram``. Output: exported LLVM functions that take a job (see ``layout``). Every
-thread calls the same kernel once; it takes one tile after the other from a shared counter until
-none is left or the stop flag is up.
+thread calls the same kernel once. It takes tiles from a shared counter until none is left or the
+stop flag is set.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from distal.ir.types import FLOAT, VEC4, Kind, Scalar
 
 
 def kernels(program: LaneProgram) -> bool:
-    """Define every kernel that the module needs; whether the per-frame one needs a thread."""
+    """Define the module's kernels; return whether the per-frame kernel must run in a thread."""
     frame_apart = False
     if program.module.frame:
         _frame(program)
@@ -49,7 +49,7 @@ def _define(program: LaneProgram, name: str, writer: LlvmWriter) -> None:
 
 
 def _frame(program: LaneProgram) -> None:
-    """Scalar code that fills the per-frame values, each of which may read those before it."""
+    """Write scalar code that computes the per-frame values; each may read the previous ones."""
     arithmetic = program.arithmetic()
     writer = arithmetic.writer
     prologue(writer)
@@ -60,7 +60,7 @@ def _frame(program: LaneProgram) -> None:
         leaves = expressions.value(value)
         place = Stored(value.type, "%frame", True)
         storage.store(place, leaves, program.layout.frame[name], None, None)
-        # Later values use the registers, not the memory just written.
+        # Later values use the registers instead of the memory.
         expressions.memo[PerFrame(name, value.type)] = leaves
     writer.line("ret void")
     _define(program, FRAME, writer)
@@ -72,7 +72,7 @@ def _field(writer: LlvmWriter, name: str, type: str = "i32") -> str:
 
 
 class _Tiles:
-    """The loop that takes tiles from the counter."""
+    """The loop that takes tiles from the shared counter."""
 
     def __init__(self, writer: LlvmWriter) -> None:
         self.writer = writer
@@ -90,14 +90,14 @@ class _Tiles:
         writer.begin(going)
 
     def end(self) -> None:
-        """Go for the next tile."""
+        """End the loop's body: continue with the next tile."""
         self.writer.jump(self.next)
         self.writer.begin(self.done)
         self.writer.line("ret void")
 
 
 class _Count:
-    """A loop over ``start, start + step …`` below ``stop``, at least once."""
+    """A loop over ``start, start + step …`` below ``stop``, with at least one iteration."""
 
     def __init__(self, writer: LlvmWriter, start: str, stop: str, step: int) -> None:
         self.writer, self.stop, self.step = writer, stop, step
@@ -108,7 +108,7 @@ class _Count:
         self.index, self.at = writer.fresh(), writer.reserve()
 
     def end(self) -> None:
-        """Go round."""
+        """End the loop's body: continue with the next index."""
         writer = self.writer
         following = writer.value(f"add i32 {self.index}, {self.step}")
         more = writer.value(f"icmp slt i32 {following}, {self.stop}")
@@ -124,7 +124,7 @@ def _least(writer: LlvmWriter, a: str, b: str) -> str:
 
 
 def _render(program: LaneProgram) -> None:
-    """Blocks of a picture, the top row first in memory, though coordinates count from below."""
+    """Write the kernel of a picture: top row first in memory, coordinates from the bottom."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes
     prologue(writer)
@@ -132,7 +132,7 @@ def _render(program: LaneProgram) -> None:
     width, height = _field(writer, "width"), _field(writer, "height")
     across = _field(writer, "tiles_across")
     block_height = lanes.count // lanes.block_width
-    # A block that hangs over the edge is written here first: 4 floats a pixel.
+    # A block that crosses the picture's edge is first written here: 4 floats per pixel.
     spare = writer.allocate(f"[{lanes.count * 4} x float]", 64)
 
     tiles = _Tiles(writer)
@@ -157,14 +157,14 @@ def _render(program: LaneProgram) -> None:
 def _pixels(
     program: LaneProgram, arithmetic: LaneArithmetic, x: str, y: str, size: tuple[str, str]
 ) -> Leaves:
-    """The colours of a block whose upper left pixel is at column x, row y from the top."""
+    """Return the colors of a block; its upper left pixel is in column x, row y from the top."""
     lanes, writer = program.lanes, arithmetic.writer
     whole = lanes.vector(Kind.INT)
     number = lanes.vector(Kind.FLOAT)
     half = f"splat ({lanes.scalar(Kind.FLOAT)} {lanes.literal(0.5, Kind.FLOAT)})"
     width, height = size
     last = writer.value(f"sub i32 {height}, 1")
-    # Lanes beyond the picture do what its edge does: no loop of theirs goes on for longer.
+    # Lanes outside the picture repeat its edge, so their loops do not run longer.
     edge = arithmetic.broadcast(writer.value(f"sub i32 {width}, 1"), Kind.INT)
     edges = ("slt", edge), ("sgt", "zeroinitializer")
     coordinates: list[Leaf] = []
@@ -189,7 +189,7 @@ def _pixels(
 
 
 def _within(writer: LlvmWriter, type: str, position: str, edge: tuple[str, str]) -> str:
-    """Positions that compare rightly with an edge; the edge instead of others."""
+    """Clamp positions to an edge, given as (comparison that holds inside, edge)."""
     order, limit = edge
     bools = type.replace("i32", "i1")
     inside = writer.value(f"icmp {order} {type} {position}, {limit}")
@@ -204,7 +204,7 @@ def _write(
     output: str,
     spare: str,
 ) -> None:
-    """Write a block: straight into the picture, or by way of ``spare`` at its edges."""
+    """Write a block directly into the picture; at the picture's edges through ``spare``."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     across, down = lanes.block_width, lanes.count // lanes.block_width
     rows = interleaved(arithmetic, color)
@@ -246,7 +246,7 @@ def _write(
 
 
 def _batch(program: LaneProgram) -> None:
-    """Blocks of points: each leaf of the arguments is a run of ``stride`` slots."""
+    """Write the kernel of points: each leaf of the arguments is a run of ``stride`` slots."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes
     prologue(writer)
@@ -292,14 +292,14 @@ def _leaf_at(
 
 
 def _maps_pixels(program: LaneProgram) -> bool:
-    """Whether the function makes a pixel of a pixel: what encodes pictures for display does."""
+    """Return whether the function maps a pixel to a pixel, such as the encoding for display."""
     entry = program.module.function(program.module.entry)
     types = [param.type for param in entry.params]
     return types == [VEC4] and entry.result is VEC4 and program.lanes.precision == 32
 
 
 def _map_pixels(program: LaneProgram) -> None:
-    """Pixels in, pixels out, four floats each: a picture need not be taken apart for it."""
+    """Write the kernel from pixels to pixels of four floats, without splitting into leaves."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes
     prologue(writer)
@@ -312,7 +312,7 @@ def _map_pixels(program: LaneProgram) -> None:
     end = _least(writer, writer.value(f"add i32 {first}, {TILE_BLOCKS * lanes.count}"), count)
     blocks = _Count(writer, first, end, lanes.count)
     arithmetic.enter()
-    # The last block ends with the picture, and does again what the one before it did.
+    # The last block ends at the picture's end; it overlaps the block before and repeats pixels.
     first_pixel = _least(writer, blocks.index, last)
     chunks = [
         writer.value(f"add i32 {first_pixel}, {n}") for n in range(0, lanes.count, lanes.width)

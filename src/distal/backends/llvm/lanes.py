@@ -1,10 +1,10 @@
-"""What a value is while it is computed: leaves, each the same in all lanes or one per lane.
+"""Represent values as leaves: scalars that are the same in all lanes, or one per lane.
 
-Input: IR types and the shape of the machine. Output: the flat list of scalars a type consists of,
-and how LLVM writes their types. Knows no instruction.
+Input: IR types, and the shape of the machine's vectors. Output: the flat list of a type's scalars,
+and LLVM's names of their types. Does not depend on instructions.
 
-A kernel works on ``count`` pixels at a time, one per lane, held in ``chunks`` vectors of ``width``:
-several chains of work in flight hide the latency of each.
+A kernel computes ``count`` pixels at a time, one per lane, in ``chunks`` vectors of ``width``
+lanes: several independent chains of instructions hide the latency of each.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ class Lanes:
 
     Attributes:
         width: Lanes in one vector.
-        chunks: Vectors of each value in flight.
+        chunks: Vectors of each value.
         precision: Bits of a float, 32 or 64.
-        block_width: Pixels across in the block of ``count`` pixels; the rest is its height.
-        level: The CPU feature level, for what plain LLVM text cannot say.
+        block_width: Width of a block of ``count`` pixels; its height follows.
+        level: The name of the CPU feature level, for code that depends on the processor.
     """
 
     width: int = 8
@@ -48,7 +48,7 @@ class Lanes:
 
     @property
     def count(self) -> int:
-        """Pixels at a time."""
+        """The number of pixels that are computed at a time."""
         return self.width * self.chunks
 
     @property
@@ -57,11 +57,11 @@ class Lanes:
         return self.precision // 8
 
     def one_chunk(self) -> Lanes:
-        """The same with one vector of each value: less code, where there is very much of it."""
+        """Return a copy with one vector per value, to reduce the code of very large functions."""
         return replace(self, chunks=1, block_width=min(self.block_width, self.width))
 
     def scalar(self, kind: Kind) -> str:
-        """LLVM's type of one lane."""
+        """Return LLVM's type of one lane."""
         match kind:
             case Kind.FLOAT:
                 return "float" if self.precision == 32 else "double"
@@ -73,15 +73,15 @@ class Lanes:
                 assert_never(kind)
 
     def vector(self, kind: Kind) -> str:
-        """LLVM's type of one chunk."""
+        """Return LLVM's type of one chunk."""
         return f"<{self.width} x {self.scalar(kind)}>"
 
     def type(self, kind: Kind, *, uniform: bool) -> str:
-        """LLVM's type of one name of a leaf."""
+        """Return LLVM's type of a leaf's operand: a scalar if uniform, else a vector."""
         return self.scalar(kind) if uniform else self.vector(kind)
 
     def literal(self, value: bool | int | float, kind: Kind) -> str:
-        """A constant of one lane as LLVM writes it."""
+        """Return a constant of one lane in LLVM's syntax."""
         match kind:
             case Kind.FLOAT:
                 number = float(value)
@@ -101,10 +101,10 @@ class Leaf:
     """One scalar of a value.
 
     Attributes:
-        kind: What it is.
-        names: LLVM operands: one scalar when uniform, else one vector for each chunk.
-        uniform: The same in every lane.
-        constant: A literal.
+        kind: Its kind.
+        names: LLVM operands: one scalar if uniform, else one vector for each chunk.
+        uniform: Whether it is the same in every lane.
+        constant: Whether it is a literal.
     """
 
     kind: Kind
@@ -118,9 +118,9 @@ Leaves = tuple[Leaf, ...]
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """A value with arrays, kept in memory because it is indexed by what is not constant.
+    """A value with arrays that is stored in memory, because an index is not constant.
 
-    Leaf i of a uniform one is slot i; else chunk c of leaf i is the vector at slot
+    Leaf i of a uniform value is slot i; otherwise chunk c of leaf i is the vector at slot
     ``(i * chunks + c) * width``.
     """
 
@@ -131,7 +131,7 @@ class Stored:
 
 @cache
 def leaf_kinds(type: Type) -> tuple[Kind, ...]:
-    """The kinds of a value's scalars: columns of a matrix, fields and elements in order."""
+    """Return the kinds of a value's scalars: matrices by columns, fields and elements in order."""
     match type:
         case Scalar(kind):
             return (kind,)
@@ -150,12 +150,12 @@ def leaf_kinds(type: Type) -> tuple[Kind, ...]:
 
 
 def leaf_count(type: Type) -> int:
-    """How many scalars a value has."""
+    """Return the number of scalars of a value."""
     return len(leaf_kinds(type))
 
 
 def field_offset(struct_type: Struct, name: str) -> int:
-    """The first leaf of a field."""
+    """Return the index of the first leaf of a field."""
     offset = 0
     for field, type in struct_type.fields:
         if field == name:
@@ -165,7 +165,7 @@ def field_offset(struct_type: Struct, name: str) -> int:
 
 
 def has_array(type: Type) -> bool:
-    """Whether a value contains an array."""
+    """Return whether a type contains an array."""
     match type:
         case Array():
             return True

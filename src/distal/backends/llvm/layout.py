@@ -1,6 +1,6 @@
-"""Where a kernel finds uniforms, per-frame values and resources, and its arguments and results.
+"""The memory layout of a kernel's uniforms, per-frame values, resources, arguments and results.
 
-Input: a module after the passes. Output: slot numbers, JSON-able, so that a stored kernel can be
+Input: a module after the passes. Output: slot numbers as JSON data, so that a stored kernel can be
 called without compiling its module again. A slot holds one scalar: a float of the precision, or an
 int in its low four bytes (bools are 0 or 1).
 """
@@ -14,36 +14,36 @@ from distal.backends.llvm.lanes import leaf_kinds
 from distal.ir.nodes import EntryKind, Module
 from distal.ir.types import Array, Buffer, Kind, Matrix, Scalar, Struct, Texture, Type, Vector
 
-# The exported functions; each takes a job.
+# Names of the exported functions; each takes a job.
 RENDER: Final = "distal_render"
 FRAME: Final = "distal_frame"
 BATCH: Final = "distal_batch"
 PIXELS: Final = "distal_pixels"
 
-# The job that a kernel is called with: eight-byte fields, in this order.
+# The fields of a job, the argument of a kernel: eight bytes each, in this order.
 JOB_FIELDS: Final = (
     "counter",  # pointer: the next tile
-    "stop",  # pointer: not 0 when the work is to end
+    "stop",  # pointer: not 0 stops the work
     "uniforms",  # pointer
     "frame",  # pointer
     "resources",  # pointer: four eight-byte numbers each: data, width or count, height, depth
     "output",  # pointer: pixels, or result leaves
     "input",  # pointer: argument leaves, or pixels
-    "width",  # pixels across, or points in all
+    "width",  # pixels across, or total number of points
     "height",  # pixels down
     "tiles_across",
-    "tiles",  # how many in all
+    "tiles",  # total number
     "stride",  # points from one leaf of arguments or results to the next
 )
 JOB_OFFSET: Final = {name: 8 * i for i, name in enumerate(JOB_FIELDS)}
 RESOURCE_BYTES: Final = 32
 
-TILE_WIDTH, TILE_HEIGHT = 64, 16  # pixels; a multiple of every block's
+TILE_WIDTH, TILE_HEIGHT = 64, 16  # pixels; multiples of every block's sides
 TILE_BLOCKS = 64  # blocks of points in a tile of a batch
 
 
 def shape_of(type: Type) -> Any:
-    """A type as plain data, for calling a kernel: kind and size, fields, length."""
+    """Return a type as plain data, for calling a kernel: kind and size, fields, length."""
     match type:
         case Scalar(kind):
             return {"kind": kind.value}
@@ -61,7 +61,7 @@ def shape_of(type: Type) -> Any:
 
 
 def kinds_in(shape: Any) -> list[str]:
-    """The kinds of the leaves of a shape."""
+    """Return the kinds of the leaves of a shape."""
     if "struct" in shape:
         return [k for _, part in shape["fields"] for k in kinds_in(part)]
     if "element" in shape:
@@ -71,7 +71,15 @@ def kinds_in(shape: Any) -> list[str]:
 
 @dataclass(slots=True)
 class KernelLayout:
-    """Slots of everything a kernel reads."""
+    """The slots of a kernel's inputs.
+
+    Attributes:
+        uniforms: The first slot of each uniform.
+        uniform_slots: The number of slots of all uniforms.
+        frame: The first slot of each per-frame value.
+        frame_slots: The number of slots of all per-frame values.
+        resources: The number of each resource.
+    """
 
     uniforms: dict[str, int] = field(default_factory=dict)
     uniform_slots: int = 0
@@ -81,7 +89,7 @@ class KernelLayout:
 
     @staticmethod
     def of(module: Module) -> KernelLayout:
-        """The layout of a module."""
+        """Return the layout of a module."""
         layout = KernelLayout()
         for uniform in module.uniforms:
             layout.uniforms[uniform.name] = layout.uniform_slots
@@ -94,7 +102,7 @@ class KernelLayout:
 
 
 def description(module: Module) -> dict[str, Any]:
-    """What a host needs to call the kernels of a module, as plain data."""
+    """Return the data that a host needs to call the kernels of a module, as plain data."""
     layout = KernelLayout.of(module)
     entry = module.function(module.entry)
     image = module.kind is EntryKind.IMAGE

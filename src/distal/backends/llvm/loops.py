@@ -1,9 +1,9 @@
-"""Loops under lane masks.
+"""Write loops under lane masks.
 
-Input: predicated loops, whose one way out besides their end is a last ``if flag: break``. Output:
-instructions. A loop goes round while a lane is left; its Vars keep their value in lanes that have
-left, unless nobody reads them afterwards. A count that is the same in all lanes is a scalar, even
-where lanes leave one by one. Loops that may go on for long ask whether to stop.
+Input: predicated loops, whose only ``break`` is a final ``if flag: break``. Output: instructions. A
+loop runs while any lane is active. Its Vars keep their values in lanes that have left the loop,
+unless they are not read afterwards. A counter that is the same in all lanes is a scalar, even if
+lanes leave one by one. Loops that may run long check the stop flag.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from distal.ir.walk import root_of, statements_in
 if TYPE_CHECKING:
     from distal.backends.llvm.statements import Statements
 
-# Loops that may go round more often than this, inner loops included, ask whether to stop.
+# Loops that may have more iterations than this, inner loops included, check the stop flag.
 POLL_ROUNDS = 65536
 
 _INT_MAX = 2**31 - 1
@@ -30,7 +30,7 @@ _INT_MAX = 2**31 - 1
 
 @dataclass(slots=True)
 class _Carried:
-    """One leaf that goes round: its phis, and its value inside the loop."""
+    """A loop-carried leaf: its values on entry, its phis, and its value inside the loop."""
 
     entering: tuple[str, ...]
     phis: tuple[str, ...]
@@ -39,11 +39,11 @@ class _Carried:
 
 @dataclass(slots=True)
 class _VectorLoop:
-    """A loop under construction."""
+    """A loop that is being written."""
 
     header: str
-    before: str  # the block control comes from
-    head: int  # where the phis are written
+    before: str  # the block before the loop
+    head: int  # the line where the phis are written
     variables: dict[str, list[_Carried]]  # the Vars that the body changes
     others: list[_Carried]  # the count and the active lanes
 
@@ -70,7 +70,7 @@ class Loops:
         self._for_together(stmt, start, stop, certain=rounds is not None)
 
     def _for_together(self, stmt: For, start: Leaf, stop: Leaf, *, certain: bool) -> None:
-        """The count is the same in all lanes, though they may leave one by one."""
+        """Write a loop whose counter is the same in all lanes; lanes may leave one by one."""
         writer, expressions = self.writer, self.expressions
         before, done = dict(expressions.environment), writer.label("done")
         outer = expressions.mask
@@ -113,21 +113,21 @@ class Loops:
         return self.arithmetic.apply(Kind.INT, "add {t0} {0}, {1}", count, amount)
 
     def _more(self, count: Leaf, stop: Leaf, step: int, following: Leaf | None) -> str:
-        """Whether another round follows; ``following`` is the next count if it cannot overflow."""
+        """Test for another iteration; ``following`` is the next count if it cannot overflow."""
         if following is not None:
             order = "slt" if step > 0 else "sgt"
             return self.writer.value(f"icmp {order} i32 {following.names[0]}, {stop.names[0]}")
         return self._more_apart(count, stop, step).names[0]
 
     def _more_apart(self, count: Leaf, stop: Leaf, step: int) -> Leaf:
-        """Whether a round follows, by what is left: a number that no int is too small for."""
+        """Test for another iteration by the unsigned distance to the end, which cannot overflow."""
         sides = (stop, count) if step > 0 else (count, stop)
         rest = self.arithmetic.apply(Kind.INT, "sub {t0} {0}, {1}", *sides)
         amount = self.arithmetic.constant(abs(step), Kind.INT)
         return self.arithmetic.apply(Kind.BOOL, "icmp ugt {t0} {0}, {1}", rest, amount)
 
     def _for_apart(self, stmt: For, start: Leaf, stop: Leaf) -> None:
-        """Each lane counts for itself."""
+        """Write a loop in which each lane has a separate counter."""
         writer, expressions, arithmetic = self.writer, self.expressions, self.arithmetic
         before, outer = dict(expressions.environment), expressions.mask
         start, stop = arithmetic.spread(start), arithmetic.spread(stop)
@@ -156,7 +156,7 @@ class Loops:
         self.statements.join(before, [(before, skipped), (ahead, end)])
 
     def conditional(self, stmt: While) -> None:
-        """Write a loop that goes on while a condition holds."""
+        """Write a ``while`` loop."""
         writer, expressions, arithmetic = self.writer, self.expressions, self.arithmetic
         before, outer = dict(expressions.environment), expressions.mask
         diverges = id(stmt) in self.uniformity.divergent_loops
@@ -187,17 +187,17 @@ class Loops:
         expressions.mask = outer
         self.statements.join(before, ends)
 
-    # What goes round
+    # Loop-carried values
 
     def _begin(self, body: tuple[Stmt, ...], others: list[Leaf]) -> _VectorLoop:
-        """Begin a loop with phis for the Vars that the body changes, and for other leaves."""
+        """Begin a loop, with phis for the Vars that the body changes and for other leaves."""
         writer, environment = self.writer, self.expressions.environment
         assigned = {root_of(s.target).name for s in statements_in(body) if isinstance(s, Assign)}
         entering: dict[str, Leaves] = {}
         for name, held in environment.items():
             if name in assigned and not isinstance(held, Stored):
                 entering[name] = held
-        # Outer values are made ready before the jump, inner ones after all phis.
+        # Values on entry are converted before the jump, values inside the loop after all phis.
         variables = {name: [self._carried(leaf) for leaf in v] for name, v in entering.items()}
         loop = _VectorLoop(
             writer.label("loop"), writer.block, 0, variables, list(map(self._carried, others))
@@ -226,7 +226,7 @@ class Loops:
         )
 
     def _end(self, loop: _VectorLoop, ahead: dict[str, Leaves | Stored], others: list[Leaf]) -> str:
-        """At the end of an iteration: pass on the loop-carried values. The block it ends in."""
+        """End an iteration: complete the phis of the loop-carried values; return the last block."""
         end = self.writer.block
         pairs = list(zip(loop.others, others, strict=True))
         for name, row in loop.variables.items():
@@ -244,26 +244,26 @@ class Loops:
         return end
 
     def _lanes_left(self, outer: Mask, diverges: bool) -> list[Leaf]:
-        """The lanes that enter a loop that they leave one by one."""
+        """Return the lanes that enter a loop, if lanes leave it one by one."""
         if not diverges:
             return []
         every = ("splat (i1 true)",) * self.arithmetic.lanes.chunks
         return [Leaf(Kind.BOOL, outer or every, False)]
 
     def _activate(self, lanes_left: _Carried) -> Leaf:
-        """Make the lanes that are left the active ones."""
+        """Make the remaining lanes the active ones."""
         self.expressions.mask = lanes_left.inside.names
         return lanes_left.inside
 
     def _all(self, tests: list[str]) -> str:
-        """Whether all tests hold."""
+        """Return the conjunction of all tests."""
         joined = tests[0]
         for test in tests[1:]:
             joined = self.writer.value(f"and i1 {joined}, {test}")
         return joined
 
     def _body(self, body: tuple[Stmt, ...]) -> Leaf | None:
-        """A round; the condition of its trailing ``if leave: break``."""
+        """Write the body; return the condition of its final ``if leave: break``."""
         self.statements.level += 1
         leave: Leaf | None = None
         match body[-1:]:
@@ -279,7 +279,7 @@ class Loops:
     def _kept(
         self, loop: _VectorLoop, live: Leaf | None, body: tuple[Stmt, ...]
     ) -> dict[str, Leaves | Stored]:
-        """The locals at a round's end; lanes that left before it keep their values."""
+        """Return the locals at the end of an iteration; lanes that left keep their values."""
         environment = dict(self.expressions.environment)
         if live is None:
             return environment
@@ -296,19 +296,19 @@ class Loops:
         return environment
 
     def _dead_after(self, name: str, inside: dict[str, int]) -> bool:
-        """Whether a Var is of no use after the loop: bound beside it and read inside only."""
+        """Return whether a Var is unused after the loop: declared beside it, read only inside."""
         statements = self.statements
         beside = statements.levels.get(name) == statements.level
         return beside and inside.get(name, 0) == statements.reads.get(name, 0)
 
     def _remaining(self, live: Leaf, leave: Leaf | None) -> Leaf:
-        """The lanes that go round again."""
+        """Return the lanes that run the next iteration."""
         if leave is None:
             return live
         return self.arithmetic.spread(self.arithmetic.both(live, self.arithmetic.invert(leave)))
 
     def _polled(self) -> str:
-        """A test, in loops that may be long, that nobody cancelled the run."""
+        """Return a test that the stop flag is not set, for loops that may run long."""
         self.expressions.program.polls = True
         flag = self.writer.value("load volatile i32, ptr %stop")
         return self.writer.value(f"icmp eq i32 {flag}, 0")

@@ -1,7 +1,7 @@
-"""Pixels of four floats between memory and the lanes of vectors.
+"""Convert pixels of four floats between memory and the lanes of vectors.
 
 Input: addresses, or the channels of a block. Output: channels, or vectors of whole pixels in the
-order in which a picture holds them. Knows nothing of the loops around.
+order of a picture in memory. Does not depend on the surrounding loops.
 """
 
 from __future__ import annotations
@@ -13,7 +13,15 @@ from distal.ir.types import Kind
 
 
 def pixel_address(writer: LlvmWriter, base: str, x: str, y: str, width: str) -> str:
-    """The address of a pixel of four floats."""
+    """Return the address of a pixel of four floats.
+
+    Args:
+        writer: The text of the function.
+        base: The address of the picture.
+        x: The column.
+        y: The row, from the top.
+        width: Pixels in a row.
+    """
     wide = [writer.value(f"zext i32 {n} to i64") for n in (x, y, width)]
     row = writer.value(f"mul i64 {wide[1]}, {wide[2]}")
     index = writer.value(f"add i64 {row}, {wide[0]}")
@@ -21,7 +29,7 @@ def pixel_address(writer: LlvmWriter, base: str, x: str, y: str, width: str) -> 
 
 
 def interleaved(arithmetic: LaneArithmetic, color: Leaves) -> list[str]:
-    """The block's rows as pixels of red, green, blue and alpha, always floats of 32 bits."""
+    """Return the rows of a block as RGBA pixels, always 32-bit floats."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     parts, across = chunk_pixels(arithmetic, color), lanes.block_width * 4
     return [
@@ -31,7 +39,7 @@ def interleaved(arithmetic: LaneArithmetic, color: Leaves) -> list[str]:
 
 
 def chunk_pixels(arithmetic: LaneArithmetic, color: Leaves) -> list[str]:
-    """Each chunk of lanes as pixels."""
+    """Return each chunk of lanes as RGBA pixels, always 32-bit floats."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     width, narrow = lanes.width, f"<{lanes.width} x float>"
     parts: list[str] = []
@@ -58,7 +66,7 @@ def chunk_pixels(arithmetic: LaneArithmetic, color: Leaves) -> list[str]:
 
 
 def _run(writer: LlvmWriter, parts: list[str], size: int, first: int, count: int) -> str:
-    """``count`` consecutive numbers out of vectors of ``size`` laid end to end."""
+    """Return ``count`` consecutive numbers from the concatenation of vectors of ``size``."""
     if count <= size:
         part, start = parts[first // size], first % size
         if count == size:
@@ -77,7 +85,7 @@ def _run(writer: LlvmWriter, parts: list[str], size: int, first: int, count: int
 
 
 def channels(arithmetic: LaneArithmetic, pointers: list[str]) -> Leaves:
-    """Red, green, blue and alpha of the pixels at each chunk's address."""
+    """Return red, green, blue and alpha of the pixels at the address of each chunk."""
     lanes, writer = arithmetic.lanes, arithmetic.writer
     type = f"<{lanes.width * 4} x float>"
     loaded = [writer.value(f"load {type}, ptr {p}, align 4") for p in pointers]

@@ -1,9 +1,9 @@
-"""One module to LLVM text.
+"""Translate one module to LLVM text.
 
-Input: a module after the passes and the shape of the machine. Output: the text of an LLVM module
-with three kernels, as far as they are wanted: pixels of a picture, the per-frame part, a batch of
-points. A function that was not inlined becomes an LLVM function, once for each choice of arguments
-that vary.
+Input: a module after the passes, and the shape of the machine's vectors. Output: the text of an
+LLVM module with the kernels that are needed: pixels of a picture, the per-frame part, a batch of
+points. A function that is not inlined becomes an LLVM function, once for each set of varying
+arguments.
 """
 
 from __future__ import annotations
@@ -24,17 +24,26 @@ from distal.ir.nodes import Call, Expr, Function, Module
 from distal.ir.types import Kind
 from distal.ir.walk import expressions_in
 
-# Widths that a level's registers hold at once, so that LLVM neither splits nor avoids them.
+# The register width of each level, so that LLVM neither splits nor avoids full vectors.
 _REGISTER_BITS = {"avx512": 512, "avx2": 256, "sse4.2": 128, "neon": 128}
 
 INLINE_COST = 120
-# Arrays live on a thread's stack, a value for each lane; ``devices.threads`` makes it larger.
+# Arrays are on a thread's stack, with a value for each lane; ``devices.threads`` enlarges it.
 ARRAY_BYTES = 8 * 2**20
 _SMALL_ARRAY_BYTES = 2**18
 
 
 class LaneProgram:
-    """What the functions of one LLVM module share."""
+    """The state that the functions of one LLVM module share.
+
+    Attributes:
+        module: The IR module.
+        lanes: The vector shape.
+        layout: The slots of the inputs.
+        costs: The costs of functions and blocks.
+        declarations: Declarations of LLVM intrinsics.
+        polls: Whether a loop checks the stop flag.
+    """
 
     def __init__(self, module: Module, lanes: Lanes) -> None:
         self.module = module
@@ -56,13 +65,17 @@ class LaneProgram:
         self._tables: dict[Leaves, str] = {}
 
     def may_be_long(self) -> bool:
-        """Whether what was written so far has long loops, or much memory on the stack."""
+        """Return whether the code so far has long loops or large arrays on the stack."""
         return self.polls or self._array_bytes > _SMALL_ARRAY_BYTES
 
-    # What the writers of functions ask for
+    # Services for the writers of functions
 
     def take_memory(self, size: int, function: Function) -> None:
-        """Count memory for an array.
+        """Add an array's size to the total.
+
+        Args:
+            size: Bytes.
+            function: The function that contains the array, for the message.
 
         Raises:
             CompileError: All arrays together are too large.
@@ -77,11 +90,11 @@ class LaneProgram:
             )
 
     def arithmetic(self) -> LaneArithmetic:
-        """For a new function."""
+        """Return the arithmetic of a new function."""
         return LaneArithmetic(self.lanes, LlvmWriter(), self.declarations)
 
     def table(self, leaves: Leaves) -> str:
-        """The name of a constant table, one slot for each leaf."""
+        """Return the name of a constant table, with one slot for each leaf."""
         name = self._tables.get(leaves)
         if name is None:
             name = self._tables[leaves] = f"@table{len(self._tables)}"
@@ -102,9 +115,15 @@ class LaneProgram:
         return f"{self._slot_type(leaf.kind)} {value}"
 
     def call(self, caller: LaneExpressions, name: str, args: tuple[Expr, ...]) -> Leaves:
-        """Call a function with the caller's active lanes."""
+        """Call a function with the caller's active lanes.
+
+        Args:
+            caller: The expressions of the calling function.
+            name: The called function.
+            args: The arguments.
+        """
         function = self._functions[name]
-        # A static argument (a texture) was bound by the specialise pass.
+        # The specialise pass has already bound static arguments (textures).
         varying = tuple(caller.uniformity.varies(a) for a in args)
         values = [caller.value(a) for a in args]
         values = [
@@ -129,9 +148,10 @@ class LaneProgram:
         return self._unpacked(caller.writer, result, returned, kinds, uniform=not result_varies)
 
     def _inlined(self, name: str) -> bool:
-        """Small functions and functions called at one place are written where they are called.
+        """Return whether to inline a function: if it is small, or has a single call.
 
-        Vector registers do not survive a call, so a small one costs more than its body.
+        Vector registers are not preserved by calls, so calling a small function costs more than
+        its body.
         """
         if self._functions[name].apart:
             return False
@@ -159,13 +179,13 @@ class LaneProgram:
     def _variant(
         self, function: Function, varying: tuple[bool, ...], masked: bool
     ) -> tuple[str, bool]:
-        """The LLVM function for a choice of varying parameters; whether its result varies."""
+        """Return the LLVM function for a set of varying parameters; whether its result varies."""
         key = function.name, varying, masked
         known = self._variants.get(key)
         if known is None:
             letters = "".join("v" if v else "u" for v in varying) + ("m" if masked else "")
             symbol = f'@"{_escaped(function.name)}.{letters}"'
-            # The caller decides by its arguments; the result varies when one of them does.
+            # The result varies if one of the arguments does.
             known = self._variants[key] = symbol, any(varying)
             self._define(function, varying, masked, symbol)
         return known
@@ -217,7 +237,15 @@ class LaneProgram:
         varying: tuple[bool, ...],
         mask: Mask,
     ) -> Leaves:
-        """Write a function's body where the writer stands."""
+        """Write a function's body at the current position.
+
+        Args:
+            arithmetic: Writes the operations.
+            function: The function.
+            args: The leaves of the arguments.
+            varying: Which arguments vary between lanes.
+            mask: The active lanes; None: all.
+        """
         names = frozenset(p.name for p, vary in zip(function.params, varying, strict=True) if vary)
         expressions = LaneExpressions(self, arithmetic, Uniformity(function, names))
         expressions.mask = mask
@@ -239,7 +267,7 @@ class LaneProgram:
         self._definitions.append(text)
 
     def text(self, name: str) -> str:
-        """The whole LLVM module."""
+        """Return the whole LLVM module."""
         bits = _REGISTER_BITS[self.lanes.level]
         attributes = (
             f'attributes #0 = {{ nounwind "no-builtins" "min-legal-vector-width"="{bits}" '
@@ -256,14 +284,14 @@ class LaneProgram:
 
 
 def prologue(writer: LlvmWriter) -> None:
-    """Name what a job points to; what is not used is removed later."""
+    """Load the pointers of a job; unused ones are removed later."""
     for name in ("stop", "uniforms", "frame", "resources"):
         at = writer.value(f"getelementptr i8, ptr %job, i64 {JOB_OFFSET[name]}")
         writer.line(f"%{name} = load ptr, ptr {at}, !invariant.load !0")
 
 
 def _escaped(name: str) -> str:
-    """A name between quotes as LLVM wants it."""
+    """Return a name with the escapes of LLVM's quoted names."""
     return "".join(
         chr(b) if 32 <= b < 127 and b not in b'"\\' else f"\\{b:02X}" for b in name.encode()
     )

@@ -1,10 +1,10 @@
-"""Square roots and divisions, by estimates where the processor has good ones.
+"""Compute square roots and divisions from estimates, if the processor has accurate estimates.
 
 Input and output: leaves. AVX-512 estimates 1/sqrt(x) to 14 bits in a third of the time that the
-vector divider takes for a root; one step of Newton's method makes 27 of them, an error of at most
-one unit in the last place (a root of a number below the normal ones keeps the estimate's 14 bits),
-and whole results stay whole. The divider was the narrowest place of the first example: 64 lanes
-took 7.7 ms a picture with it and 5.9 ms without.
+vector divider needs for a root. One step of Newton's method increases it to 27 bits, an error of at
+most one unit in the last place (the root of a denormal number keeps the estimate's 14 bits), and
+whole results stay exact. The divider was the bottleneck of the first example: 64 lanes took 7.7 ms
+per picture with it and 5.9 ms without it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from distal.ir.types import Kind
 
 _RSQRT = "@llvm.x86.avx512.rsqrt14.ps.512"
 _FIXUP = "@llvm.x86.avx512.mask.fixupimm.ps.512"
-# What fixupimm does with a value by its class, four bits each: 1 takes the value itself instead of
+# The action of fixupimm for each class of a value, four bits each: 1 returns the value instead of
 # the result. Classes: quiet and signalling NaN, zero, one, -infinity, infinity, negative, positive.
 _ZERO_AND_INFINITY = 0x00100100
 _INFINITIES = 0x00110000
@@ -30,7 +30,7 @@ def _estimates(arithmetic: LaneArithmetic, *leaves: Leaf) -> bool:
 
 
 def square_root(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
-    """The square root; of 0, infinity and NaN themselves, NaN below 0."""
+    """Return the square root; 0, infinity and NaN are returned unchanged, and NaN below 0."""
     if not _estimates(arithmetic, x):
         return arithmetic.intrinsic("sqrt", Kind.FLOAT, x)
     value, vector = arithmetic.writer.value, arithmetic.lanes.vector(Kind.FLOAT)
@@ -41,13 +41,13 @@ def square_root(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
         half = value(f"fmul {vector} {y}, splat (float 0.5)")
         rest = _fused(arithmetic, value(f"fneg {vector} {root}"), root, name)
         better = _fused(arithmetic, rest, half, root)
-        # Of 0 and infinity the estimate is the other one, and their product NaN.
+        # For 0 the estimate is infinity and for infinity it is 0, so the product is NaN.
         names.append(_except(arithmetic, better, name, _ZERO_AND_INFINITY))
     return Leaf(Kind.FLOAT, tuple(names), False)
 
 
 def inverse_square_root(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
-    """``1 / sqrt(x)``: infinite for 0, 0 for infinity."""
+    """Return ``1 / sqrt(x)``: infinity for 0, 0 for infinity."""
     if not _estimates(arithmetic, x):
         one = arithmetic.constant(1.0, Kind.FLOAT)
         return arithmetic.divide(one, square_root(arithmetic, x))
@@ -65,11 +65,16 @@ def inverse_square_root(arithmetic: LaneArithmetic, x: Leaf) -> Leaf:
 
 
 def quotient(arithmetic: LaneArithmetic, a: Leaf, b: Leaf) -> Leaf:
-    """``a / b``, by the reciprocal of a divisor that all lanes share.
+    """Return ``a / b``, using the reciprocal if all lanes share the divisor.
 
-    The product with the rounded reciprocal is put right by what it leaves over (P. Markstein,
+    The product with the rounded reciprocal is corrected by its remainder (P. Markstein,
     "Computation of Elementary Functions on the IBM RISC System/6000 Processor", 1990): the result
-    is the correctly rounded quotient, away from the ends of the range of floats.
+    is the correctly rounded quotient, except near the ends of the range of floats.
+
+    Args:
+        arithmetic: Writes the operations.
+        a: The dividend.
+        b: The divisor.
     """
     if not (_estimates(arithmetic, a) and b.uniform):
         return arithmetic.divide(a, b)
@@ -88,7 +93,7 @@ def quotient(arithmetic: LaneArithmetic, a: Leaf, b: Leaf) -> Leaf:
         first = value(f"fmul {vector} {name}, {inverses[c]}")
         rest = _fused(arithmetic, negated[c], first, name)
         better = _fused(arithmetic, rest, corrections[c], first)
-        # Of an infinite quotient, or by an infinite divisor, nothing is left over to put right.
+        # An infinite quotient, or a quotient by infinity, needs no correction.
         if b.constant:
             names.append(_except(arithmetic, better, first, _INFINITIES))
         else:
@@ -97,7 +102,7 @@ def quotient(arithmetic: LaneArithmetic, a: Leaf, b: Leaf) -> Leaf:
 
 
 def _reciprocals(arithmetic: LaneArithmetic, b: Leaf, one: Leaf) -> tuple[Leaf, Leaf]:
-    """``1 / b``, and the same again for the correction: 0 where ``b`` is near the range's ends."""
+    """Return ``1 / b``, and the factor of the correction: the same, or 0 if ``b`` is extreme."""
     reciprocal = arithmetic.divide(one, b)
     size = arithmetic.intrinsic("fabs", Kind.FLOAT, b)
     above = arithmetic.compare(CompareOp.GT, size, arithmetic.constant(_SMALLEST, Kind.FLOAT))
@@ -115,7 +120,7 @@ def _estimate(arithmetic: LaneArithmetic, name: str) -> str:
 
 
 def _fused(arithmetic: LaneArithmetic, a: str, b: str, c: str) -> str:
-    """``a * b + c`` rounded once."""
+    """Return ``a * b + c``, rounded once."""
     vector = arithmetic.lanes.vector(Kind.FLOAT)
     name = f"@llvm.fma.v{arithmetic.lanes.width}f32"
     arithmetic.declarations.add(f"declare {vector} {name}({vector}, {vector}, {vector})")
@@ -125,7 +130,7 @@ def _fused(arithmetic: LaneArithmetic, a: str, b: str, c: str) -> str:
 
 
 def _except(arithmetic: LaneArithmetic, value: str, own: str, classes: int) -> str:
-    """``value``, but ``own`` where that is of one of some classes of numbers."""
+    """Return ``value``, but ``own`` in lanes where ``own`` is in one of some classes of numbers."""
     vector, whole = arithmetic.lanes.vector(Kind.FLOAT), arithmetic.lanes.vector(Kind.INT)
     arithmetic.declarations.add(
         f"declare {vector} {_FIXUP}({vector}, {vector}, {whole}, i32, i16, i32)"

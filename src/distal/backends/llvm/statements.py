@@ -1,8 +1,8 @@
-"""Statements under lane masks.
+"""Write statements under lane masks.
 
-Input: predicated blocks. Output: instructions that leave each local's value in the environment.
-Locals are SSA values: after a condition that varies, a Var is picked from both sides lane by lane,
-so nothing inside a side needs a mask but memory, calls and tests for active lanes.
+Input: predicated blocks. Output: instructions; the environment contains each local's value. Locals
+are SSA values: after a varying condition, each lane of a Var is selected from the two sides. So
+inside a side only memory accesses, calls and tests for active lanes need a mask.
 """
 
 from __future__ import annotations
@@ -36,12 +36,20 @@ from distal.ir.nodes import (
 from distal.ir.types import Array, Kind, Scalar, Struct, Type
 from distal.ir.walk import expressions_in, root_of
 
-# A block of at least this cost is branched around when no lane wants it.
+# A block of at least this cost is skipped by a branch if no lane needs it.
 SKIP_COST = 40
 
 
 class Statements:
-    """Writes the statements of one function."""
+    """Writes the statements of one function.
+
+    Attributes:
+        reads: How often each local is read.
+        indexed: The locals that are stored in memory, because an index is not constant.
+        level: The number of loops around the current statement.
+        levels: The number of loops around the declaration of each local.
+        result: The leaves of the returned value.
+    """
 
     def __init__(self, expressions: LaneExpressions, function: Function) -> None:
         self.expressions = expressions
@@ -51,12 +59,12 @@ class Statements:
         self.reads = reads_in(function.body)
         self.indexed = _dynamically_indexed(function)
         self.loops = Loops(self)
-        self.level = 0  # how many loops we are in
-        self.levels: dict[str, int] = {}  # in how many loops a local was bound
+        self.level = 0
+        self.levels: dict[str, int] = {}
         self.result: Leaves = ()
 
     def block(self, block: tuple[Stmt, ...]) -> None:
-        """Write a block in order."""
+        """Write the statements of a block."""
         for stmt in block:
             self.expressions.memo = {}
             self._statement(stmt)
@@ -87,7 +95,7 @@ class Statements:
         self.levels[name] = self.level
         varies = name in self.uniformity.varying
         if isinstance(stmt, Let) and all(leaf.constant for leaf in leaves):
-            expressions.environment[name] = leaves  # an indexed one becomes a table
+            expressions.environment[name] = leaves  # an indexed constant becomes a table
         elif name in self.indexed:
             expressions.environment[name] = expressions.stored(type, leaves, uniform=not varies)
         elif isinstance(stmt, Var) and varies:
@@ -108,7 +116,7 @@ class Statements:
         name = root_of(target).name
         held = expressions.environment[name]
         if isinstance(held, Stored):
-            # Several components of a vector in memory: one after the other.
+            # Several components of a vector in memory: assign them one by one.
             assert isinstance(target, Swizzle)
             for lane, leaf in zip(target.lanes, value, strict=True):
                 self._assign(Swizzle(target.base, lane, Scalar(leaf.kind)), (leaf,))
@@ -119,7 +127,7 @@ class Statements:
         expressions.environment[name] = changed
 
     def _replaced(self, target: Expr, whole: Leaves, value: Leaves) -> Leaves:
-        """The root's leaves with the target's part replaced."""
+        """Return the leaves of the root, with the target's part replaced."""
         match target:
             case Read():
                 return value
@@ -164,7 +172,7 @@ class Statements:
             self._diverge(condition, then, otherwise)
 
     def _branch(self, test: str, then: tuple[Stmt, ...], otherwise: tuple[Stmt, ...]) -> None:
-        """All lanes go the same way."""
+        """Write a branch that is the same for all lanes."""
         writer = self.writer
         labels = writer.label("then"), writer.label("else"), writer.label("join")
         writer.branch(test, labels[0], labels[1] if otherwise else labels[2])
@@ -191,7 +199,12 @@ class Statements:
         names: dict[str, Leaves | Stored],
         ends: list[tuple[dict[str, Leaves | Stored], str]],
     ) -> None:
-        """At the start of a block: the locals as they come from several blocks."""
+        """Write phis at the start of a block: the locals from several predecessor blocks.
+
+        Args:
+            names: The locals to merge, by name.
+            ends: The environment at the end of each predecessor, and the predecessor's label.
+        """
         merged: dict[str, Leaves | Stored] = {}
         for name, first in names.items():
             values = [environment[name] for environment, _ in ends]
@@ -205,7 +218,7 @@ class Statements:
     def _diverge(
         self, condition: Leaf, then: tuple[Stmt, ...], otherwise: tuple[Stmt, ...]
     ) -> None:
-        """Lanes may differ: both sides, each skipped when dear and no lane wants it."""
+        """Write both sides, because lanes may differ; skip a costly side that no lane needs."""
         expressions, arithmetic = self.expressions, self.arithmetic
         before = dict(expressions.environment)
         outer = expressions.mask
@@ -245,7 +258,7 @@ class Statements:
         self.join(entering, ends)
 
     def _blend(self, holds: Leaf, otherwise: dict[str, Leaves | Stored]) -> None:
-        """Where the condition fails, locals are as in ``otherwise``."""
+        """Restore the locals from ``otherwise`` in the lanes where the condition does not hold."""
         environment = self.expressions.environment
         blended: dict[str, Leaves | Stored] = {}
         for name, old in otherwise.items():
@@ -265,7 +278,7 @@ def _picks_several(target: Expr) -> bool:
 
 
 def _dynamically_indexed(function: Function) -> frozenset[str]:
-    """Locals with an array in them that is indexed by what is not constant."""
+    """Return the locals that contain an array with an index that is not constant."""
     found = set()
     for e in expressions_in(function.body):
         if (

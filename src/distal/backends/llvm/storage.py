@@ -1,8 +1,8 @@
-"""Values in memory: indexed arrays, constant tables, buffers and textures.
+"""Access values in memory: indexed arrays, constant tables, buffers and textures.
 
-Input: places (a pointer, leaves, an index that may differ from lane to lane). Output: loads,
-gathers, masked stores and scatters. Every index that reaches memory was clamped by the bounds pass,
-buffers' and texels' are clamped here, and lanes that are not active touch nothing.
+Input: places (a pointer, leaves, an index that may differ between lanes). Output: loads, gathers,
+masked stores and scatters. The bounds pass clamps indices of arrays; indices of buffers and texels
+are clamped here. Inactive lanes do not access memory.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _SLOT_KIND = {Kind.FLOAT: Kind.FLOAT, Kind.INT: Kind.INT, Kind.UINT: Kind.UINT, 
 
 
 class Storage:
-    """Loads and stores."""
+    """Writes loads and stores."""
 
     def __init__(self, arithmetic: LaneArithmetic) -> None:
         self.arithmetic = arithmetic
@@ -30,19 +30,27 @@ class Storage:
     # Arrays
 
     def size(self, type: Type, *, uniform: bool) -> int:
-        """The bytes that a stored value takes."""
+        """Return the size of a stored value in bytes."""
         count = max(1, len(leaf_kinds(type)))
         return (count if uniform else count * self.lanes.count) * self.lanes.slot
 
     def allocate(self, type: Type, *, uniform: bool) -> Stored:
-        """Memory for a value, its content not yet set."""
+        """Allocate memory for a value; its content is undefined."""
         size = self.size(type, uniform=uniform)
         return Stored(type, self.writer.allocate(f"[{size} x i8]", 64), uniform)
 
     def load(
         self, place: Stored, type: Type, offset: int, index: Leaf | None, mask: Mask
     ) -> Leaves:
-        """The value of ``type`` at leaf ``offset`` plus ``index`` leaves."""
+        """Load a value at leaf ``offset + index``.
+
+        Args:
+            place: The memory.
+            type: The type of the value.
+            offset: A constant number of leaves.
+            index: A computed number of leaves; None: 0.
+            mask: The active lanes; None: all.
+        """
         return tuple(
             self._load_leaf(place, kind, offset + i, index, mask)
             for i, kind in enumerate(leaf_kinds(type))
@@ -51,7 +59,15 @@ class Storage:
     def store(
         self, place: Stored, value: Leaves, offset: int, index: Leaf | None, mask: Mask
     ) -> None:
-        """Write leaves at leaf ``offset`` plus ``index`` leaves, for the active lanes."""
+        """Store leaves at leaf ``offset + index``, in the active lanes.
+
+        Args:
+            place: The memory.
+            value: The leaves.
+            offset: A constant number of leaves.
+            index: A computed number of leaves; None: 0.
+            mask: The active lanes; None: all.
+        """
         for i, leaf in enumerate(value):
             self._store_leaf(place, leaf, offset + i, index, mask)
 
@@ -99,7 +115,7 @@ class Storage:
             self._store_vector(type, value, pointer, align)
 
     def _load_vector(self, type: str, pointer: str, align: int) -> str:
-        """One chunk; a lane is a slot apart from the next, so ints are widened in 64 bits."""
+        """Load one chunk; in 64 bits each int occupies an eight-byte slot and is truncated."""
         if self.lanes.slot == 4 or "i32" not in type:
             return self.writer.value(f"load {type}, ptr {pointer}, align {align}")
         wide = type.replace("i32", "i64")
@@ -116,7 +132,7 @@ class Storage:
         return self.lanes.slot if kind is Kind.FLOAT else 4
 
     def _element(self, place: Stored, offset: int, index: Leaf | None, per_leaf: int) -> str:
-        """The address of a leaf: the same for every lane; ``per_leaf`` slots lie between leaves."""
+        """Return the address of a leaf, the same for all lanes; a leaf has ``per_leaf`` slots."""
         scale = per_leaf * self.lanes.slot
         pointer = place.pointer
         if index is not None:
@@ -137,7 +153,7 @@ class Storage:
         ]
 
     def _addresses(self, place: Stored, offset: int, index: Leaf) -> list[str]:
-        """One vector of pointers for each chunk, for an index that varies."""
+        """Return one vector of pointers for each chunk, for an index that varies."""
         per_leaf = 1 if place.uniform else self.lanes.count
         first = [offset * per_leaf] * self.lanes.count
         if not place.uniform:
@@ -149,7 +165,14 @@ class Storage:
     def addresses(
         self, pointer: str, index: Leaf, scale: int, first: Sequence[int] | None = None
     ) -> list[str]:
-        """Pointers to the slots ``index * scale + first[lane]``."""
+        """Return pointers to the slots ``index * scale + first[lane]``.
+
+        Args:
+            pointer: The first slot.
+            index: The index; it may vary between lanes.
+            scale: Slots per index.
+            first: Slots to add in each lane; None: 0.
+        """
         width, out = self.lanes.width, []
         whole = self.lanes.vector(Kind.INT)
         for c, name in enumerate(self.arithmetic.vectors(index)):
@@ -160,12 +183,18 @@ class Storage:
                 lanes = first[c * width : (c + 1) * width]
                 constant = ", ".join(f"i32 {n}" for n in lanes)
                 slot = self.writer.value(f"add {whole} {slot}, <{constant}>")
-            element = self.lanes.scalar(Kind.FLOAT)  # only its size counts: a slot
+            element = self.lanes.scalar(Kind.FLOAT)  # only its size matters: one slot
             out.append(self.writer.value(f"getelementptr {element}, ptr {pointer}, {whole} {slot}"))
         return out
 
     def gather(self, kind: Kind, addresses: list[str], mask: Mask) -> Leaf:
-        """Loads from a pointer for each lane; zero in lanes that are not active."""
+        """Load from one pointer per lane; the result is zero in inactive lanes.
+
+        Args:
+            kind: The kind of the values.
+            addresses: A vector of pointers for each chunk.
+            mask: The active lanes; None: all.
+        """
         width, type = self.lanes.width, self.lanes.vector(kind)
         letters = {"float": "f32", "double": "f64", "i32": "i32"}[self.lanes.scalar(kind)]
         name = f"@llvm.masked.gather.v{width}{letters}.v{width}p0"
@@ -201,7 +230,7 @@ class Storage:
     # Resources
 
     def clamp(self, index: Leaf, count: Leaf) -> Leaf:
-        """An index held within 0 and ``count - 1``."""
+        """Return an index, clamped to 0 .. ``count - 1``."""
         arithmetic = self.arithmetic
         zero, one = arithmetic.constant(0, Kind.INT), arithmetic.constant(1, Kind.INT)
         last = arithmetic.binary(BinaryOp.SUB, count, one)
@@ -211,7 +240,14 @@ class Storage:
         return arithmetic.select(below, zero, index)
 
     def fetch(self, pointer: str, index: Leaf, kinds: Sequence[Kind], mask: Mask) -> Leaves:
-        """The leaves of element ``index`` of a run of elements, slot by slot."""
+        """Load element ``index`` of a buffer or texture.
+
+        Args:
+            pointer: The first slot.
+            index: The index of the element; it may vary between lanes.
+            kinds: The kinds of an element's leaves.
+            mask: The active lanes; None: all.
+        """
         stride = len(kinds)
         if index.uniform:
             place = Stored(FLOAT, pointer, True)

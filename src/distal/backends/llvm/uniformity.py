@@ -1,11 +1,11 @@
-"""Which locals of a function are the same in every lane.
+"""Find the locals of a function that may differ between lanes.
 
-Input: a predicated function and which parameters vary. Output: the names of the locals that may
-differ between lanes; everything else is computed once, in scalar registers.
+Input: a predicated function, and which of its parameters vary. Output: the names of the locals that
+may differ between lanes; all others are computed once, in scalar registers.
 
-A value varies when an operand does. A Var varies also when it is assigned where lanes may have
-parted since it was bound: under a condition that varies, or in a loop that they leave one by one.
-Assuming that nothing varies and adding what must is repeated until nothing is added.
+A value varies if an operand varies. A Var also varies if it is assigned where lanes may have
+diverged since its declaration: under a varying condition, or in a loop that lanes leave one by one.
+The analysis starts with no varying locals, and repeats until it finds no more.
 """
 
 from __future__ import annotations
@@ -36,13 +36,20 @@ from distal.ir.walk import children, expressions, nodes_in, root_of, statements_
 
 
 class Uniformity:
-    """The analysis of one function for one choice of varying parameters."""
+    """The analysis of one function for one set of varying parameters.
+
+    Attributes:
+        function: The function.
+        varying: The names of the locals and parameters that may differ between lanes.
+        result_varies: Whether the returned value may differ between lanes.
+        divergent_loops: The ids of the loop statements that lanes leave one by one.
+    """
 
     def __init__(self, function: Function, varying: frozenset[str]) -> None:
         self.function = function
         self.varying = set(varying)
         self.result_varies = False
-        self.divergent_loops: set[int] = set()  # ids of statements
+        self.divergent_loops: set[int] = set()
         self._depth: dict[str, int] = {}
         self._memo: dict[Expr, bool] = {}
         self._grew = True
@@ -52,7 +59,7 @@ class Uniformity:
             self._block(function.body, 0)
 
     def varies(self, e: Expr) -> bool:
-        """Whether an expression may differ between lanes."""
+        """Return whether an expression may differ between lanes."""
         known = self._memo.get(e)
         if known is None:
             match e:
@@ -83,7 +90,7 @@ class Uniformity:
                     self._vary(name)
             case Assign(target, value):
                 name = root_of(target).name
-                # A target varies of itself when an index in it does.
+                # A target also varies if an index in it varies.
                 if depth > self._depth[name] or self.varies(value) or self.varies(target):
                     self._vary(name)
             case If(condition, then, otherwise):
@@ -123,7 +130,7 @@ class Uniformity:
 
 
 def reads_in(block: tuple[Stmt, ...]) -> dict[str, int]:
-    """How often each local is read in a block; an assigned target itself is no read."""
+    """Return how often each local is read in a block; assigning to a whole local is not a read."""
     counts: dict[str, int] = {}
     for stmt in statements_in(block):
         roots = expressions(stmt)

@@ -1,7 +1,7 @@
-"""The reference's expressions: what each node gives, in all lanes of a scope at once.
+"""The reference's expressions: the value of each node, in all lanes of a scope at once.
 
-Input: an expression and the scope of the lanes that want it. Output: its value, in the layouts of
-``operations``. How a called function runs is defined by the subclass.
+Input: an expression, and the scope of the lanes that need it. Output: its value, in the layouts of
+``operations``. The subclass defines how a called function runs.
 """
 
 from __future__ import annotations
@@ -56,12 +56,12 @@ class ReferenceExpressions:
     """Computes expressions of one module with one set of uniforms and resources.
 
     Args:
-        module: What to run.
+        module: The module.
         uniforms: A value for every uniform, by name.
         resources: An array for every texture (texels in the order of their indices: (height,
             width, 4), depth or face first) and buffer, by name.
         precision: Bits of a float.
-        poll: Called in every round of a loop; raises to end the work.
+        poll: Called in every iteration of a loop; raises an exception to stop the work.
     """
 
     def __init__(
@@ -94,10 +94,10 @@ class ReferenceExpressions:
         return np.asarray(data).astype(operations.dtype_of(kind, self.precision))
 
     def _call(self, name: str, args: Sequence[Value]) -> Value:
-        """The value of a function; who runs statements knows how."""
+        """Return the value of a function; the subclass runs its statements."""
         raise NotImplementedError
 
-    # Expressions. The memo holds what a statement's shared parts have given.
+    # Expressions. The memo contains the values of parts that a statement shares.
 
     def _leaf(self, e: Expr, scope: Scope, memo: Memo) -> Leaf:
         value = self._evaluate(e, scope, memo)
@@ -147,7 +147,7 @@ class ReferenceExpressions:
                 return self._componentwise(e, [self._leaf(c, scope, memo) for c in children(e)])
 
     def _componentwise(self, e: Expr, operands: list[Leaf]) -> Leaf:
-        """What needs nothing but the values of its operands."""
+        """Return the value of a node that depends only on the values of its operands."""
         match e:
             case Unary(op):
                 return operations.unary(op, *operands)
@@ -176,7 +176,7 @@ class ReferenceExpressions:
     def _builtin(self, name: str, operands: list[Leaf]) -> Leaf:
         meaning = INTRINSICS[name].meaning
         assert meaning is not None, f"decompose leaves no {name} here"
-        # Bits are those of a 32 bit float in either precision.
+        # In either precision, the bits are those of a 32-bit float.
         if name.startswith("float_bits"):
             operands = [a.astype(np.float32) for a in operands]
         result: Leaf = meaning(np, *operands)
@@ -206,7 +206,7 @@ class ReferenceExpressions:
         return operations.choose(condition, *picked)
 
     def _select_lanes(self, condition: Leaf, yes: Expr, no: Expr, scope: Scope) -> Value:
-        """Each side in its own lanes: a loop in it may not end in others."""
+        """Compute each side only in its lanes: in other lanes a loop in it may not end."""
         result: Value | None = None
         for e, taken in ((yes, condition), (no, ~condition)):
             lanes = np.flatnonzero(taken)

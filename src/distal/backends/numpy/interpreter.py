@@ -1,10 +1,9 @@
-"""The reference: walks the IR on NumPy arrays. Slow, and right by definition.
+"""The reference: interprets the IR on NumPy arrays. Slow, and correct by definition.
 
-Input: a module that passes have brought down to what runs (no function values, gradients or
-filtered textures), arguments and uniforms. Output: the entry function's value in every lane (point
-or pixel). Lanes that take another way than others are handled by running each way on the lanes that
-take it, so the meaning of every statement is visible in one place. Layouts are described in
-``operations``. It knows neither files nor devices.
+Input: a module after the passes (without function values, gradients or filtered textures),
+arguments and uniforms. Output: the entry function's value in every lane (point or pixel). If lanes
+take different branches, each branch runs on its lanes only, so the meaning of every statement is
+visible in one place. ``operations`` describes the layouts. Does not depend on files or devices.
 """
 
 from __future__ import annotations
@@ -49,8 +48,9 @@ TARGET: Final = Target(
     saturating_cast=True,
 )
 
-# A picture is made in pieces of so many lanes, so that memory stays bounded and progress is seen.
-# Fewer cost time: the raymarcher at 320x240 takes 0.27 s in one piece, 0.42 s in pieces of 16384.
+# A picture is rendered in pieces of this many lanes, to limit the memory and report progress.
+# Smaller pieces take longer: the raymarcher at 320x240 takes 0.27 s in one piece, 0.42 s in pieces
+# of 16384.
 LANES_AT_ONCE = 131072
 
 
@@ -59,10 +59,10 @@ Rounds = Callable[[NDArray[np.intp], Scope, int], tuple[Leaf, Leaf]]
 
 
 class Interpreter(ReferenceExpressions):
-    """Runs functions of one module; see ``ReferenceExpressions`` for what it is given."""
+    """Runs functions of one module; see ``ReferenceExpressions`` for its arguments."""
 
     def run(self, name: str, args: Sequence[Value]) -> Value:
-        """The value of a function in every lane of its arguments."""
+        """Return the value of a function in every lane of its arguments."""
         with np.errstate(all="ignore"):
             return self._call(name, args)
 
@@ -77,7 +77,7 @@ class Interpreter(ReferenceExpressions):
         assert frame.result is not None, f"{name} returned nothing"
         return frame.result
 
-    # Statements. Each gives the way every lane goes on, or None when all go on to the next.
+    # Statements. Each returns how every lane continues; None: all continue with the next statement.
 
     def _block(self, body: Sequence[Stmt], scope: Scope) -> Ways | None:
         for position, stmt in enumerate(body):
@@ -164,7 +164,7 @@ class Interpreter(ReferenceExpressions):
         memo: Memo = {}
         start = self._leaf(loop.start, scope, memo).astype(np.int64)
         stop = self._leaf(loop.stop, scope, memo).astype(np.int64)
-        # The same number of rounds in every lane: lanes need no mask.
+        # The number of iterations of each lane, by ceiling division.
         count = np.maximum(-((start - stop) // loop.step), 0)
 
         def rounds(lanes: NDArray[np.intp], inside: Scope, number: int) -> tuple[Leaf, Leaf]:
@@ -182,7 +182,7 @@ class Interpreter(ReferenceExpressions):
     def _loop(
         self, rounds: Rounds, name: str | None, body: Sequence[Stmt], scope: Scope
     ) -> Ways | None:
-        """Run the body while ``rounds`` lets lanes in; lanes leave one by one."""
+        """Run the body while ``rounds`` returns True for any lane; lanes leave one by one."""
         ways = np.zeros(scope.lanes, np.int8)
         staying = np.arange(scope.lanes)
         inside, number = scope, 0
@@ -227,7 +227,16 @@ def evaluate(
     precision: int = 32,
     poll: Callable[[], None] | None = None,
 ) -> Value:
-    """The entry function's value, in the layouts of ``operations``."""
+    """Return the entry function's value, in the layouts of ``operations``.
+
+    Args:
+        module: The module after the passes.
+        args: The arguments of the entry function.
+        uniforms: A value for every uniform, by name.
+        resources: An array for every texture and buffer, by name.
+        precision: Bits of a float, 32 or 64.
+        poll: Called in every iteration of a loop; raises an exception to stop the work.
+    """
     interpreter = Interpreter(module, uniforms, resources, precision, poll)
     return interpreter.run(module.entry, args)
 
@@ -242,7 +251,18 @@ def render(
     poll: Callable[[], None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float32]:
-    """The picture of an image module: (height, width, 4), top row first."""
+    """Render an image module: (height, width, 4), top row first.
+
+    Args:
+        module: The module after the passes.
+        width: Pixels across.
+        height: Pixels down.
+        uniforms: As for ``evaluate``.
+        resources: As for ``evaluate``.
+        precision: As for ``evaluate``.
+        poll: As for ``evaluate``.
+        progress: Called regularly with the fraction of the work that is done.
+    """
     interpreter = Interpreter(module, uniforms, resources, precision, poll)
     picture = np.empty((height, width, 4), np.float32)
     for rows in _bands(width, height):
@@ -261,7 +281,7 @@ def _bands(width: int, height: int) -> Iterator[range]:
 def _render_rows(
     interpreter: Interpreter, module: Module, rows: range, width: int, height: int
 ) -> Leaf:
-    """Some rows of the picture; the coordinate's origin is the lower left corner."""
+    """Render some rows of the picture; the origin of coordinates is the lower left corner."""
     x, row = np.meshgrid(np.arange(width), np.array(rows))
     coord = np.stack([x.ravel() + 0.5, height - 0.5 - row.ravel()])
     dtype = operations.dtype_of(Kind.FLOAT, interpreter.precision)

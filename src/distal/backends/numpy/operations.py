@@ -1,9 +1,9 @@
-"""What operators, conversions and indexing mean, on NumPy arrays.
+"""Define operators, conversions and indexing on NumPy arrays.
 
 Input and output: values. A scalar is an array (n,), a vector (size, n), a matrix (columns, rows,
-n), where the last axis counts lanes (points or pixels) and has length 1 for what is the same in all
-of them; a struct or array is a tuple of values. Nothing here knows of nodes other than operators,
-of control flow or of names.
+n). The last axis is the lanes (points or pixels); its length is 1 if all lanes have the same value.
+A struct or array is a tuple of values. Does not depend on nodes except operators, on control flow
+or on names.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _UINT_RANGE = (0.0, 2.0**32 - 1)
 
 
 def dtype_of(kind: Kind, precision: int) -> Any:
-    """The array type of a component."""
+    """Return the NumPy type of a component."""
     match kind:
         case Kind.FLOAT:
             return np.float32 if precision == 32 else np.float64
@@ -40,7 +40,7 @@ def dtype_of(kind: Kind, precision: int) -> Any:
 
 
 def each_leaf(change: Callable[..., Leaf], *values: Value) -> Value:
-    """Combine values of one type array by array, whatever they are made of."""
+    """Combine values of the same type, array by array, including nested tuples."""
     first = values[0]
     if isinstance(first, tuple):
         return tuple(each_leaf(change, *parts) for parts in zip(*values, strict=True))
@@ -48,24 +48,31 @@ def each_leaf(change: Callable[..., Leaf], *values: Value) -> Value:
 
 
 def width(value: Value) -> int:
-    """The number of lanes of a value: 1 or the lanes of the run."""
+    """Return the number of lanes of a value: 1 or the lanes of the run."""
     if isinstance(value, tuple):
         return max(width(part) for part in value)
     return int(value.shape[-1])
 
 
 def gather(value: Value, lanes: NDArray[np.intp]) -> Value:
-    """The value in some lanes."""
+    """Return the value in some lanes."""
     return each_leaf(lambda leaf: leaf if leaf.shape[-1] == 1 else leaf[..., lanes], value)
 
 
 def blank(value: Value) -> Value:
-    """Zeros of a value's type, for any number of lanes."""
+    """Return zeros of a value's type, the same in all lanes."""
     return each_leaf(lambda leaf: np.zeros_like(leaf[..., :1]), value)
 
 
 def scatter(old: Value, lanes: NDArray[np.intp], new: Value, count: int) -> Value:
-    """The value of ``count`` lanes with some of them replaced."""
+    """Return a value with some of its lanes replaced.
+
+    Args:
+        old: The value before.
+        lanes: The positions of the lanes to replace.
+        new: The value in these lanes.
+        count: The number of lanes of the result.
+    """
 
     def replaced(before: Leaf, after: Leaf) -> Leaf:
         whole = np.broadcast_to(before, (*before.shape[:-1], count)).copy()
@@ -76,7 +83,13 @@ def scatter(old: Value, lanes: NDArray[np.intp], new: Value, count: int) -> Valu
 
 
 def choose(condition: Leaf, yes: Value, no: Value) -> Value:
-    """``yes`` where the condition holds, else ``no``."""
+    """Return ``yes`` in the lanes where the condition holds, else ``no``.
+
+    Args:
+        condition: A bool, or a bvec for each component.
+        yes: The value if the condition holds.
+        no: The value if it does not.
+    """
 
     def chosen(a: Leaf, b: Leaf) -> Leaf:
         return np.where(condition, a, b)
@@ -85,7 +98,7 @@ def choose(condition: Leaf, yes: Value, no: Value) -> Value:
 
 
 def unary(op: UnaryOp, operand: Leaf) -> Leaf:
-    """``op operand``."""
+    """Return ``op operand``."""
     match op:
         case UnaryOp.NEGATE:
             return np.negative(operand)
@@ -98,7 +111,13 @@ def unary(op: UnaryOp, operand: Leaf) -> Leaf:
 
 
 def binary(op: BinaryOp, a: Leaf, b: Leaf) -> Leaf:
-    """``a op b``, component by component."""
+    """Return ``a op b``, component by component.
+
+    Args:
+        op: The operator.
+        a: The left operand.
+        b: The right operand, of the same kind.
+    """
     match op:
         case BinaryOp.ADD:
             return a + b
@@ -119,7 +138,7 @@ def binary(op: BinaryOp, a: Leaf, b: Leaf) -> Leaf:
         case BinaryOp.XOR:
             return a ^ b
         case BinaryOp.SHL:
-            # Shifted as unsigned: what leaves on the left is lost, the sign included.
+            # Shift as unsigned: the highest bits are lost, including the sign.
             return (a.view(np.uint32) << (b.view(np.uint32) & np.uint32(31))).view(a.dtype)
         case BinaryOp.SHR:
             shifted: Leaf = a >> (b & b.dtype.type(31))
@@ -135,7 +154,7 @@ def _is_float(a: Leaf) -> bool:
 def _floor_quotient(a: Leaf, b: Leaf) -> Leaf:
     if _is_float(a):
         return np.floor(a / b)
-    # In 64 bits no quotient overflows; the way back wraps.
+    # No quotient overflows in 64 bits; the conversion back wraps.
     divisor = np.where(b == 0, 1, b).astype(np.int64)
     return (a.astype(np.int64) // divisor).astype(a.dtype)
 
@@ -146,7 +165,13 @@ def _int_remainder(a: Leaf, b: Leaf) -> Leaf:
 
 
 def compare(op: CompareOp, a: Leaf, b: Leaf) -> Leaf:
-    """``a op b``, component by component."""
+    """Return the comparison ``a op b``, component by component.
+
+    Args:
+        op: The comparison.
+        a: The left operand.
+        b: The right operand, of the same kind.
+    """
     result: Leaf
     match op:
         case CompareOp.EQ:
@@ -167,7 +192,13 @@ def compare(op: CompareOp, a: Leaf, b: Leaf) -> Leaf:
 
 
 def convert(a: Leaf, kind: Kind, precision: int) -> Leaf:
-    """The components converted to another kind."""
+    """Return the components converted to another kind.
+
+    Args:
+        a: The value.
+        kind: The kind to convert to.
+        precision: Bits of a float, 32 or 64.
+    """
     dtype = dtype_of(kind, precision)
     match kind:
         case Kind.BOOL:
@@ -183,13 +214,13 @@ def convert(a: Leaf, kind: Kind, precision: int) -> Leaf:
 
 
 def _saturated(a: Leaf, limits: tuple[float, float]) -> Leaf:
-    """Toward zero, held in range; NaN gives 0. Every int is exact in 64 bit floats."""
+    """Round toward zero and clamp; NaN becomes 0. Every int is exact as a 64-bit float."""
     wide = np.trunc(a.astype(np.float64))
     return np.clip(np.where(np.isnan(wide), 0.0, wide), *limits).astype(np.int64)
 
 
 def matrix_product(a: Leaf, b: Leaf) -> Leaf:
-    """``a @ b`` of matrices and vectors, sums left to right."""
+    """Return ``a @ b`` of matrices and vectors; sums are computed from left to right."""
     if a.ndim == 2:
         return np.stack([_inner(a, column) for column in b])
     if b.ndim == 2:
@@ -212,7 +243,7 @@ def _inner(a: Leaf, b: Leaf) -> Leaf:
 
 
 def splat(value: Leaf, type: Type) -> Leaf:
-    """A scalar in every component of a vector or matrix."""
+    """Return a vector or matrix with a scalar in every component."""
     match type:
         case Vector(_, size):
             return np.broadcast_to(value, (size, *value.shape))
@@ -223,7 +254,7 @@ def splat(value: Leaf, type: Type) -> Leaf:
 
 
 def compose(parts: list[Leaf], type: Type) -> Leaf:
-    """A vector from scalars and vectors, a matrix from columns."""
+    """Return a vector made of scalars and vectors, or a matrix made of columns."""
     lanes = max(part.shape[-1] for part in parts)
     if isinstance(type, Matrix):
         return np.stack([np.broadcast_to(part, (type.size, lanes)) for part in parts])
@@ -232,7 +263,7 @@ def compose(parts: list[Leaf], type: Type) -> Leaf:
 
 
 def pick(base: Value, index: Leaf) -> Value:
-    """``base[index]``, the index clamped and perhaps different in each lane."""
+    """Return ``base[index]``; the index is clamped and may differ between lanes."""
     held = np.clip(index, 0, len(base) - 1)
     if held.shape[-1] == 1:
         return base[int(held[0])]
@@ -254,7 +285,13 @@ def _pick_leaf(choices: Leaf, index: Leaf) -> Leaf:
 
 
 def put(base: Value, index: Leaf, new: Value) -> Value:
-    """``base`` with ``base[index] = new``, the index clamped."""
+    """Return a copy of ``base`` with ``base[index] = new``.
+
+    Args:
+        base: The array, vector or matrix.
+        index: The index, which is clamped and may differ between lanes.
+        new: The new element.
+    """
     held = np.clip(index, 0, len(base) - 1)
     parts = tuple(choose(held == i, new, base[i]) for i in range(len(base)))
     if isinstance(base, tuple):
@@ -264,12 +301,18 @@ def put(base: Value, index: Leaf, new: Value) -> Value:
 
 
 def leaves(parts: tuple[Value, ...]) -> list[Leaf]:
-    """Parts that are arrays, as what they are."""
+    """Return the parts that are NumPy arrays (for the type checker: all are)."""
     return [part for part in parts if isinstance(part, np.ndarray)]
 
 
 def put_components(base: Leaf, positions: list[int], new: Leaf) -> Leaf:
-    """``base`` with some of its components replaced."""
+    """Return a copy of a vector with some components replaced.
+
+    Args:
+        base: The vector.
+        positions: The numbers of the components.
+        new: The new components.
+    """
     lanes = max(base.shape[-1], new.shape[-1])
     result = np.broadcast_to(base, (*base.shape[:-1], lanes)).copy()
     result[positions] = new if len(positions) > 1 else np.atleast_2d(new)
@@ -277,10 +320,13 @@ def put_components(base: Leaf, positions: list[int], new: Leaf) -> Leaf:
 
 
 def as_value(data: Any, type: Type, precision: int) -> Value:
-    """Python numbers, or nested sequences of them, as a value that is the same in all lanes.
+    """Return numbers, or nested sequences of numbers, as a value that is the same in all lanes.
 
-    Vectors are sequences of components, matrices sequences of columns, structs and arrays
-    sequences of their parts.
+    Args:
+        data: A number; the components of a vector, the columns of a matrix, or the parts of a
+            struct or array.
+        type: The type of the value.
+        precision: Bits of a float, 32 or 64.
     """
     match type:
         case Scalar(kind):

@@ -1,7 +1,7 @@
-"""Lanes on their several ways: a call's frame, and the locals of a part of its lanes.
+"""Track the lanes of a call when they take different branches: scopes with locals of some lanes.
 
-Input: values bound and assigned by the reference's walk. Output: the same values as some lanes see
-them. It knows nothing of nodes.
+Input: values that the interpreter binds and assigns. Output: these values in some lanes. Does not
+depend on nodes.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from distal.backends.numpy.operations import Value
 
 
 class Way(IntEnum):
-    """How a lane goes on after a statement."""
+    """How a lane continues after a statement; ON continues with the next statement."""
 
     ON = 0
     BREAK = 1
@@ -27,15 +27,20 @@ class Way(IntEnum):
 
 @dataclass
 class ActiveCall:
-    """One call of a function: its lanes and what it has returned so far."""
+    """One call of a function.
+
+    Attributes:
+        lanes: The number of lanes.
+        result: The value returned so far, by some or all lanes; None: by no lane.
+    """
 
     lanes: int
     result: Value | None = None
 
     def give(self, value: Value, lanes: NDArray[np.intp] | None) -> None:
-        """Return ``value`` in some lanes of the call (None: all)."""
+        """Set the returned value in some lanes of the call (None: all)."""
         if lanes is None or self.result is None:
-            # Lanes that have not returned yet will overwrite what stands there for them.
+            # Lanes that have not returned yet will overwrite the zeros.
             if lanes is None:
                 self.result = value
                 return
@@ -47,16 +52,17 @@ class ActiveCall:
 class Scope:
     """The locals of some lanes of a call.
 
-    A narrower scope reads its parent's locals in its own lanes, keeps what it changes, and hands
-    that back by ``close``.
+    A narrowed scope reads its parent's locals in its own lanes, keeps the changes, and copies them
+    to the parent in ``close``.
 
     Attributes:
         frame: The call.
-        lanes: How many lanes.
-        parent: The scope this one is a part of, or None.
+        lanes: The number of lanes.
+        parent: The scope that contains this one, or None.
         within: The positions of the lanes among the parent's.
-        absolute: Their positions among the call's lanes, or None for all of them.
+        absolute: Their positions among the call's lanes; None: all lanes of the call.
         values: Locals bound or read here.
+        bound: Names of the locals that were bound here.
         changed: Names of the parent's locals that were assigned here.
     """
 
@@ -70,17 +76,17 @@ class Scope:
     changed: set[str] = field(default_factory=set)
 
     def narrowed(self, within: NDArray[np.intp]) -> Scope:
-        """A scope of some of the lanes."""
+        """Return a scope with some of the lanes."""
         absolute = within if self.absolute is None else self.absolute[within]
         return Scope(self.frame, len(within), self, within, absolute)
 
     def bind(self, name: str, value: Value) -> None:
-        """Make a local of this scope."""
+        """Declare a local of this scope."""
         self.values[name] = value
         self.bound.add(name)
 
     def read(self, name: str) -> Value:
-        """The value of a local in this scope's lanes."""
+        """Return the value of a local in this scope's lanes."""
         if name not in self.values:
             assert self.parent is not None and self.within is not None, f"no local {name}"
             self.values[name] = operations.gather(self.parent.read(name), self.within)
@@ -93,7 +99,7 @@ class Scope:
             self.changed.add(name)
 
     def close(self) -> None:
-        """Hand the changed locals back to the parent."""
+        """Copy the changed locals to the parent."""
         assert self.parent is not None and self.within is not None
         for name in sorted(self.changed):
             before = self.parent.read(name)

@@ -1,8 +1,8 @@
-"""WGSL for WebGPU: as a vertex and a fragment stage, or as a compute program.
+"""The WGSL backend: a vertex and a fragment stage, or a compute program, for WebGPU.
 
-Input: a module that has been through the passes. Output: one text with all entry points, and the
-interface with offsets and bindings. The text of functions and of programs is written by
-``distal.backends.wgsl.writer`` and ``distal.backends.wgsl.stages``.
+Input: a module after the passes. Output: one text with all entry points, and the interface with
+offsets and bindings. ``distal.backends.wgsl.writer`` writes functions, and
+``distal.backends.wgsl.stages`` whole programs.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _TILE: Final = "tile"
 
 
 def emit(module: Module, target: Target) -> Artifact:
-    """Write the whole program."""
+    """Return the whole program."""
     assert isinstance(target, WgslTarget), target
     program = _program(_with_resolution(without_frame(module)), target)
     text, places = joined(program_lines(program))
@@ -43,7 +43,7 @@ def _is_resolution(uniform: UniformDeclaration) -> bool:
 
 
 def _with_resolution(module: Module) -> Module:
-    """The module with the picture's size among its uniforms: the entry points turn rows by it."""
+    """Return the module with the resolution as a uniform: entry points need it to flip rows."""
     if module.kind is EntryKind.FUNCTION or any(map(_is_resolution, module.uniforms)):
         return module
     size = UniformDeclaration(_RESOLUTION, VEC2, Origin.FRAME, (640.0, 480.0))
@@ -52,7 +52,7 @@ def _with_resolution(module: Module) -> Module:
 
 def _program(module: Module, target: WgslTarget) -> WgslProgram:
     names = name_module(module, VOCABULARY, has_members=True)
-    # A value that only later values are made of stays a local of frame_main.
+    # A value that only other per-frame values read is a local of frame_main.
     read = per_frame_reads_in(module.functions)
     frame = lay_out(tuple((name, value.type) for name, value in module.frame if name in read))
     size = next((u.name for u in module.uniforms if _is_resolution(u)), "")
@@ -64,7 +64,7 @@ def _program(module: Module, target: WgslTarget) -> WgslProgram:
 
 
 def _tile_name(module: Module, names: ModuleNames) -> str:
-    """What the member of the uniforms is called that says which part of the picture is computed."""
+    """Return the name of the uniform that contains the part of the picture to compute."""
     if module.kind is EntryKind.FUNCTION:
         return ""
     return Namer(VOCABULARY.fields, names.uniforms.values()).name(_TILE)
@@ -78,7 +78,7 @@ def _interface(program: WgslProgram, target: Target) -> dict[str, Any]:
         entry |= member.entry()
     result["uniform_buffer"] = {"group": 0, "binding": 0, "size": program.uniforms.size}
     if program.tile:
-        # Corner and size in pixels, from the top left; all zeros: the whole picture.
+        # Corner and size in pixels, from the top left; zeros select the whole picture.
         place = {"type": "uvec4", **members[-1].entry()}
         result["tile"] = {"uniform": program.tile, "default": [0, 0, 0, 0], **place}
     numbers = {r.name: texture_binding(i) for i, r in enumerate(module.resources)}

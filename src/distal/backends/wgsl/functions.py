@@ -1,9 +1,10 @@
-"""A function as a compute program of WGSL: called once for each pixel of a picture, or each point.
+"""Write a function as a WGSL compute program that calls it for each pixel or each point.
 
-Input: the entry function of a module. Output: its bindings, its entry point, and what a host must
-know. A function from vec4 to vec4 maps a picture: ``source`` to ``pixels``. Any other is called for
-points: ``arguments`` holds a run of words for each leaf of the arguments, one word for each point;
-``results`` the same for the result. How many points there are follows from the buffer's size.
+Input: the entry function of a module. Output: its bindings, its entry point, and the data that a
+host needs. A function from vec4 to vec4 maps a picture: ``source`` to ``pixels``. Any other
+function is called for points: ``arguments`` has a run of words for each leaf of the arguments, with
+one word for each point, and ``results`` has the same for the result. The size of the buffer
+determines the number of points.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ from distal.ir.types import (
     Vector,
 )
 
-WORKGROUP: Final = 64  # a whole number of every GPU's lanes
-_LARGEST_LEAVES: Final = 4096  # beyond, the text would be an array written out
+WORKGROUP: Final = 64  # a multiple of the SIMD width of every GPU
+_LARGEST_LEAVES: Final = 4096  # larger values would need a text with one line per element
 
 _READ: Final = {
     Kind.FLOAT: "bitcast<f32>({})",
@@ -47,7 +48,7 @@ _WRITE: Final = {
 
 
 def maps_pixels(function: Function) -> bool:
-    """Whether it makes a pixel of a pixel."""
+    """Return whether a function maps a vec4 to a vec4, such as a pixel to a pixel."""
     return [p.type for p in function.params] == [VEC4] and function.result is VEC4
 
 
@@ -71,7 +72,7 @@ def _is_value(type: Type) -> bool:
 
 
 def leaf_count(type: Type) -> int:
-    """How many words a value has."""
+    """Return how many 32-bit words a value has."""
     match type:
         case Scalar():
             return 1
@@ -90,7 +91,7 @@ def leaf_count(type: Type) -> int:
 
 
 def function_interface(function: Function) -> dict[str, Any]:
-    """What a host must provide; nothing for a function that no host can call."""
+    """Return the interface's entries of a function; none for a function that no host can call."""
     if maps_pixels(function):
         return {
             "stages": {"compute": OWN.pixels_main},
@@ -113,7 +114,7 @@ def function_interface(function: Function) -> dict[str, Any]:
 
 
 def function_binding_lines(function: Function) -> list[str]:
-    """The declarations of what goes in and out."""
+    """Return the declarations of the input and output buffers."""
     if maps_pixels(function):
         return [
             "",
@@ -131,7 +132,14 @@ def function_binding_lines(function: Function) -> list[str]:
 def function_entry_lines(
     function: Function, writer: WgslWriter, names: ModuleNames, first: Sequence[str]
 ) -> list[str]:
-    """The entry point, ``first`` its first lines; none for a function that no host can call."""
+    """Return the entry point; no lines for a function that no host can call.
+
+    Args:
+        function: The function.
+        writer: Writes types.
+        names: The names in the text.
+        first: The first lines of the entry point.
+    """
     mapping = maps_pixels(function)
     if not mapping and not _is_callable(function):
         return []
@@ -165,7 +173,7 @@ def function_entry_lines(
 
 
 def _read(type: Type, words: Iterator[str], writer: WgslWriter) -> str:
-    """A value made of the next words."""
+    """Return a value made of the next words."""
     match type:
         case Scalar(kind):
             return _READ[kind].format(next(words))
@@ -185,7 +193,7 @@ def _read(type: Type, words: Iterator[str], writer: WgslWriter) -> str:
 
 
 def _leaves(text: str, type: Type, names: ModuleNames) -> Iterator[str]:
-    """The words of a value, in the order in which ``_read`` takes them."""
+    """Yield the words of a value, in the order that ``_read`` uses."""
     match type:
         case Scalar(kind):
             yield _WRITE[kind].format(text)

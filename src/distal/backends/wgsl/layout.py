@@ -1,8 +1,8 @@
-"""Where the members of a WGSL struct lie in a uniform buffer.
+"""Compute the layout of a WGSL struct in a uniform buffer.
 
-Input: names and value types. Output: byte offsets, as the host must write them (WebGPU Shading
-Language, "Alignment and Size"). A bool travels as a u32, 0 or 1: bools are not shared with the
-host.
+Input: names and value types. Output: the byte offsets at which the host writes the members (WebGPU
+Shading Language, "Alignment and Size"). A bool is stored as a u32, 0 or 1, because WGSL cannot
+share bools with the host.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from distal.ir.types import Kind, Matrix, Scalar, Type, Vector, component_count,
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One member: its bytes start at ``offset``."""
+    """One member of a struct; ``offset`` and ``size`` are in bytes."""
 
     name: str
     type: Type
@@ -23,19 +23,19 @@ class Member:
     size: int
 
     def entry(self) -> dict[str, Any]:
-        """What the interface says of it."""
+        """Return the member's data for the interface."""
         return {"offset": self.offset, "size": self.size}
 
 
 @dataclass(frozen=True, slots=True)
 class StructLayout:
-    """Members in order, and the size of the whole buffer."""
+    """The members of a struct in order, and the size of the whole buffer in bytes."""
 
     members: tuple[Member, ...]
     size: int
 
     def has(self, name: str) -> bool:
-        """Whether there is a member of that name."""
+        """Return whether there is a member with this name."""
         return any(m.name == name for m in self.members)
 
 
@@ -51,12 +51,12 @@ def _alignment(type: Type) -> int:
 
 def _size(type: Type) -> int:
     if isinstance(type, Matrix):
-        return type.size * _alignment(type)  # each column takes its alignment
+        return type.size * _alignment(type)  # each column occupies its alignment
     return 4 * component_count(type)
 
 
 def lay_out(members: tuple[tuple[str, Type], ...]) -> StructLayout:
-    """Offsets of members in the given order."""
+    """Return the layout of members in the given order."""
     placed, end = [], 0
     for name, type in members:
         alignment = _alignment(type)
@@ -67,7 +67,7 @@ def lay_out(members: tuple[tuple[str, Type], ...]) -> StructLayout:
 
 
 def shared_type(type: Type) -> Type:
-    """The type that represents ``type`` in a buffer."""
+    """Return the type that represents ``type`` in a buffer."""
     if kind_of(type) is not Kind.BOOL:
         return type
     return Vector(Kind.UINT, type.size) if isinstance(type, Vector) else Scalar(Kind.UINT)

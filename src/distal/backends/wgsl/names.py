@@ -1,7 +1,7 @@
-"""What WGSL texts reserve, and the names that they declare themselves.
+"""The reserved names of WGSL texts, including the names that the texts declare themselves.
 
-Every name that a text declares at module scope is listed here once: the writers read it from
-``OWN``, and no name of the author's is one of them. Uniforms and per-frame values are members of
+Every name that the writers declare at module scope is listed here once: the writers read it from
+``OWN``, and the author's names must be different. Uniforms and per-frame values are members of
 structs.
 """
 
@@ -15,7 +15,7 @@ from distal.backends.clike.names import Reserved
 
 
 class OwnNames(NamedTuple):
-    """The names of a text's own things at module scope."""
+    """The names that the writers declare at module scope."""
 
     uniforms: str = "uniforms"
     uniforms_type: str = "Uniforms"

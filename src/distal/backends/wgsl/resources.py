@@ -1,6 +1,6 @@
-"""Textures and buffers in WGSL: bindings, and functions that read single elements.
+"""Write textures and buffers in WGSL: bindings, and functions that read single elements.
 
-Input: a resource's declaration and its number. Output: lines of WGSL.
+Input: a resource's declaration, and its number. Output: lines of WGSL.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ _LETTERS = {Kind.FLOAT: "f", Kind.INT: "i", Kind.UINT: "u"}
 
 
 def texture_binding(number: int) -> int:
-    """The binding of the texture or buffer with that number; a texture's sampler comes next."""
+    """Return the binding of a texture or buffer; a texture's sampler has the next binding."""
     return 2 * number
 
 
 def fetched_resources(nodes: Iterable[Expr]) -> set[str]:
-    """The resources whose single texels or elements are read."""
+    """Return the names of the resources whose single texels or elements are read."""
     found = set()
     for e in nodes:
         if isinstance(e, Texel) and isinstance(e.texture, Resource):
@@ -46,7 +46,13 @@ def _element_name(type: Type, *, shared: bool) -> str:
 
 
 def binding_lines(resource: ResourceDeclaration, names: ModuleNames, number: int) -> list[str]:
-    """The declarations of a resource."""
+    """Return the declarations of a resource.
+
+    Args:
+        resource: The resource.
+        names: The names in the text.
+        number: The resource's number in the module.
+    """
     name = names.resources[resource.name]
     here = f"@group(1) @binding({texture_binding(number)})"
     if isinstance(resource.type, Buffer):
@@ -61,7 +67,7 @@ def binding_lines(resource: ResourceDeclaration, names: ModuleNames, number: int
 
 
 def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
-    """The function that reads one texel or element, the index clamped."""
+    """Return the function that reads one texel or element; it clamps the index."""
     name, function = names.resources[resource.name], names.accessors[resource.name]
     local = names.local_namer().name
     index = local("index")
@@ -84,9 +90,10 @@ def accessor_lines(resource: ResourceDeclaration, names: ModuleNames) -> list[st
 
 
 def _cube_accessor(resource: ResourceDeclaration, names: ModuleNames) -> list[str]:
-    """A cube's texel: sampled at its very centre, since WGSL loads none from a cube.
+    """Return the function that reads a cube's texel by sampling at its centre.
 
-    The direction through a face's centre and axes is that of OpenGL and Vulkan alike.
+    WGSL has no ``textureLoad`` for cubes. The directions of the faces are the same as in OpenGL and
+    Vulkan.
     """
     name, function = names.resources[resource.name], names.accessors[resource.name]
     sampler = names.samplers[resource.name]

@@ -1,13 +1,14 @@
-"""Complete WGSL programs: bindings and entry points around the functions.
+"""Write complete WGSL programs: bindings and entry points around the functions.
 
-Input: a module shaped for WGSL. Output: the text. Group 0 holds the uniforms (binding 0) and the
-per-frame values: written by one invocation of ``frame_main`` (binding 2), read by all pixels as a
-uniform (binding 1). It also holds what a compute program writes (binding 3), and of a function what
-it is called with (binding 4). Group 1 holds textures with their samplers, and buffers.
+Input: a module after the passes for WGSL. Output: the text. Group 0 contains the uniforms (binding
+0) and the per-frame values, which one invocation of ``frame_main`` writes (binding 2) and all
+pixels read as a uniform (binding 1). It also contains the output of a compute program (binding 3)
+and the arguments of a function (binding 4). Group 1 contains textures with their samplers, and
+buffers.
 
-A large picture is computed part by part, so that no driver takes a long computation for a hanging
-one. The last member of the uniforms says which part: its corner and its size. Left at zeros it is
-the whole picture.
+A large picture is computed in parts, so that the driver does not reset the GPU during a long
+computation. The last member of the uniforms is the part's corner and size; zeros select the whole
+picture.
 """
 
 from __future__ import annotations
@@ -29,28 +30,28 @@ from distal.ir.nodes import EntryKind, Expr, Function, Module, Resource
 from distal.ir.types import Kind, Matrix, Struct, Type, Vector, kind_of
 from distal.ir.walk import expressions_in, nodes_in, per_frame_reads_in
 
-# Uniforms and per-frame values are read once a pixel, into variables of its own. Where a uniform is
-# a load like any other it would be loaded each time that a loop comes by: on lavapipe 8 % of the
-# raymarcher's time, 10 % of its objects', 30 % of a scene with a hundred numbers. A compiler that
-# reads constants for nothing sees the same program either way. More than this stays in place.
+# Uniforms and per-frame values are copied to private variables once per pixel. On targets where
+# reading a uniform is an ordinary load, a loop would load it in every iteration: on lavapipe 8 % of
+# the raymarcher's time, 10 % of its objects', 30 % of a scene with a hundred numbers. If reading a
+# uniform is free, the copy makes no difference. Larger structs are not copied.
 _COPIED_BYTES: Final = 4096
 
 
 @dataclass(frozen=True, slots=True)
 class WgslProgram:
-    """What the text is written from."""
+    """The data from which the text is written."""
 
     module: Module
     names: ModuleNames
-    resolution: str  # the member of the uniforms that is the picture's size
-    tile: str  # the member that says which part of the picture is computed; "" of a function
+    resolution: str  # the member of the uniforms with the picture's size
+    tile: str  # the member with the part of the picture to compute; "" for a function
     uniforms: StructLayout
     frame: StructLayout
     compute: bool
 
 
 def program_lines(program: WgslProgram) -> list[Line]:
-    """The whole text."""
+    """Return the whole text."""
     module, names = program.module, program.names
     is_image = module.kind is EntryKind.IMAGE
     entry = module.function(module.entry)
@@ -80,10 +81,10 @@ def program_lines(program: WgslProgram) -> list[Line]:
 def _write_frame(
     program: WgslProgram, writer: WgslWriter, written: tuple[Function, ...]
 ) -> list[Function]:
-    """The entry point of the per-frame part, and the functions that it alone calls."""
+    """Append the entry point of the per-frame part, and the functions that only it calls."""
     module, names = program.module, program.names
     needed = reachable(module, [value for _, value in module.frame])
-    # What reads per-frame values must read those being computed: such functions stand twice.
+    # Functions that read per-frame values are written twice: here they read the new values.
     stale: set[str] = set()
     for function in needed:
         if per_frame_reads_in((function,)) or called_by(function) & stale:
@@ -108,7 +109,7 @@ def _write_frame(
     own.line(f"fn {OWN.frame_main}() {{")
     own.lines += map(Line, copy_lines(program, frame=False))
     own.depth = 1
-    # A value that was computed is read from its local.
+    # A value that is already computed is read from its local.
     own.frame = dict(reads)
     own.local_namer = names.local_namer()
     for name, value in module.frame:
@@ -132,7 +133,7 @@ def _to_shared(value: Code, type: Type) -> str:
 
 
 def copy_lines(program: WgslProgram, *, frame: bool = True) -> list[str]:
-    """The first lines of an entry point: what it reads of uniforms and of per-frame values."""
+    """Return the first lines of an entry point: the copies of uniforms and per-frame values."""
     lines = []
     if program.module.uniforms and program.uniforms.size <= _COPIED_BYTES:
         names = program.names.uniforms
@@ -143,7 +144,7 @@ def copy_lines(program: WgslProgram, *, frame: bool = True) -> list[str]:
 
 
 def _copy(name: str, source: str, layout: StructLayout, names: Mapping[str, str]) -> list[str]:
-    """The copy of a struct; member by member where naga 29 fails on the whole (matrices of two)."""
+    """Return the copy of a struct, by members if it has a mat2, which naga 29 cannot copy whole."""
     if not any(isinstance(m.type, Matrix) and m.type.size == 2 for m in layout.members):
         return [f"    {name} = {source};"]
     members = (names.get(m.name, m.name) for m in layout.members)
@@ -151,7 +152,7 @@ def _copy(name: str, source: str, layout: StructLayout, names: Mapping[str, str]
 
 
 def _input_lines(binding: int, name: str, source: str, type: str, size: int) -> list[str]:
-    """The binding of a struct of values that stay the same, and the variable that copies it."""
+    """Return the binding of a struct of uniforms, and the private variable for its copy."""
     here = f"@group(0) @binding({binding}) var<uniform>"
     if size > _COPIED_BYTES:
         return [f"{here} {name}: {type};"]

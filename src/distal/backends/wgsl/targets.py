@@ -1,4 +1,4 @@
-"""The WGSL targets, one declaration each: a vertex and a fragment stage, or a compute program."""
+"""Declare the WGSL targets: a vertex and a fragment stage, or a compute program."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Functions in WGSL.
+"""Write functions in WGSL.
 
-Input: IR functions shaped for WGSL. Output: their text. It does not know about entry points and
-bindings (``distal.backends.wgsl.stages``). Three things have no counterpart in GLSL: parameters and
-``let`` values cannot be indexed by a run-time value everywhere (they become ``var``); choosing
-evaluates both sides (what is expensive becomes ``if``); and what is constant is evaluated by the
-compiler, which refuses a division by zero (one constant is then read from a variable).
+Input: IR functions after the passes for WGSL. Output: their text. Does not depend on entry points
+and bindings (``distal.backends.wgsl.stages``). There are three differences to GLSL: not every
+implementation can index parameters and ``let`` values by a run-time value (they become ``var``);
+``select`` evaluates both sides (expensive ones become ``if``); and the compiler evaluates constant
+expressions and rejects a division by zero (one constant is then read from a variable).
 """
 
 # ruff: noqa: D102  (documented where they are declared)
@@ -69,12 +69,16 @@ def _root(e: Expr) -> Expr:
 
 
 def _by_value(e: Index) -> bool:
-    """Whether an element is picked by a run-time index out of an array or matrix."""
+    """Return whether a run-time index selects an element of an array or matrix."""
     return isinstance(e.base.type, Array | Matrix) and not isinstance(e.index, Const)
 
 
 class WgslWriter(FunctionWriter):
-    """Writes WGSL functions."""
+    """Writes WGSL functions.
+
+    Attributes:
+        variables_of_constants: The names of the variables that contain a literal.
+    """
 
     family = "wgsl"
 
@@ -85,13 +89,13 @@ class WgslWriter(FunctionWriter):
         frame: Mapping[str, str],
         functions: Mapping[str, str],
     ) -> None:
-        """Start.
+        """Create a writer.
 
         Args:
-            names: The module's names.
-            expense: What functions cost.
+            names: The names in the text.
+            expense: The costs of functions.
             frame: Per-frame value -> the text of a read of it.
-            functions: Functions that are called by another name than the module's.
+            functions: The other names of functions that are written twice, by name in the text.
         """
         super().__init__(names)
         self.expense = expense
@@ -123,7 +127,7 @@ class WgslWriter(FunctionWriter):
                 assert_never(type)
 
     def struct_lines(self, type: Struct) -> list[str]:
-        """The declaration of a struct."""
+        """Return the declaration of a struct."""
         members = [
             f"    {self.names.fields[type, n]}: {self.type_name(t)}," for n, t in type.fields
         ]
@@ -150,7 +154,7 @@ class WgslWriter(FunctionWriter):
         return self.literal(e)
 
     def literal(self, e: Const) -> Code:
-        """A literal, to be evaluated by the compiler."""
+        """Return a literal, which the compiler may evaluate."""
         kind = kind_of(e.type)
         if kind is Kind.BOOL:
             return Code("true" if e.value else "false")
@@ -170,7 +174,7 @@ class WgslWriter(FunctionWriter):
         return self.shared(text, e.type) if "." in text else Code(text)
 
     def shared(self, text: str, type: Type) -> Code:
-        """A value out of a buffer."""
+        """Return a value that is read from a buffer."""
         if kind_of(type) is not Kind.BOOL:
             return Code(text)
         zero = "0u" if isinstance(type, Scalar) else f"vec{component_count(type)}u()"
@@ -283,7 +287,7 @@ class WgslWriter(FunctionWriter):
         return infix(e.op.value, Precedence.SHIFT, lhs, self._count(e.rhs))
 
     def _count(self, e: Expr) -> Code:
-        """A shift's count, which WGSL wants as u32."""
+        """Return a shift's count, which must be a u32 in WGSL."""
         unsigned = with_kind(e.type, Kind.UINT)
         match e:
             case Const(value):
