@@ -299,7 +299,7 @@ def _maps_pixels(program: LaneProgram) -> bool:
 
 
 def _map_pixels(program: LaneProgram) -> None:
-    """Write the kernel from pixels to pixels of four floats, without splitting into leaves."""
+    """Write the kernel from pixels to pixels of four floats, in a picture's memory layout."""
     arithmetic = program.arithmetic()
     writer, lanes = arithmetic.writer, program.lanes
     prologue(writer)

@@ -48,7 +48,9 @@ class Assembly:
         default, and accept the arguments' types, is called.
 
         Raises:
-            CompileError: No overload can be called with these arguments.
+            CompileError: A parameter has neither an argument nor a default.
+            FollowupError: The function has errors, which are reported already.
+            SceneError: The types of the arguments do not match.
         """
         parameters = self._parameters_of(func, arguments)
         args = tuple(self._argument(func, parameter, arguments) for parameter in parameters)

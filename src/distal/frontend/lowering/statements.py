@@ -29,7 +29,7 @@ from distal.ir.build import integer, negation
 from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
 from distal.ir.types import INT, Array, Type, is_static
 
-# Above this number of nested calls, a RecursionError is attributed to the calls, not the statement.
+# From this number of nested calls on, a RecursionError is attributed to the calls.
 DEEP_CALLS: Final = 20
 
 

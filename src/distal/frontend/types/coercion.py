@@ -111,7 +111,10 @@ def _coerce_sequence(
 
 
 def vector_type(value: Value) -> Type | None:
-    """Return the vector type that a captured list or a tuple of 2 to 4 numbers can become."""
+    """Return the vector type that a captured list or a tuple of 2 to 4 numbers can become.
+
+    None for other values.
+    """
     if not isinstance(value, SequenceValue) or not 2 <= len(value.items) <= 4:
         return None
     if value.is_list and not value.captured:
