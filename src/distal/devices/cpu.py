@@ -152,7 +152,7 @@ class CpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """Render a picture; see ``Kernel.render``."""
+        """Render a picture; arguments as for ``Kernel.render``."""
         assert self._image, "a function has no picture"
         if not (0 < width <= _LARGEST_SIDE and 0 < height <= _LARGEST_SIDE):
             raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
@@ -174,7 +174,7 @@ class CpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """Return values at points; see ``Kernel.evaluate``."""
+        """Return values at points; arguments as for ``Kernel.evaluate``."""
         assert not self._image, "an image has no points"
         points = cpu_memory.shared_length(args)
         if self._pixelwise and points:
@@ -203,7 +203,7 @@ class CpuKernel:
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """Apply the function to every pixel; see ``Kernel.map_pixels``."""
+        """Apply the function to every pixel; arguments as for ``Kernel.map_pixels``."""
         values = self.evaluate(
             [pixels.reshape(-1, 4)], uniforms, resources, threads=threads, cancel=cancel
         )

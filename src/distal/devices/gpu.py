@@ -160,7 +160,7 @@ class GpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """Render a picture; see ``Kernel.render``. ``threads`` is ignored.
+        """Render a picture; arguments as for ``Kernel.render``. ``threads`` is ignored.
 
         Raises:
             Cancelled: ``cancel`` stopped the work.
@@ -294,7 +294,7 @@ class GpuKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """Return values at points; see ``Kernel.evaluate``."""
+        """Return values at points; arguments as for ``Kernel.evaluate``."""
         assert not self._is_image, "an image has no points"
         points = cpu_memory.shared_length(args)
         if self._params == [VEC4] and self._result is VEC4:
@@ -326,7 +326,7 @@ class GpuKernel:
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """Apply the function to every pixel; see ``Kernel.map_pixels``."""
+        """Apply the function to every pixel; arguments as for ``Kernel.map_pixels``."""
         flat = np.ascontiguousarray(pixels, np.float32).reshape(-1, 4)
         return self._mapped_pixels(flat, uniforms, resources, None, cancel).reshape(pixels.shape)
 

@@ -72,7 +72,7 @@ class ReferenceKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """Render a picture; see ``Kernel.render``. ``threads`` is ignored.
+        """Render a picture; arguments as for ``Kernel.render``. ``threads`` is ignored.
 
         Raises:
             Cancelled: ``cancel`` stopped the work.
@@ -98,7 +98,7 @@ class ReferenceKernel:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Values:
-        """Return the function's values at points; see ``Kernel.evaluate``."""
+        """Return the function's values at points; arguments as for ``Kernel.evaluate``."""
         entry = self._module.function(self._module.entry)
         values = [to_lanes(arg, param.type) for arg, param in zip(args, entry.params, strict=True)]
         result = reference.evaluate(
@@ -121,7 +121,7 @@ class ReferenceKernel:
         threads: int | None = None,
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
-        """Apply the function to every pixel; see ``Kernel.map_pixels``."""
+        """Apply the function to every pixel; arguments as for ``Kernel.map_pixels``."""
         values = self.evaluate([pixels.reshape(-1, 4)], uniforms, resources, cancel=cancel)
         return np.asarray(values, np.float32).reshape(pixels.shape)
 

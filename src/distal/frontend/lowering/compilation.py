@@ -268,19 +268,19 @@ class Compilation:
     def call(
         self, body: FunctionBody, function: Func, args: Sequence[Value], node: ast.Call
     ) -> Expr:
-        """Lower a call of another scene function (see ``scene_calls.call``)."""
+        """Lower a call of another scene function; arguments as for ``scene_calls.call``."""
         return scene_calls.call(body, function, args, node)
 
     def call_closure(
         self, body: FunctionBody, closure: Closure, args: Sequence[Value], node: ast.Call
     ) -> Expr:
-        """Lower a call of a lambda or nested function (see ``lambda_lifting.call_closure``)."""
+        """Lower a call of a closure; arguments as for ``lambda_lifting.call_closure``."""
         return lambda_lifting.call_closure(body, closure, args, node)
 
     def function_value(
         self, body: FunctionBody, value: Value, type: FunctionType, node: Node
     ) -> Expr | None:
-        """Return a function as a FunctionType value (see ``lambda_lifting.function_value``)."""
+        """Return a function value; arguments as for ``lambda_lifting.function_value``."""
         return lambda_lifting.function_value(body, value, type, node)
 
     def composed(self, obj: Composed) -> Instance:
