@@ -1,1 +1,1 @@
-"""Scenes as objects: shapes, materials, lights, cameras; they make IR of library functions."""
+"""Scene objects (shapes, materials, lights, cameras) and their lowering to IR."""

@@ -1,7 +1,7 @@
-"""Renders a scene: which programs run, with which numbers, and which warnings they give.
+"""Rendering of a scene: runs its programs and gives warnings.
 
-Input: a scene, what is to be shown of it, and how it is rendered. Output: a ``Picture`` with its
-layers, which says how it was made. Needs NumPy; scenes compile without this module.
+Input: a scene, its view options and render options. Output: a ``Picture`` with its layers and a
+record of how it was made. Needs NumPy; scenes compile without this module.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 
 def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Picture:
-    """The picture of a scene, with its layers.
+    """Render a scene and its layers.
 
     Args:
         scene: The scene.
-        view: What is shown of it.
+        view: What is shown of the scene.
         options: How it is rendered.
 
     Raises:
@@ -66,7 +66,7 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
 def _check_visible(
     scene: Scene, view: ViewOptions, picture: Picture, options: RenderOptions
 ) -> None:
-    """Refuse a picture from inside a solid; warn of one that is black."""
+    """Refuse a picture taken from inside a solid; warn of a black picture."""
     if not view.transparent and not shows(picture.array[..., 3]):
         message = f"the camera is inside '{scene.shape.name}', and no ray finds a way out"
         refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
@@ -79,7 +79,7 @@ def _layer(scene: Scene, name: str, view: ViewOptions, options: RenderOptions) -
 
 
 def _shares(progress: Progress | None, count: int) -> list[Progress | None]:
-    """The callback for each of several parts of the work, which count as equally long."""
+    """Return one progress callback for each of several equally long parts of the work."""
     if progress is None:
         return [None] * count
     whole = progress

@@ -1,7 +1,7 @@
-"""A saved picture, rendered again from what its file says.
+"""Render a saved picture again from the record in its file.
 
-Input: the file of a picture. Output: the same picture, and notes on what has
-changed. A scene's file is run only after its text was compared with the recorded one.
+Input: the file of a picture. Output: the same picture, and notes on what has changed. A scene's
+file is run only after its text was compared with the recorded text.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ from distal.scene.viewing.viewable import viewable
 from distal.version import __version__
 
 MARK: Final = ".rerendered"
-_LONGEST_PART: Final = 80  # characters of what a message quotes
-_MOST_SHOWN: Final = 20  # modules beside a scene
+_LONGEST_PART: Final = 80  # characters of a quotation in a message
+_MOST_SHOWN: Final = 20  # modules listed in a message
 
 
 class RerenderError(Exception):
-    """A picture that cannot be rendered again as it was, and why, in one line."""
+    """A picture cannot be rendered again. The message is one line with the reason."""
 
     def __init__(self, message: str) -> None:
-        # It quotes what a picture's file says, and others may have made that.
+        # The message quotes text of the picture's file, which is untrusted.
         super().__init__(printable(message, LONGEST_MESSAGE))
 
 
 @dataclass(frozen=True, slots=True)
 class RerenderPlan:
-    """A picture's file, and the scene that it is rendered of again.
+    """A picture's file, and the scene to render it from.
 
     Attributes:
-        path: The picture's file.
-        record: What it says.
+        path: The file of the picture.
+        record: The provenance recorded in the file.
         file: Where the scene was found: a file or ``example:NAME``.
-        name: Which object of the file; None for its only one.
-        named: The same as the new picture says it: as it was written, without a folder of ours.
+        name: The object's name in the file; None if the file has only one.
+        named: The source to record in the new picture: as it was written, without a local folder.
         notes: What has changed, one line each.
     """
 
@@ -61,18 +61,18 @@ class RerenderPlan:
 
     @property
     def source(self) -> str:
-        """Where the scene was found, as ``FILE[:NAME]``."""
+        """The scene's source, as ``FILE[:NAME]``."""
         return self.file if self.name is None else f"{self.file}:{self.name}"
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """How two pictures differ, in the levels or numbers that their files hold.
+    """The difference of two pictures, in the levels or numbers that their files hold.
 
     Attributes:
-        largest: The largest difference of a channel; 1 is the display's whole range, or a unit of
-            linear light or of a layer.
-        share: Of the pixels that differ at all.
+        largest: The largest difference in a channel. 1 is the full range of the display, or one
+            unit of linear light or of a layer.
+        share: The fraction of pixels that differ at all.
     """
 
     largest: float
@@ -85,12 +85,12 @@ class Difference:
 
 
 def plan_rerender(path: Path, *, source: str | None = None, force: bool = False) -> RerenderPlan:
-    """Find what a picture was rendered of, and compare it with the recorded text.
+    """Find the scene of a picture and compare its text with the recorded one.
 
     Args:
-        path: A PNG or EXR that ``Picture.save`` wrote.
-        source: ``FILE[:NAME]`` or ``example:NAME`` instead of what the picture says.
-        force: Go on with a scene that has changed.
+        path: A PNG or EXR file that ``Picture.save`` wrote.
+        source: ``FILE[:NAME]`` or ``example:NAME``, used instead of the recorded source.
+        force: Continue although the scene has changed.
 
     Raises:
         ReadError: The file is broken, or does not say how it was made.
@@ -131,16 +131,16 @@ def rerender(
     """Render a picture again; None keeps the recorded value.
 
     Args:
-        plan: The picture's file, and its scene.
+        plan: The plan made by ``plan_rerender``.
         size: Width and height in pixels.
-        samples: Rays for each pixel of a scene.
-        device: What renders, as for ``Scene.render``.
-        threads: How many CPU threads to use; None for all that the process may use.
+        samples: Number of rays for each pixel of a scene.
+        device: The device to render on, as for ``Scene.render``.
+        threads: Number of CPU threads; None uses all that the process may use.
         progress: Called with the finished share, from 0 to 1.
         cancel: An event, or a function without arguments, that ends the work early.
 
     Raises:
-        RerenderError: The scene cannot show it: a parameter or a view is gone.
+        RerenderError: The scene has changed and lacks a recorded parameter or view.
         LoadError: The scene's file fails when run.
         CompileError: The scene has mistakes.
         DeviceError: The device is missing.
@@ -161,7 +161,7 @@ def rerender(
             seed=origin.seed,
         )
         made = _rendered(obj, origin, samples, options)
-    except (ValueError, TypeError, OverflowError) as error:  # what the scene does not have any more
+    except (ValueError, TypeError, OverflowError) as error:  # the scene no longer has it
         raise RerenderError(f"cannot rebuild {plan.path}: {error}") from None
     return made.with_provenance(source=plan.named)
 
@@ -192,11 +192,11 @@ def _rendered(
 
 
 def difference(plan: RerenderPlan, picture: Picture) -> Difference:
-    """How a picture differs from what its file holds; NaN is equal to NaN.
+    """Compare a picture with the recorded one; NaN is equal to NaN.
 
     Raises:
-        RerenderError: They are not of one size.
-        ReadError: The file is broken, or another program wrote its pixels again.
+        RerenderError: The pictures differ in size.
+        ReadError: The file is broken, or another program has rewritten its pixels.
     """
     if plan.record.stored_size != (picture.width, picture.height):
         stored, made = plan.record.stored_size, (picture.width, picture.height)
@@ -208,14 +208,14 @@ def difference(plan: RerenderPlan, picture: Picture) -> Difference:
         unequal = (then != now) & ~(np.isnan(then) & np.isnan(now))
         differs |= unequal
         if unequal.any():
-            # Infinities less each other are no number, and as different as can be.
+            # The difference of two infinities is NaN; it counts as infinite.
             gaps = np.abs(then[unequal].astype(np.float64) - now[unequal].astype(np.float64))
             largest = max(largest, float(np.nan_to_num(gaps, nan=np.inf, posinf=np.inf).max()))
     return Difference(largest, float(differs.mean()))
 
 
 def _channels(plan: RerenderPlan, picture: Picture) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
-    """Each channel of the recorded picture and of the new one, as files hold it."""
+    """Yield each channel of the recorded picture and of the new one, as stored in files."""
     bits = plan.record.bits
     try:
         stored = plan.path.read_bytes()
@@ -235,19 +235,19 @@ def _channels(plan: RerenderPlan, picture: Picture) -> Iterator[tuple[NDArray[An
 
 
 def default_output(path: Path) -> Path:
-    """Where a picture that is rendered again goes: into the folder of the first one."""
+    """Return the output path for a new picture: in the folder of the first one."""
     return path.with_name(f"{path.stem}{MARK}{path.suffix}")
 
 
 def _named_source(origin: Provenance, path: Path) -> tuple[str, str | None]:
-    """The file that a picture names and the name in it: beside the picture, or from where one is.
+    """Return the file and the object name that a picture's record names.
 
-    Who made the picture chose that name, and the file will be run: it may name an example, or a
-    Python file in the picture's folder or in the current one, and nothing else. Of several files
-    the first that has not changed.
+    The picture's creator chose this name, and the file will be run. So the record may name only an
+    example, or a Python file in the picture's folder or in the current one. If several such files
+    exist, the first that has not changed is used.
 
     Raises:
-        RerenderError: It names no such file.
+        RerenderError: The record names no such file.
     """
     file, name = _split(origin.source)
     if file.startswith(EXAMPLE_PREFIX):
@@ -268,7 +268,7 @@ def _named_source(origin: Provenance, path: Path) -> tuple[str, str | None]:
 
 
 def _split(text: str) -> tuple[str, str | None]:
-    """As ``split_source``, by the text alone: no file can change what a picture says."""
+    """Split like ``split_source``, but without looking at files, which could change the result."""
     file, _, name = text.rpartition(":")
     if name.isidentifier() and file and f"{file}:" != EXAMPLE_PREFIX:
         return file, name
@@ -276,13 +276,13 @@ def _split(text: str) -> tuple[str, str | None]:
 
 
 def _refused(file: str, shown: str) -> str | None:
-    """Why a picture may not name a file by itself; None if it may."""
+    """Return why a picture may not name this file, or None if it may."""
     if not file:
         return "it names no file"
     parts = PurePosixPath(file)
     if parts.suffix != ".py":
         return f"it names no .py file, only '{shown}'"
-    # A colon is a drive, or a stream of another file, on Windows.
+    # On Windows a colon marks a drive, or a stream of another file.
     is_hidden = any(part.startswith(".") for part in parts.parts)
     is_plain = (
         not is_hidden and not any(c in "\\:" for c in file) and printable(file, len(file)) == file
@@ -293,13 +293,13 @@ def _refused(file: str, shown: str) -> str | None:
 
 
 def _inside(folder: Path, file: str) -> bool | None:
-    """Whether a file is in a folder; None if it is no file, False if links lead out of it."""
+    """Return whether a file is in a folder; None if it is no file, False if a link leads out."""
     try:
         real = (folder / file).resolve(strict=True)
         if not real.is_file():
             return None
         return real.is_relative_to(folder.resolve())
-    except (OSError, ValueError, RuntimeError):  # a name that no file can have, links in a circle
+    except (OSError, ValueError, RuntimeError):  # an impossible name, or links in a circle
         return None
 
 

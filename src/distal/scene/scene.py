@@ -1,8 +1,8 @@
-"""A scene: shapes, lights and a camera, ready to become a picture.
+"""The scene: shapes, lights and a camera, from which a picture is rendered.
 
-Input: the author's objects. Output: one function from a pixel to linear light, made
-of the library's cameras, marchers and shaders around the shapes' own functions; and a second one
-that encodes light for display. The cheapest renderer is chosen that shows all materials.
+Input: the author's objects. Output: a function from a pixel to linear light, which calls the
+cameras, marchers and shaders of the library and the functions of the shapes; and a second function
+that encodes light for display. The cheapest renderer that supports all materials is chosen.
 """
 
 from __future__ import annotations
@@ -57,31 +57,38 @@ class Scene(Composed, Presentable):
     """Shapes, lights and a camera.
 
     Args:
-        shape: What is seen: a solid shape, or several.
-        lights: What it is lit by; a sun and a sky where none are given.
-        camera: Where it is seen from.
-        background: What rays show that meet nothing: a color, a ``Sky``, an ``Environment``, a
+        shape: One solid shape, or several, which are united.
+        lights: One light or several. None adds a sun and a sky, unless the background is a light.
+        camera: The camera. None looks at the origin from (3, 2, 5).
+        background: What rays that hit nothing show: a color, a ``Sky``, an ``Environment``, or a
             ``@func`` of the direction.
-        exposure: A factor on all light before it is shown.
+        exposure: A factor on all light, applied before the tone map.
         tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
             or "neutral".
-        default_material: What unpainted shapes look like.
+        default_material: The material of shapes without ``paint``.
         fog: The color of fog.
-        fog_density: How thick it is: a share of 1/e is left after 1/density; 0: clear air.
+        fog_density: Density of the fog per scene unit: after a distance of 1/density, 1/e of the
+            light is left. 0 disables fog.
         shadows: Whether lights cast shadows.
-        ambient_occlusion: How far ambient light looks for what hides it, in scene units; 0: not.
-        bounces: How often light is followed through mirrors and glass.
-        normals: "exact", or by differences: "six_taps", "tetrahedron" or "forward".
-        march: "sphere", or "heightfield" for terrain and water: long steps over it, then a search.
-        stride: The shortest step of that march at the start, for each unit that it is away.
-        stride_growth: The factor it grows by from step to step.
-        steps: The most steps of a ray.
-        near: Where rays begin.
-        far: Where rays end.
-        name: What messages and emitted texts call it.
+        ambient_occlusion: How far, in scene units, to search for surfaces that block ambient light;
+            0 disables it.
+        bounces: The maximum number of reflections and refractions that a ray follows.
+        normals: How normals are computed: "exact", or by finite differences: "six_taps",
+            "tetrahedron" or "forward".
+        march: "sphere" for sphere tracing, or "heightfield" for terrain and water: long steps over
+            the surface, then a search for the hit.
+        stride: For the "heightfield" march: the shortest step at the start of a ray, for each unit
+            of distance.
+        stride_growth: For the "heightfield" march: the factor by which ``stride`` grows from step
+            to step.
+        steps: The maximum number of steps of a ray.
+        near: The distance at which rays begin, in scene units.
+        far: The distance at which rays end, in scene units.
+        name: The name in messages and emitted texts.
 
     Raises:
-        CompileError: At the author's line, when something does not go together.
+        CompileError: At the author's line, if an argument is invalid or arguments contradict each
+            other.
     """
 
     kind: ClassVar[EntryKind] = EntryKind.IMAGE
@@ -139,13 +146,13 @@ class Scene(Composed, Presentable):
             stride_growth=stride_growth,
         )
         self.display = DisplayEncoding(self)
-        # Recorded in pictures: the arguments of ``developed``, and those of ``stage``.
+        # Recorded in pictures: the arguments of ``developed`` and of ``stage``.
         self.asked_display: Mapping[str, Any] = {}
         self.staged: tuple[Mapping[str, Any], float] | None = None
         self._pictures: dict[tuple[Any, ...], Composed] = {}
         self._whole = True
 
-    # Its kernel is made once: what was changed later would not show.
+    # The kernel is compiled once: a later change would have no effect.
 
     def __setattr__(self, name: str, value: object) -> None:
         if "_whole" in self.__dict__:
@@ -154,7 +161,7 @@ class Scene(Composed, Presentable):
 
     @property
     def renderer(self) -> str:
-        """The cheapest renderer that shows all materials."""
+        """The name of the cheapest renderer that supports all materials."""
         found = [n.material for n in self.shape.node.walk() if n.material is not None]
         found += [n.cut_material for n in self.shape.node.walk() if n.cut_material is not None]
         found.append(self.material)
@@ -185,36 +192,37 @@ class Scene(Composed, Presentable):
         steering: Steering | None = None,
         layers: Sequence[str] = (),
     ) -> Picture:
-        """Compute the picture.
+        """Render the picture.
 
         Args:
             size: Width and height in pixels.
-            time: Seconds; ``frame.time`` of an ``@image``.
+            time: Time in seconds; ``frame.time`` of an ``@image``.
             params: Values of parameters by name; the others have their defaults.
-            device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
-                "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
-            threads: How many CPU threads to use; None for all that the process may use.
+            device: The device to render on: "auto" (a hardware GPU if there is one, else the CPU),
+                "cpu", "gpu", "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
+            threads: Number of CPU threads; None uses all that the process may use.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.
-            mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
-            index: ``frame.index``, the frame's number; wraps at 32 bits.
-            seed: ``frame.seed``, where random numbers start; wraps at 32 bits.
-            samples: Rays for each pixel.
+            mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
+                as in Shadertoy.
+            index: ``frame.index``, the frame number; wraps at 32 bits.
+            seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
+            samples: Number of rays for each pixel.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
-            transparent: Whether alpha is 0 where nothing is met.
-            plane: What "slice" shows: the plane's normal, of length 1, and its distance from the
-                origin along it.
-            freeze: Make constants of all numbers: slower to compile, a little faster to run.
-            steering: How the camera is moved by hand; None: not.
-            layers: What else to compute of each pixel's middle, for ``Picture.layers``: "depth",
+            transparent: Whether alpha is 0 where a ray hits nothing.
+            plane: The plane that the view "slice" shows: its normal, of length 1, and its distance
+                from the origin along the normal.
+            freeze: Compile all numbers as constants: slower to compile, a little faster to run.
+            steering: How a person has moved the camera; None if it was not moved.
+            layers: Layers to compute at the middle of each pixel for ``Picture.layers``: "depth",
                 "normal", "albedo", "material".
 
         Raises:
             CompileError: The scene has mistakes, or its camera is inside a solid.
-            DeviceError: The device is missing or was lost; never with "auto", which then warns.
+            DeviceError: The device is missing or was lost. With "auto" this is a warning instead.
             TypeError: A value has the wrong type.
-            ValueError: A value is out of range, or there is no such view, parameter or device.
+            ValueError: A value is out of range, or the view, parameter or device does not exist.
         """
         shown = ViewOptions(
             samples=samples,
@@ -248,14 +256,17 @@ class Scene(Composed, Presentable):
         encoded: bool = False,
         steered: bool = False,
     ) -> Composed:
-        """The scene seen in another way: "normal", "depth" …; itself for "color".
+        """Return another view of the scene ("normal", "depth" …); the scene itself for "color".
 
         Args:
-            name: What is shown.
-            transparent: Whether alpha is 0 where nothing is met.
+            name: The name of the view.
+            transparent: Whether alpha is 0 where a ray hits nothing.
             sampled: Whether a pixel is the mean of ``Samples`` rays.
             encoded: Whether pixels are display values instead of linear light.
-            steered: Whether the camera moves by the numbers of a ``Steering``.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+
+        Raises:
+            ValueError: There is no such view.
         """
         if name != "color" and name not in views.VIEWS:
             known = ", ".join(["color", *views.VIEWS])
@@ -269,11 +280,11 @@ class Scene(Composed, Presentable):
         return self._pictures[key]
 
     def layer(self, name: str, *, steered: bool = False) -> Composed:
-        """What else is known of each pixel's middle: an image of plain values (``render.layers``).
+        """Return an image of one layer's values at the middle of each pixel (``render.layers``).
 
         Args:
             name: "depth", "normal", "albedo" or "material".
-            steered: Whether the camera moves by the numbers of a ``Steering``.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
         """
         key = ("layer", name, steered)
         if key not in self._pictures:
@@ -281,7 +292,7 @@ class Scene(Composed, Presentable):
         return self._pictures[key]
 
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
-        """The same scene, its light shown in another way; None keeps what it says itself."""
+        """Return the scene with another exposure or tone map; None keeps the scene's own value."""
         if exposure is None and tone_map is None:
             return self
         made = Scene.__new__(Scene)
@@ -300,16 +311,16 @@ class Scene(Composed, Presentable):
         return made
 
     def text(self) -> Composed:
-        """What a text of it shows: display values."""
+        """Return the object that text targets compile: the scene, encoded for display."""
         return self.view("color", encoded=True)
 
     def compose(self, assembly: Assembly) -> str:
-        """Its picture in linear light, as a function of the frame."""
+        """Add the function that maps the frame to linear light, and return its name."""
         made = SceneLowering(assembly, self)
         return made.main("color", transparent=False, sampled=False, encoded=False)
 
     def functions(self) -> Iterable[Func]:
-        """The functions that it is made of."""
+        """Yield the scene functions that this object calls."""
         yield from self.shape.functions()
         parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
         for part in parts:
@@ -317,7 +328,7 @@ class Scene(Composed, Presentable):
 
 
 class View(Composed):
-    """A scene seen in another way."""
+    """A view of a scene, as an image."""
 
     kind: ClassVar[EntryKind] = EntryKind.IMAGE
     signature = (("frame", FRAME),)
@@ -341,7 +352,7 @@ class View(Composed):
         self.display = scene.display if view == "color" and not encoded else None
 
     def compose(self, assembly: Assembly) -> str:
-        """The picture, as a function of the frame."""
+        """Add the function that maps the frame to a pixel, and return its name."""
         return SceneLowering(assembly, self._scene).main(
             self._view,
             transparent=self._transparent,
@@ -351,12 +362,12 @@ class View(Composed):
         )
 
     def functions(self) -> Iterable[Func]:
-        """The functions that it is made of."""
+        """Yield the scene functions that this object calls."""
         return self._scene.functions()
 
 
 class DisplayEncoding(Composed):
-    """What makes display values of a scene's linear light."""
+    """The function that encodes a scene's linear light for display."""
 
     signature = (("color", VEC4),)
     result = VEC4
@@ -366,7 +377,7 @@ class DisplayEncoding(Composed):
         self._scene = scene
 
     def compose(self, assembly: Assembly) -> str:
-        """The function of a linear color."""
+        """Add the function that maps a linear color to a display value."""
         made = SceneLowering(assembly, self._scene)
         value = made.displayed(Read("color", VEC4))
         return assembly.define("display_color", (Param("color", VEC4),), VEC4, (Return(value),))

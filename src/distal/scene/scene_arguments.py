@@ -1,7 +1,7 @@
-"""What an author gives a scene, checked: shapes, lights, counts, choices and numbers.
+"""Checks of the arguments of ``Scene``: shapes, lights, counts, choices and numbers.
 
-Input: arguments of ``Scene`` as they were given, and where. Output: objects of the
-library, or a ``CompileError`` at the author's line. Knows nothing of how a scene is rendered.
+Input: the arguments as the author passed them, and the author's line. Output: objects of the
+library, or a ``CompileError`` at that line. Does not depend on how a scene is rendered.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ def scene_numbers(
     stride: float,
     stride_growth: float,
 ) -> float:
-    """The numbers of a scene by name; never called."""
+    """Declare the names, types and order of a scene's numbers; never called."""
     return exposure
 
 
 def checked_numbers(place: Span | None, **given: Any) -> Mapping[str, Any]:
-    """The numbers of a scene by name; ``given`` are the arguments of ``scene_numbers``."""
+    """Return a scene's numbers by name; ``given`` are the arguments of ``scene_numbers``."""
     return arguments(
         scene_numbers,
         (),
@@ -62,7 +62,7 @@ def checked_numbers(place: Span | None, **given: Any) -> Mapping[str, Any]:
 
 
 def checked_exposure(exposure: Any, place: Span | None) -> Any:
-    """The number of a scene that its exposure is."""
+    """Return the exposure as a checked number."""
     return number(exposure, Asked("exposure", "Scene", FLOAT, _LIMITS["exposure"], place=place))
 
 
@@ -71,19 +71,19 @@ def _ends(near: float, far: float) -> str | None:
 
 
 def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
-    """A count of the scene."""
+    """Return a checked count of the scene."""
     return choice(value, Asked(name, "Scene", INT, limit, place=place))
 
 
 def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
-    """A choice by its name."""
+    """Check that a choice is one of the known names."""
     if name not in known:
         refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
     return str(name)
 
 
 def one_shape(shape: Any, place: Span | None) -> BaseShape:
-    """One solid of what the author gave: a shape, or several."""
+    """Return one solid from the author's argument: a shape, or several, which are united."""
     shapes = listed(shape)
     if not shapes:
         refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
@@ -98,12 +98,12 @@ def one_shape(shape: Any, place: Span | None) -> BaseShape:
 
 
 def listed(given: Any) -> list[Any]:
-    """What was given as a list, a generator, an array of objects, or alone."""
+    """Return the argument as a list: of a list, a generator, an array of objects, or one object."""
     return list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
 
 
 def checked_camera(camera: Any, place: Span | None) -> BaseCamera:
-    """The camera that the author gave; one that looks down at the origin where there is none."""
+    """Return the author's camera, or a default camera that looks at the origin."""
     if camera is None:
         return Camera((3.0, 2.0, 5.0))
     if not isinstance(camera, BaseCamera):
@@ -112,7 +112,7 @@ def checked_camera(camera: Any, place: Span | None) -> BaseCamera:
 
 
 def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
-    """The lights that the author gave; one light is a list of one."""
+    """Return the author's lights as a tuple; one light is a tuple of one."""
     if lights is None:
         return ()
     given = tuple(listed(lights))
@@ -123,8 +123,15 @@ def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
 
 
 def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
-    """The lights of a scene: those given, what is around if that shines, else a sun and a sky."""
-    if around is not None:  # among the lights too, it is still one light
+    """Return the lights of a scene.
+
+    Args:
+        unsaid: Whether the author passed no lights.
+        given: The author's lights.
+        around: The light of the background, or None. It is added to the others. If there is none
+            and no lights were passed, a sun and a sky are used.
+    """
+    if around is not None:  # if it is also among the lights, it counts once
         return (*given, around) if around not in given else tuple(given)
     if unsaid:
         return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())

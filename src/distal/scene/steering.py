@@ -1,7 +1,7 @@
-"""How a person moved a scene's camera, as five numbers.
+"""A person's movement of a scene's camera, as five numbers.
 
-Input: gestures, already turned into angles and shares of the picture. Output: the
-values of the uniforms that a steered view reads; ``render/steer.py`` says what they do.
+Input: gestures, already converted to angles and fractions of the picture. Output: the values of
+the uniforms that a steered view reads; ``render/steer.py`` defines their effect.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, Final
 from distal.ir.types import FLOAT, VEC2, Type
 from distal.lang.parameter_values import LARGEST_FLOAT
 
-# The numbers of a steered view, without the prefix of their uniforms: type, and value at rest.
+# The numbers of a steered view: name (without the uniforms' prefix), type, value at rest.
 NUMBERS: Final[tuple[tuple[str, Type, Any], ...]] = (
     ("yaw", FLOAT, 0.0),
     ("pitch", FLOAT, 0.0),
@@ -24,13 +24,13 @@ PREFIX: Final = "View_"
 
 @dataclass(frozen=True, slots=True)
 class Steering:
-    """How far a camera was moved by hand; at rest it shows the author's own picture.
+    """How far a person has moved a camera; the defaults show the author's own picture.
 
     Attributes:
-        yaw: How far the eye went around what it looks at, to the right as it sees it, in radians.
-        pitch: How far it rose, in radians.
-        zoom: Factor on its distance: 0.5 is twice as near.
-        pan: How far what is seen was dragged, to the right and up; 1 is half the picture's height.
+        yaw: Angle by which the eye moved around the target, to its own right, in radians.
+        pitch: Angle by which the eye moved upwards around the target, in radians.
+        zoom: Factor on the distance to the target: 0.5 is twice as near.
+        pan: How far the picture was dragged, to the right and up; 1 is half the picture's height.
 
     Raises:
         ValueError: A number is not finite, or zoom is not above 0.
@@ -54,7 +54,7 @@ class Steering:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Its uniforms by name."""
+        """The values of the uniforms, by name."""
         return {f"{PREFIX}{name}": getattr(self, name) for name, _, _ in NUMBERS}
 
 

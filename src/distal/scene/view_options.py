@@ -1,7 +1,7 @@
-"""What a picture of a scene shows: each option with its default, its check and its meaning.
+"""The options of a scene's picture: each with its default and its check.
 
 Input: values from a caller. Output: a ``ViewOptions``, and the numbers that its programs read.
-``distal.lang.render_options`` has the options that every picture takes. Standard library only.
+``distal.lang.render_options`` has the options that all pictures share. Standard library only.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ MOST_SAMPLES: Final = 65536
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewOptions:
-    """What is shown of a scene, checked when it is made.
+    """What is shown of a scene; checked on construction.
 
     Attributes:
-        samples: Rays for each pixel.
+        samples: Number of rays for each pixel.
         view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
             "steps", "material", "slope" or "slice".
-        transparent: Whether alpha is 0 where nothing is met.
-        plane: What "slice" shows: the plane's normal, of length 1, and its distance from the
-            origin along it.
-        steering: How the camera is moved by hand; None: not.
-        layers: What else to compute of each pixel's middle, for ``Picture.layers``: "depth",
+        transparent: Whether alpha is 0 where a ray hits nothing.
+        plane: The plane that the view "slice" shows: its normal, of length 1, and its distance from
+            the origin along the normal.
+        steering: How a person has moved the camera; None if it was not moved.
+        layers: Layers to compute at the middle of each pixel for ``Picture.layers``: "depth",
             "normal", "albedo", "material".
 
     Raises:
@@ -53,7 +53,7 @@ class ViewOptions:
 
     @property
     def steering_settings(self) -> dict[str, Any]:
-        """The values of a steered program's numbers; empty where the camera is not moved."""
+        """The uniforms of a steered view; empty if the camera was not moved."""
         return {} if self.steering is None else self.steering.settings
 
     @property
@@ -61,7 +61,7 @@ class ViewOptions:
         """The plane of the view "slice" as settings; empty for other views.
 
         Raises:
-            CompileError: It is no plane.
+            CompileError: ``plane`` is not a normal and an offset.
         """
         if self.view != "slice":
             return {}
@@ -77,15 +77,15 @@ class ViewOptions:
 
     @property
     def sample_settings(self) -> dict[str, Any]:
-        """The number of rays as a setting; empty where a pixel has one ray."""
+        """The number of rays as a setting; empty if a pixel has one ray."""
         return {"Samples": self.samples} if self.samples > 1 else {}
 
 
 def checked_samples(samples: object) -> int:
-    """Rays for each pixel.
+    """Return the checked number of rays for each pixel.
 
     Raises:
-        ValueError: It is no such number.
+        ValueError: It is no whole number in this range.
     """
     if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
         raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")

@@ -1,5 +1,5 @@
 """The objects that an author creates: shapes, materials, patterns, lights, cameras, backgrounds."""
 
-# Loaded before modules of the field library that are imported by name: shapes and operators are
-# listed in the order of their declaration.
+# Import the whole field library first: shapes and operators are listed in the order of their
+# declaration, so its modules must not be imported one by one before.
 import distal.fields.library  # noqa: F401

@@ -1,6 +1,6 @@
-"""The types of what authors pass to scene objects, for signatures, editors and type checkers.
+"""Types of authors' arguments for signatures, editors and type checkers.
 
-Input: nothing. Output: type aliases. Each means what ``scene.tree.conversion`` accepts.
+Input: nothing. Output: type aliases. Each describes what ``scene.tree.conversion`` accepts.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class ArrayLike(Protocol):
-    """NumPy's numbers and arrays, and what converts to Python's numbers in the same way."""
+    """A NumPy number or array, or an object that converts to Python numbers in the same way."""
 
     def tolist(self) -> Any:
-        """Numbers, or lists of them."""
+        """Return a number, or nested lists of numbers."""
 
 
-# A number: plain, a parameter, or an expression of parameters and time.
+# A number: a constant, a parameter, or an expression of parameters and time.
 Number: TypeAlias = "float | Parameter | Expression | ArrayLike"
 # Two or three numbers.
 Vector: TypeAlias = "Sequence[Number] | vec2 | vec3 | vec4 | Parameter | Expression | ArrayLike"
@@ -38,5 +38,5 @@ Points: TypeAlias = "Sequence[Vector] | Sequence[float] | Buffer | ArrayLike"
 # A picture: its file, an array, or a texture.
 Image: TypeAlias = "str | PathLike[str] | ArrayLike | Picture | TextureValue"
 Images: TypeAlias = "Iterable[Image] | TextureCube"
-# What differs from place to place on a surface: a pattern, or a @func of a place.
+# A value that varies over a surface: a pattern, or a @func of a place.
 Varying: TypeAlias = "Pattern | Func"

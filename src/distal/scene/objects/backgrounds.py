@@ -1,9 +1,9 @@
-"""Backgrounds: what rays show that meet nothing; skies and surroundings that are lights too.
+"""Backgrounds: the light of rays that hit nothing; skies and environments, which can also be lights.
 
-Input: a colour, the numbers of a sky, a picture of surroundings, the author's own function
-of a direction. Output: a ``Background``, which gives the light from a direction. Only the
-camera and mirrors see it, unless it is declared a light (``light=True``, or put among the lights):
-no light counts twice.
+Input: a colour, the numbers of a sky, a picture of an environment, or the author's own function of
+a direction. Output: a ``Background``, which computes the light from a direction. Only the camera
+and mirrors see it, unless it is declared a light (by ``light=True``, or by adding it to the
+lights): no light is counted twice.
 """
 
 from __future__ import annotations
@@ -42,19 +42,21 @@ if TYPE_CHECKING:
 
 
 class Background(CalledObject):
-    """What rays show that meet nothing. It never changes once it is made.
+    """The light of rays that hit nothing.
+
+    A background never changes after construction.
 
     Args:
-        what: A colour, or a ``@func`` of ``direction: vec3`` (a unit vector) and of numbers, that
-            gives linear light.
+        what: A colour, or a ``@func`` of ``direction: vec3`` (a unit vector) and of numbers that
+            returns linear light.
         numbers: The function's numbers, by name.
 
     Raises:
-        TypeError: It is neither, or something is of another kind.
+        TypeError: ``what`` is neither, or an argument has the wrong type.
 
     Attributes:
         call: ``(direction) -> vec3``.
-        light: The light that it is besides, or None.
+        light: The light that belongs to it, or None.
     """
 
     __slots__ = ("light",)
@@ -72,7 +74,7 @@ class Background(CalledObject):
 
     @classmethod
     def of(cls, call: FunctionCall, light: Light | None = None) -> Background:
-        """A background of a scene function of a direction."""
+        """Return the background of a scene function of a direction."""
         made = Background.__new__(Background)
         made._keep(call=call, light=light)
         return made
@@ -91,11 +93,11 @@ class DeclaredBackground(Background):
 
 
 class Surroundings(Light):
-    """A light that is a background too: a sky, a picture of surroundings.
+    """A light that is also a background: a sky or an environment.
 
     Attributes:
-        background: ``(direction) -> vec3``, what rays show that meet nothing.
-        light: Whether it is a light of the scene whose background it is.
+        background: ``(direction) -> vec3``, the light of rays that hit nothing.
+        light: Whether it also lights a scene when it is only the scene's background.
     """
 
     __slots__ = ("background", "light")
@@ -105,7 +107,7 @@ class Surroundings(Light):
 
 
 class DeclaredSurroundings(Surroundings):
-    """Surroundings of a declared scene function, and of functions for its parts as a light."""
+    """Surroundings from a declared scene function and its functions as a light."""
 
     __slots__ = ()
 
@@ -122,19 +124,19 @@ class DeclaredSurroundings(Surroundings):
 
 
 class Environment(Surroundings):
-    """Surroundings from a picture of all around (equirectangular: -z in its middle, up on top).
+    """Surroundings from a panorama picture (equirectangular: -z in the middle, y up).
 
     Args:
-        image: A picture's file, looked for beside the scene (then in the working folder); an array
+        image: A picture's file, searched beside the scene, then in the working folder; an array
             (height, width, 3 or 4) of linear light; a ``Picture``; a ``Texture2D``.
-        intensity: A factor on its light.
-        turn: The surroundings turned to the left about the upright axis, in radians.
-        light: Whether it lights the scene whose background it is. Among a scene's lights it
-            always does.
+        intensity: Factor on the light.
+        turn: Rotation to the left about the y axis, in radians.
+        light: Whether it also lights a scene when it is only the background. In a scene's list of
+            lights it always does.
 
     Raises:
         ValueError: The picture cannot be read, or a number is out of its range.
-        TypeError: Something is of another kind.
+        TypeError: An argument has the wrong type.
     """
 
     __slots__ = ("_ambient", "_texture")
@@ -156,7 +158,7 @@ class Environment(Surroundings):
 
     @property
     def ambient(self) -> FunctionCall:  # type: ignore[override]  # computed when it is first read
-        """``(n) -> vec3``, what a surface facing n gets of its light."""
+        """``(n) -> vec3``, the diffuse light that a surface with normal n receives."""
         if self._ambient is None:
             whole = self.background
             pixels = _images().texture_light(self._texture, "Environment", whole.place)
@@ -179,7 +181,7 @@ globals().update(CLASSES)
 def environment_light(
     n: vec3, harmonics: Buffer[vec3], intensity: float = 1.0, turn: float = 0.0
 ) -> vec3:
-    """The diffuse light of turned surroundings."""
+    """Compute the diffuse light of a rotated environment."""
     facing = environment_library.turned_by(n, turn)
     return ambient_library.environment_ambient(facing, harmonics, intensity)
 
@@ -187,16 +189,16 @@ def environment_light(
 def as_background(
     value: Any, lights: Iterable[Light] = (), place: Span | None = None
 ) -> Background:
-    """A background of what an author may give for one: a colour, a sky, a ``@func`` of a direction.
+    """Return the background of a value: a colour, a sky, a ``@func`` of a direction.
 
     Args:
-        value: What the author gave; None for the sky among the lights, else a plain gradient.
+        value: The author's value. None selects a sky among the lights, else a plain gradient.
         lights: The scene's lights.
         place: The author's line.
 
     Raises:
-        TypeError: It is none of these.
-        ValueError: It is no colour.
+        TypeError: The value is none of these.
+        ValueError: The value is not a valid colour.
     """
     place = place or author_place()
     if value is None:
@@ -222,7 +224,7 @@ def _plain(given: Mapping[str, Any], place: Span | None) -> FunctionCall:
 
 
 def _own(function: Func, numbers: Mapping[str, Any], place: Span | None) -> FunctionCall:
-    """An author's function of a direction."""
+    """Return the call of an author's function of a direction."""
     call = scene_call(BACKGROUNDS, function, numbers, function.name, place)
     asks = {slot.name for slot in slots_of(function)}
     if "direction" not in asks or call.result is not VEC3:
@@ -235,7 +237,7 @@ def _own(function: Func, numbers: Mapping[str, Any], place: Span | None) -> Func
 
 
 def _part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
-    """A function of some of another call's values."""
+    """Return a call of a function that takes some of another call's values."""
     if function is None:
         return None
     taken = {slot.name for slot in slots_of(function)}
@@ -244,5 +246,5 @@ def _part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
 
 
 def _images() -> Any:
-    """What decodes pictures, loaded when there is one: the compile path needs no NumPy."""
+    """Import the module that decodes pictures; the compile path must not need NumPy."""
     return importlib.import_module("distal.scene.objects.images")

@@ -1,7 +1,7 @@
-"""Arguments of primitives and operators, and an author's own function as a primitive.
+"""Binding of arguments to primitives and operators; an author's function as a primitive.
 
 Input: primitives and operators, Python arguments. Output: checked numbers and constants, nodes.
-Does not depend on the classes that authors see.
+Does not depend on the public classes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from distal.scene.tree.node import Node, Rule
 def bound(
     rule: Rule, args: Sequence[Any], kwargs: Mapping[str, Any], place: Span | None
 ) -> tuple[dict[str, Number], dict[str, Any]]:
-    """A rule's numbers and constants from the author's arguments.
+    """Return the numbers and the constants of a primitive or operator, from the arguments.
 
     Args:
         rule: The primitive or operator.
@@ -63,7 +63,21 @@ def own_node(
     exact: bool,
     growth: Any,
 ) -> Node:
-    """The node of an author's function."""
+    """Return the node of an author's own function; see ``BaseShape.from_function``.
+
+    Args:
+        function: The author's ``@func``.
+        numbers: Values of its parameters, by name.
+        place: The author's line.
+        slope: Bound on |gradient| everywhere.
+        bounds: Corners (low, high) of a box around the surface, or None.
+        exact: Whether the value is the true distance.
+        growth: Bound on the growth of the box, or None.
+
+    Raises:
+        SceneTypeError: The function is not a ``@func`` of a point that returns a float.
+        SceneValueError: A number is beyond its limit.
+    """
     if not isinstance(function, Func):
         refuse(
             f"a shape is made from a @func, not from {function!r:.60}",

@@ -1,8 +1,8 @@
-"""Cameras: where a picture is seen from.
+"""Cameras of a scene.
 
-Input: places, angles, all of which may be parameters or move with time. Output: the
-call of a camera function of ``render`` that gives each point of the picture its ray. Space is
-right-handed with y up; by default a camera looks along -z.
+Input: positions and angles, which may be parameters or change with time. Output: the call of a
+camera function of ``render`` that maps a point of the picture to a ray. Space is right-handed with
+y up; by default a camera looks along -z.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ _DEGREE: Final = math.pi / 180.0
 
 
 class BaseCamera(CalledObject):
-    """What all cameras share.
+    """The base class of cameras.
 
     Attributes:
-        call: ``(uv) -> Ray``; uv is -1 to 1 from bottom to top, x by the same unit. A function may
-            also ask for ``resolution``, the pixels of the picture.
+        call: ``(uv) -> Ray``. uv.y is -1 to 1 from bottom to top; uv.x has the same unit. The
+            function may also take ``resolution``, the size of the picture in pixels.
     """
 
     __slots__ = ()
@@ -61,27 +61,27 @@ class BaseCamera(CalledObject):
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
 
     def number(self, composer: Composer, name: str) -> Expr | None:
-        """One of its values, such as its target; None for a camera that has no such."""
+        """Emit one of the camera's values, such as its target; None if it has no such value."""
         return self.call.value(composer, name) if name in self.call.values else None
 
 
 class TurnedCamera(BaseCamera):
-    """A camera turned by angles, its picture a window of a physical size before the eye.
+    """A camera rotated by angles; its screen is a rectangle of a physical size.
 
     Args:
-        position: Where the eye is.
-        yaw: To the left about the y axis, in radians; 0 looks along -z.
-        pitch: Up, in radians.
-        roll: About the view, in radians.
-        screen_height: How high the window is (default 1).
-        screen_distance: How far it is from the eye (default: as far as ``fov`` says).
-        fov: The angle from the picture's bottom to its top, instead of the distance.
+        position: Position of the eye.
+        yaw: Rotation to the left about the y axis, in radians; 0 looks along -z.
+        pitch: Rotation upwards, in radians.
+        roll: Rotation about the viewing direction, in radians.
+        screen_height: Height of the screen, in scene units (default 1).
+        screen_distance: Distance of the screen from the eye; computed from ``fov`` by default.
+        fov: Vertical field of view in radians, instead of ``screen_distance``.
         fov_deg: The same in degrees.
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Whether left and right are swapped, as in left-handed coordinate systems.
 
     Raises:
-        ValueError: The window has no size or distance, or the angle is no angle.
-        TypeError: Something is of another kind, or both distance and angle are given.
+        ValueError: The screen's size or distance is not above 0, or the angle is invalid.
+        TypeError: An argument has the wrong type, or both distance and angle are given.
     """
 
     __slots__ = ()
@@ -126,7 +126,7 @@ class TurnedCamera(BaseCamera):
 
 
 class PlacedCamera(BaseCamera):
-    """What ``Camera`` has besides what its scene function declares."""
+    """A ``Camera``: adds to its declaration what its scene function does not take."""
 
     __slots__ = ()
 
@@ -145,7 +145,7 @@ def _asked(name: str, place: Span | None) -> Asked:
 
 
 def _angle(what: str, fov: Any, fov_deg: Any, place: Span | None, widest: float = math.pi) -> Any:
-    """The opening in radians, from whichever was given; None where neither was."""
+    """Return the field of view in radians, from whichever is given; None if neither is."""
     if fov is not None and fov_deg is not None:
         refuse_kind(f"{what} takes fov or fov_deg, not both", "fov is in radians", place)
     if fov is None and fov_deg is None:

@@ -1,8 +1,8 @@
-"""Classes and functions of the API, made from declarations beside their scene functions.
+"""Public classes and functions, made from the declarations beside their scene functions.
 
 Input: declarations of ``render``. Output: signatures and docstrings; calls of scene functions with
-checked arguments; classes and functions that authors call. Does not depend on what any of the
-functions computes.
+checked arguments; the classes and functions that authors call. Does not depend on what the
+functions compute.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ _BY_POSITION: Final = inspect.Parameter.POSITIONAL_OR_KEYWORD
 _BY_NAME: Final = inspect.Parameter.KEYWORD_ONLY
 
 
-# What help() and editors show
+# Signatures and docstrings for help() and editors
 
 
 @cache
 def signature_of(declaration: Declaration) -> inspect.Signature:
-    """The parameters that authors pass, with defaults and types."""
+    """Return the signature that authors see, with defaults and types."""
     family = declaration.family
     before = [e for e in declaration.extras if not e.keyword_only]
     after = [e for e in declaration.extras if e.keyword_only]
@@ -73,7 +73,7 @@ def _parameter(slot: FunctionParameter, family: Family) -> inspect.Parameter:
 
 
 def annotation_of(type: Type | None, *, is_color: bool = False) -> str:
-    """The type alias of what authors may pass for a scene function's parameter."""
+    """Return the name of the type alias of values accepted for a scene function's parameter."""
     if isinstance(type, BufferType):
         return "Points"
     if isinstance(type, Texture):
@@ -86,7 +86,7 @@ def annotation_of(type: Type | None, *, is_color: bool = False) -> str:
 
 
 def documentation_of(declaration: Declaration) -> str:
-    """The scene function's docstring, with the arguments that authors pass."""
+    """Return the scene function's docstring with the arguments that authors pass."""
     text = inspect.getdoc(declaration.function) or ""
     described = {e.name: _wrapped(f"{e.name}: {e.doc}") for e in declaration.extras}
     head, found, rest = text.partition("Args:\n")
@@ -117,17 +117,19 @@ def given_arguments(
     what: str,
     place: Span | None,
 ) -> dict[str, Any]:
-    """What an author passed, by name; None for an optional parameter counts as not passed.
+    """Return the author's arguments by name.
+
+    None for an optional parameter counts as not passed.
 
     Args:
-        declaration: What is called.
+        declaration: The class or function that is called.
         args: Arguments by position.
         kwargs: Arguments by name.
-        what: What messages call it.
+        what: Its name in messages.
         place: The author's line.
 
     Raises:
-        SceneTypeError: An argument is unknown, missing, passed twice or one too many.
+        SceneTypeError: An argument is unknown, missing, passed twice, or surplus.
     """
     parameters = signature_of(declaration).parameters
     for name in kwargs:
@@ -162,22 +164,22 @@ def scene_call(
     requires: Requirement | None = None,
     accept: Accept | None = None,
 ) -> FunctionCall:
-    """A scene function with checked values.
+    """Check values and return the call of a scene function.
 
     Args:
-        family: What the scene passes, and what numbers must be.
+        family: The family's reserved parameters and limits.
         function: The scene function.
         given: Arguments by name.
-        what: What messages call it.
+        what: The name in messages.
         place: The author's line.
         args: Arguments by position.
-        limits: Instead of the family's.
-        requires: Returns why numbers do not go together, or None.
-        accept: Takes other objects than numbers.
+        limits: Limits to use instead of the family's.
+        requires: Returns why numbers contradict each other, or None.
+        accept: Accepts objects that are not numbers; see ``scene.tree.arguments.Accept``.
 
     Raises:
-        SceneTypeError: Something is of another kind.
-        SceneValueError: A number is out of its range, or does not go with the others.
+        SceneTypeError: A value has the wrong type.
+        SceneValueError: A number is out of its range, or contradicts others.
     """
     values = arguments(
         function,
@@ -202,14 +204,16 @@ def declared_call(
     what: str | None = None,
     accept: Accept | None = None,
 ) -> FunctionCall:
-    """A declared scene function with checked values; ``given`` may hold extra parameters too.
+    """Check values and return the call of a declared scene function.
+
+    ``given`` may also hold extra parameters.
 
     Args:
-        declaration: What is called.
+        declaration: The declaration of the scene function.
         given: Arguments by name.
         place: The author's line.
-        what: What messages call it, if not by its own name.
-        accept: Takes other objects than numbers.
+        what: The name in messages; the declaration's own name by default.
+        accept: Accepts objects that are not numbers; see ``scene.tree.arguments.Accept``.
     """
     extras = {extra.name for extra in declaration.extras}
     return scene_call(
@@ -228,7 +232,7 @@ def declared_call(
 
 
 def declared_class(declaration: Declaration, base: type[C]) -> type[C]:
-    """The class of a declaration; ``base`` makes its objects by ``cls.declaration``."""
+    """Return the class of a declaration; ``base`` uses ``cls.declaration``."""
     body: dict[str, Any] = {
         "__slots__": (),
         "__doc__": documentation_of(declaration),
@@ -245,13 +249,13 @@ def declared_function(
     module: str,
     returns: str,
 ) -> Callable[..., C]:
-    """The function of a declaration.
+    """Return the public function of a declaration.
 
     Args:
-        declaration: What it makes.
-        make: Makes the object of the arguments by name, and the author's line.
+        declaration: The declaration.
+        make: Makes the object from the declaration, the arguments by name and the author's line.
         module: The module that authors import it from.
-        returns: The type of what it makes.
+        returns: The name of the type that the function returns.
     """
 
     def made(*args: Any, **kwargs: Any) -> C:

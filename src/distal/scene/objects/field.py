@@ -1,7 +1,7 @@
-"""What solid and flat shapes share: evaluation, combination, paint.
+"""The base class of solid and flat shapes: evaluation, combination, materials.
 
-Input: the author's numbers and shapes. Output: new shapes; none changes. A shape is a function of
-scene code too: ``shape(p)`` in a ``@func``, ``shape(points)`` in Python.
+Input: the author's numbers and shapes. Output: new shapes; shapes never change. A shape is also a
+function of scene code: ``shape(p)`` in a ``@func``, ``shape(points)`` in Python.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
 from distal.scene.tree.values import plain_name
 
-# A union of so many shapes compiles for minutes.
+# The most shapes in a tree: with more, compilation takes minutes.
 MOST_PARTS: Final = 2048
 
 
 class BaseShape(Composed, Presentable):
-    """What solid and flat shapes share."""
+    """The base class of solid and flat shapes."""
 
     flat: ClassVar[bool] = False
     point_type: ClassVar[Type] = VEC3
@@ -74,13 +74,13 @@ class BaseShape(Composed, Presentable):
 
     @property
     def name(self) -> str:  # type: ignore[override]
-        """The author's name for it, else the primitive's or operator's."""
+        """The name set by the author, else that of the primitive or operator."""
         return self.node.name
 
     # Evaluation
 
     def compose(self, assembly: Assembly) -> str:
-        """Its distance as a function of scene code."""
+        """Add the distance function to the program, and return its name."""
         composer = ShapeComposer(assembly, [self.node])
         found = composer.field(self.node, composer.values.all(self.node), ZERO_CELL)
         if not found.captures:
@@ -91,19 +91,19 @@ class BaseShape(Composed, Presentable):
         return assembly.define(name, params, FLOAT, (Return(value),), self.node.place)
 
     def functions(self) -> Iterable[Func]:
-        """The functions that it is made of."""
+        """Yield the scene functions that the shape calls."""
         return self.node.functions()
 
     def __call__(
         self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
     ) -> Any:
-        """The distance at points, negative inside.
+        """Return the signed distance at points, negative inside.
 
         Args:
-            points: One array (n, 3), or (n, 2) for a flat shape; float32 or float64. A grid, an
-                array of more dimensions, is allowed too.
+            points: One array (n, 3), or (n, 2) for a flat shape; float32 or float64. A grid (an
+                array with more dimensions) is allowed too.
             params: Values of parameters by name; the others have their defaults.
-            time: Seconds.
+            time: Time in seconds.
 
         Returns:
             An array of the shape of ``points`` without the last axis, of the same type.
@@ -113,16 +113,16 @@ class BaseShape(Composed, Presentable):
     def gradient(
         self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
     ) -> Any:
-        """The gradient of the distance at points, an array of the shape of ``points``.
+        """Return the gradient of the distance at points, an array of the shape of ``points``.
 
-        Arguments as for a call.
+        Takes the same arguments as a call of the shape.
         """
         return self._asked(self._gradient, points, params, time)
 
     def _asked(
         self, what: Composed, points: Any, params: Mapping[str, Any] | None, time: float
     ) -> Any:
-        """The values of a function of a point at points, or at a grid of points."""
+        """Evaluate a function of a point at points, or at a grid of points."""
         if len(points) != 1:
             size = 2 if self.flat else 3
             raise TypeError(
@@ -141,28 +141,31 @@ class BaseShape(Composed, Presentable):
         return tuple(found)
 
     def bounds(self, *, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
-        """A box around the surface and the inside: (low, high), each a tuple; infinite allowed."""
+        """Return a box (low, high) around the surface and the inside, two tuples.
+
+        A side without end is infinite.
+        """
         low, high = self._known_bounds(params, time)[2:4]
         return tuple(tuple(map(ended, corner)) for corner in (low, high))
 
     @property
     def slope(self) -> float:
-        """A bound on |gradient|, everywhere, for the parameters' defaults."""
+        """Lipschitz bound (slope): a bound on |gradient| everywhere, for default parameters."""
         return float(self._known_bounds(None, 0.0)[0])
 
     @property
     def divisor(self) -> float:
-        """What the marcher divides distances by, for the parameters' defaults."""
+        """The number by which the marcher divides distances, for the parameters' defaults."""
         return float(self._known_bounds(None, 0.0)[1])
 
     @property
     def claims(self) -> frozenset[Guarantee]:
-        """Its guarantees besides the bound on its slope."""
+        """The guarantees besides the bound on the slope."""
         return self.node.claims
 
     @property
     def exact(self) -> bool:
-        """Whether it is the true distance, outside and inside."""
+        """Whether the value is the true distance, outside and inside."""
         return self.node.claims >= EXACT
 
     # Making others
@@ -175,14 +178,14 @@ class BaseShape(Composed, Presentable):
         place: Span | None,
         others: Sequence[BaseShape] = (),
     ) -> Any:
-        """This shape, and others, under an operator.
+        """Apply an operator to this shape, and to others.
 
         Args:
             rule: The operator.
-            args: Its numbers by position.
-            kwargs: Its numbers by name.
+            args: The operator's numbers by position.
+            kwargs: The operator's numbers by name.
             place: The author's line.
-            others: The shapes that it combines this one with.
+            others: The shapes to combine this one with.
         """
         flat = rule.lies_flat(self.flat)
         if rule.takes_flat(flat) is not self.flat:
@@ -205,7 +208,7 @@ class BaseShape(Composed, Presentable):
         self, sharp: Operator, others: Sequence[Any], smooth: Any, blend: str, **k: Any
     ) -> Any:
         place, kind = author_place(), sharp.name
-        # One list of shapes is as good as the shapes.
+        # One list of shapes counts as these shapes.
         if len(others) == 1 and isinstance(others[0], Iterable) and not isinstance(others[0], str):
             others = tuple(others[0])
         for other in others:
@@ -227,14 +230,16 @@ class BaseShape(Composed, Presentable):
         return self._of(Node(rule, self.flat, tuple(nodes), numbers, constants, place))
 
     def union(self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> Self:
-        """Unite with others; ``|``.
+        """Unite with other shapes; also written ``a | b``.
 
         Args:
-            others: Shapes, or one list of them.
-            smooth: How far the surface moves out where two surfaces meet, in scene units.
-            blend: Its form: quadratic, cubic, quartic, circular, circular_geometric, exponential,
-                root, sigmoid, or an edge: chamfer, round, columns, stairs, soft.
-            k: ``count``: how many columns or stairs.
+            others: Shapes, or one list of shapes.
+            smooth: How far a blend moves the surface outwards where two surfaces meet, in scene
+                units; 0 for a sharp edge.
+            blend: Form of the blend: quadratic, cubic, quartic, circular, circular_geometric,
+                exponential, root, sigmoid; or of a shaped edge: chamfer, round, columns, stairs,
+                soft.
+            k: ``count``: number of columns or stairs.
         """
         joined: Self = self._combined(joins.UNION, others, smooth, blend, **k)
         return joined
@@ -242,19 +247,25 @@ class BaseShape(Composed, Presentable):
     def intersection(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
-        """Intersect with others; ``&``. Arguments as for ``union``."""
+        """Intersect with other shapes; also written ``a & b``.
+
+        Takes the same arguments as ``union``.
+        """
         joined: Self = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
         return joined
 
     def difference(
         self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
     ) -> Self:
-        """Subtract others; ``-``. Arguments as for ``union``."""
+        """Subtract other shapes; also written ``a - b``.
+
+        Takes the same arguments as ``union``.
+        """
         joined: Self = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
         return joined
 
     def xor(self, *others: Any) -> Self:
-        """Keep what is in one of two shapes and not in the other; ``^``."""
+        """Keep what is in exactly one of two shapes; also written ``a ^ b``."""
         joined: Self = self._combined(joins.XOR, others, 0.0, "quadratic")
         return joined
 
@@ -280,22 +291,25 @@ class BaseShape(Composed, Presentable):
         return self.complement()
 
     def complement(self) -> Self:
-        """Swap inside and outside; ``~``."""
+        """Swap inside and outside; also written ``~a``."""
         made: Self = self._under(joins.COMPLEMENT, (), {}, author_place())
         return made
 
     def paint(self, material: Any) -> Self:
-        """Set the material, or its color; the outermost ``paint`` counts."""
+        """Set the material, or its color; the outermost ``paint`` has priority."""
         changed: Self = self._of(replace(self.node, material=as_material(material)))
         return changed
 
     def cut_material(self, material: Any) -> Self:
-        """Set the material of faces cut by this shape; without it they show what is cut."""
+        """Set the material of the faces that this shape cuts into others.
+
+        Without it, these faces show the material of the shape that is cut.
+        """
         changed: Self = self._of(replace(self.node, cut_material=as_material(material)))
         return changed
 
     def named(self, name: str) -> Self:
-        """Set a name, for the function in emitted text and for messages."""
+        """Set a name that is used in emitted texts and messages."""
         if not isinstance(name, str) or not name.strip():
             refuse(f"a name is a text, not {name!r}", None, author_place())
         changed: Self = self._of(replace(self.node, label=name))
@@ -312,18 +326,20 @@ class BaseShape(Composed, Presentable):
         growth: float | None = None,
         **numbers: Any,
     ) -> Any:
-        """Make a shape from a ``@func`` of a point (and of numbers, given by name).
+        """Make a shape from a ``@func`` of a point, and of numbers passed by name.
 
         Args:
-            function: ``(p: vec3, …) -> float``; vec2 makes a flat shape. A parameter
-                ``cell: vec3`` is the index of the repetition the point lies in.
-            slope: A bound on |gradient| everywhere. The marcher relies on it.
-            bounds: (low, high) corners of a box around the surface; None for no end.
-            exact: Whether it is the true distance.
-            growth: With ``bounds``, how far from the box a point may be for each unit of its value:
-                1 where the value is never less than the distance to the box. None: not known (1 if
-                ``exact``). What moves the surface out (round, offset, blends) needs it for a box.
-            numbers: Values of its other parameters.
+            function: ``(p: vec3, …) -> float``, or with ``p: vec2`` for a flat shape. A parameter
+                ``cell: vec3`` receives the index of the repetition that contains the point.
+            slope: Lipschitz bound (slope): a bound on |gradient| everywhere. The marcher relies on
+                it.
+            bounds: Corners (low, high) of a box around the surface; None for an infinite shape.
+            exact: Whether the value is the true distance.
+            growth: How far from the box a point may be, at most, for each unit of its value; 1 if
+                the value is never less than the distance to the box. None: unknown (1 if
+                ``exact``). Operators that move the surface outwards (round, offset, blends) need it
+                to compute a box. Used only with ``bounds``.
+            numbers: Values of the function's other parameters.
         """
         place = author_place()
         node = own_node(
@@ -339,20 +355,20 @@ def _bare(node: Node) -> bool:
 _ASSOCIATIVE: Final = (joins.UNION, joins.INTERSECTION)
 
 
-# The classes of shapes that come from operators, by ``flat``; ``shape`` fills it.
+# The class of an operator's result, by ``flat``; the module ``shape`` fills it.
 PLAIN: dict[bool, type[BaseShape]] = {}
 
 
 def joining(
     sharp: Operator, smooth: Any, blend: str, extra: Mapping[str, Any], place: Span | None
 ) -> tuple[Operator, dict[str, Number], dict[str, Any]]:
-    """The operator of a combination, its numbers and constants.
+    """Return the operator of a combination, its numbers and its constants.
 
     Args:
         sharp: The operator without a blend.
-        smooth: The author's size of the blend.
-        blend: Its name.
-        extra: Its other numbers.
+        smooth: The size of the blend.
+        blend: The name of the blend.
+        extra: The other numbers of the blend.
         place: The author's line.
 
     Raises:

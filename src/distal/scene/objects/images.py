@@ -1,8 +1,8 @@
-"""Pictures as light: what patterns and surroundings read.
+"""Pictures as linear light, for patterns and environments.
 
-Input: a picture's file, an array, a ``Picture``, a texture. Output: a texture of
-linear light: files and bytes are encoded for display (sRGB) and are decoded here, floats are linear
-light already. A file that cannot be read is an error at the author's line.
+Input: a picture's file, an array, a ``Picture``, or a texture. Output: a texture of linear light:
+files and bytes are encoded for display (sRGB) and are decoded here; floats are already linear. A
+file that cannot be read is an error at the author's line.
 """
 
 from __future__ import annotations
@@ -23,11 +23,16 @@ from distal.scene.tree.errors import refuse, refuse_kind
 
 
 def light_texture(image: Any, what: str, place: Span | None) -> Texture2D:
-    """A picture as a texture of linear light.
+    """Return a picture as a texture of linear light.
+
+    Args:
+        image: A file, an array, a ``Picture`` or a texture.
+        what: The name in messages of the object that uses it.
+        place: The author's line.
 
     Raises:
-        SceneValueError: The file cannot be read, or the array is no picture.
-        SceneTypeError: It is nothing that holds a picture.
+        SceneValueError: The file cannot be read, or the array is not a picture.
+        SceneTypeError: The value does not hold a picture.
     """
     if isinstance(image, Texture2D):
         return image
@@ -35,11 +40,16 @@ def light_texture(image: Any, what: str, place: Span | None) -> Texture2D:
 
 
 def cube_texture(images: Any, what: str, place: Span | None) -> TextureCube:
-    """Six pictures, in the order +x, -x, +y, -y, +z, -z, as a texture of linear light.
+    """Return six pictures as a cube texture of linear light.
+
+    Args:
+        images: Six pictures, in the order +x, -x, +y, -y, +z, -z.
+        what: The name in messages of the object that uses them.
+        place: The author's line.
 
     Raises:
-        SceneValueError: There are not six, or one cannot be read.
-        SceneTypeError: They are nothing that holds pictures.
+        SceneValueError: There are not six pictures, or one cannot be read.
+        SceneTypeError: The values do not hold pictures.
     """
     if isinstance(images, TextureCube):
         return images
@@ -59,7 +69,7 @@ def cube_texture(images: Any, what: str, place: Span | None) -> TextureCube:
 
 
 def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[np.float32]:
-    """What a texture holds: float32 (height, width, 4), top row first."""
+    """Return the content of a texture: float32 (height, width, 4), top row first."""
     try:
         return texels(texture.data, TextureShape.FLAT)[::-1]
     except LoadError as error:
@@ -68,7 +78,7 @@ def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[
 
 
 def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
-    """The linear light of a picture: float32 (height, width, 4), top row first."""
+    """Return the linear light of a picture: float32 (height, width, 4), top row first."""
     if isinstance(image, Picture):
         return image.linear
     encoded = isinstance(image, str | os.PathLike)

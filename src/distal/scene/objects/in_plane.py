@@ -1,4 +1,4 @@
-"""Which operator of flat shapes does in the plane what an operator of solids does in space.
+"""Table of the operators of solids and their counterparts for flat shapes.
 
 Input: the declared operators. Output: ``IN_PLANE``. Operators that work on both, such as rounding,
 are not listed.

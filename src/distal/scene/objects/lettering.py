@@ -1,9 +1,9 @@
-"""Text as outlines: which font, which glyphs, and where each of them is.
+"""Layout of text as outlines: chooses a font and places its glyphs.
 
-Input: a text, a font's name or file. Output: an ``Outline``. The distances of glyphs
-are the font's widths and its kerning; there are no ligatures, and all text runs from left to right.
-Without a font it is Pillow's own, the same everywhere; if that lacks a letter, the first known font
-of the machine that has all.
+Input: a text, a font's name or file. Output: an ``Outline``. Glyph distances are the font's widths
+and kerning. There are no ligatures, and all text runs from left to right. The default font is the
+one inside Pillow, which is the same on every machine; if it lacks a letter, the first known font of
+the machine that has all letters is used.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from distal.scene.tree.source_places import author_place
 
 ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
 SUFFIXES: Final = (".ttf", ".otf", ".ttc", ".otc")
-# Fonts with many letters, as they are called where they are common.
+# Names of common fonts with many letters.
 KNOWN: Final = ("dejavusans", "notosansregular", "arialunicode", "arial", "segoeui", "helvetica")
-# Of the em square, if a font does not give the height of its capital letters.
+# Height of capital letters in ems, if a font does not specify it.
 CAPITALS: Final = 0.7
 
 
@@ -42,19 +42,19 @@ def text_outline(
     line_spacing: float = 1.2,
     place: Span | None = None,
 ) -> Outline:
-    r"""The outline of a text, the middle of its capital letters at height 0.
+    r"""Return the outline of a text; the middle of its capital letters is at y = 0.
 
     Args:
-        text: What is written; "\n" starts a new line.
-        font: The font's file, or the name of an installed one; None for a plain one.
-        size: Of the font: capital letters are about 0.7 of it high.
-        align: Where x = 0 is in each line: "left", "center" or "right".
-        line_spacing: From line to line, in sizes.
+        text: The text; "\n" starts a new line.
+        font: The font's file, or the name of an installed font; None for a default font.
+        size: Font size; capital letters are about 0.7 times as high.
+        align: Position of x = 0 in each line: "left", "center" or "right".
+        line_spacing: Distance between lines, as a multiple of ``size``.
         place: The author's line.
 
     Raises:
-        SceneValueError: There is nothing to see, no such font, or it lacks a letter.
-        SceneTypeError: It is no text.
+        SceneValueError: The text is blank, there is no such font, or it lacks a letter.
+        SceneTypeError: ``text`` is not a string.
     """
     place = place or author_place()
     if not isinstance(text, str):
@@ -81,11 +81,11 @@ def text_outline(
 
 
 class Face:
-    """A font, opened.
+    """An opened font.
 
     Attributes:
-        units: How many make up its size.
-        capitals: The height of capital letters.
+        units: Number of font units per em.
+        capitals: Height of capital letters, in font units.
     """
 
     def __init__(self, font: Any) -> None:
@@ -97,11 +97,11 @@ class Face:
         self.capitals = float(getattr(sizes, "sCapHeight", 0) or CAPITALS * self.units)
 
     def lacks(self, letters: set[str]) -> list[str]:
-        """The letters that it has no glyph for."""
+        """Return the letters that have no glyph in the font."""
         return sorted(c for c in letters if ord(c) not in self._names)
 
     def laid_out(self, line: str, place: Span | None) -> tuple[list[Edge], float]:
-        """The edges of a line from x = 0 on its base line, and its width."""
+        """Return the edges of a line of text, from x = 0 on the baseline, and its width."""
         at = 0.0
         edges: list[Edge] = []
         before = None
@@ -117,14 +117,14 @@ class Face:
 
 
 class _Kerning:
-    """How much nearer or farther two glyphs are: by the new table's pairs, else the old one's."""
+    """The kerning of pairs of glyphs, from the GPOS table, or else from the older kern table."""
 
     def __init__(self, font: Any) -> None:
         self._new = list(_pair_tables(font["GPOS"].table)) if "GPOS" in font else []
         self._old = font["kern"].kernTables if "kern" in font and not self._new else []
 
     def between(self, first: str, second: str) -> float:
-        """In the font's units; from the first table that knows the pair."""
+        """Return the kerning in font units, from the first table that has the pair."""
         for table in self._new:
             if first in table.Coverage.glyphs:
                 value = _pair_value(table, first, second)
@@ -138,7 +138,7 @@ class _Kerning:
 
 
 def _pair_tables(table: Any) -> Iterator[Any]:
-    """The tables of pairs that the feature "kern" names, in order."""
+    """Yield the pair tables of the feature "kern", in order."""
     features = table.FeatureList.FeatureRecord if table.FeatureList else []
     kerning = [f.Feature.LookupListIndex for f in features if f.FeatureTag == "kern"]
     for index in sorted({index for indices in kerning for index in indices}):
@@ -149,7 +149,7 @@ def _pair_tables(table: Any) -> Iterator[Any]:
 
 
 def _pair_value(table: Any, first: str, second: str) -> Any:
-    """A table's value for a pair whose first glyph it covers, or None."""
+    """Return a table's value for a pair if the table covers the first glyph, else None."""
     if table.Format == 1:
         pairs = table.PairSet[table.Coverage.glyphs.index(first)].PairValueRecord
         return next((pair.Value1 for pair in pairs if pair.SecondGlyph == second), None)
@@ -163,7 +163,7 @@ def _pair_value(table: Any, first: str, second: str) -> Any:
 
 
 def _face(font: str | os.PathLike[str] | None, letters: set[str], place: Span | None) -> Face:
-    """The requested font, or one that has all the letters."""
+    """Return the requested font, or one that has all the letters."""
     face = _pillows_face() if font is None else _opened(_file_of(font, place), place)
     missing = face.lacks(letters) if face else sorted(letters)
     if face is not None and not missing:
@@ -199,7 +199,7 @@ def _file_of(font: str | os.PathLike[str], place: Span | None) -> str:
 
 
 def _plain(name: str) -> str:
-    """A font's name without what writings of it differ by."""
+    """Return a font's name without the differences between spellings of it."""
     return "".join(c for c in name.lower() if c.isalnum())
 
 
@@ -208,7 +208,7 @@ def _opened(file: str, place: Span | None) -> Face:
         return _open_file(file, os.stat(file).st_mtime_ns)
     except SceneValueError:
         raise
-    except Exception as error:  # fontTools meets broken files with any kind of error
+    except Exception as error:  # fontTools raises any kind of error for broken files
         refuse(f"the font '{os.path.basename(file)}' cannot be read: {error}", None, place)
 
 
@@ -220,7 +220,7 @@ def _open_file(file: str, changed: int) -> Face:
 
 @lru_cache(maxsize=1)
 def _pillows_face() -> Face | None:
-    """The font inside Pillow, or None where Pillow was built without FreeType."""
+    """Return the font inside Pillow, or None if Pillow was built without FreeType."""
     images: Any = imported("PIL.ImageFont")
     data = getattr(images.load_default(10), "font_bytes", None)
     if not data:
@@ -230,7 +230,7 @@ def _pillows_face() -> Face | None:
 
 @lru_cache(maxsize=1)
 def _installed() -> dict[str, str]:
-    """The fonts of the machine: files by plain name, the first found of each."""
+    """Return the installed fonts: files by normalised name, the first found of each."""
     found: dict[str, str] = {}
     for folder in _folders():
         for file in sorted(folder.rglob("*")):

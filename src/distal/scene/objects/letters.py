@@ -1,8 +1,8 @@
 """Letters and drawings as flat shapes: ``Text`` and ``SvgPath``.
 
-Input: a text, or the text of an SVG path. Output: flat shapes, exact outside, to be
-extruded, engraved and combined like any other. Fonts and paths are read by ``lettering`` and
-``outlines``, loaded only when one is made.
+Input: a text, or an SVG path. Output: flat shapes, exact outside, which can be extruded, engraved
+and combined like any other. ``lettering`` and ``outlines`` read fonts and paths; they are imported
+only when such a shape is made.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from distal.scene.tree.source_places import author_place
 
 
 class Text(Shape2D):
-    r"""Letters of a font, the middle of the capitals at height 0.
+    r"""Text in a font, as a flat shape; the middle of capital letters is at y = 0.
 
     Args:
-        text: What is written; "\n" starts a new line.
-        font: The font's file, or the name of an installed one; None for a plain one.
-        size: Of the font: capital letters are about 0.7 of it high.
-        align: Where x = 0 is in each line: "left", "center" or "right".
-        line_spacing: From line to line, in sizes.
+        text: The text; "\n" starts a new line.
+        font: The font's file, or the name of an installed font; None for a default font.
+        size: Font size; capital letters are about 0.7 times as high.
+        align: Position of x = 0 in each line: "left", "center" or "right".
+        line_spacing: Distance between lines, as a multiple of ``size``.
 
     Raises:
-        CompileError: At the author's line: nothing to see, no such font, or a letter it lacks.
+        CompileError: At the author's line: the text is blank, or the font or a letter is missing.
     """
 
     def __init__(
@@ -51,15 +51,15 @@ class Text(Shape2D):
 
 
 class SvgPath(Shape2D):
-    """The area that an SVG path encloses, upright, its middle at the origin.
+    """The area enclosed by an SVG path; y points up, and the middle is at the origin.
 
     Args:
-        path: The value of the attribute ``d``: "M 0 0 L 10 0 …".
+        path: The value of the path's attribute ``d``: "M 0 0 L 10 0 …".
         size: The larger of width and height; None keeps the drawing's own units.
-        even_odd: Whether parts within parts are holes, whichever way they turn.
+        even_odd: Whether to fill by the even-odd rule, instead of the nonzero rule.
 
     Raises:
-        CompileError: At the author's line, when the path cannot be read.
+        CompileError: At the author's line, if the path cannot be read.
     """
 
     def __init__(self, path: str, *, size: float | None = None, even_odd: bool = False) -> None:

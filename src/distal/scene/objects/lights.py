@@ -1,9 +1,10 @@
-"""Lights: what makes a scene visible.
+"""Lights of a scene.
 
-Input: the lights that ``render`` declares. Output: a class for each. Its arguments are positions,
-directions, colours and intensities; all may be parameters or change with time. A light reaches a
-point (``sample``), or a surface that faces some way from everywhere (``ambient``). A point light of
-intensity 1 at distance 1, square on a white matte surface, shows it as white (radiance 1).
+Input: the lights declared in ``render``. Output: a class for each. Its arguments are positions,
+directions, colours and intensities; all may be parameters or change with time. A light illuminates
+a point from a position or direction (``sample``), or a surface by its normal from all sides
+(``ambient``). A point light of intensity 1 at distance 1, perpendicular to a white matte surface,
+makes it appear white (radiance 1).
 """
 
 from __future__ import annotations
@@ -25,11 +26,15 @@ from distal.scene.tree.source_places import author_place
 
 
 class Light(SceneObject):
-    """What all lights share. A light never changes once it is made.
+    """The base class of lights.
+
+    A light never changes after construction.
 
     Attributes:
-        sample: ``(p) -> LightSample``, how it reaches a point; None for light from everywhere.
-        ambient: ``(n) -> vec3``, what a surface facing n gets from everywhere; else None.
+        sample: ``(p) -> LightSample``, the light that arrives at a point; None for light from all
+            sides.
+        ambient: ``(n) -> vec3``, the light that a surface with normal n receives from all sides;
+            else None.
     """
 
     __slots__ = ("ambient", "sample")
@@ -46,7 +51,7 @@ class Light(SceneObject):
         self._keep(sample=None if everywhere else call, ambient=call if everywhere else None)
 
     def functions(self) -> Iterator[Func]:
-        """The functions that it calls."""
+        """Yield the scene functions that the light calls."""
         for call in (self.sample, self.ambient):
             if call is not None:
                 yield from call.functions()
@@ -57,10 +62,10 @@ globals().update(CLASSES)
 
 
 def as_light(value: Any, place: Span | None = None) -> Light:
-    """A light.
+    """Return the value if it is a light.
 
     Raises:
-        TypeError: It is none.
+        TypeError: The value is not a light.
     """
     if isinstance(value, Light):
         return value

@@ -1,9 +1,9 @@
-"""Materials: what a shape looks like.
+"""Materials of shapes.
 
-Input: colours, weights and numbers, each plain, a parameter, changing with time, or a
-pattern. Output: a ``Material``, which gives its ``Surface`` at a place of the shape it
-paints. The formulas are scene code of ``render.material``; this module checks and remembers what a
-scene must know of a material to choose its renderer: whether rays bounce off it, or go into it.
+Input: colours, weights and numbers, each a constant, a parameter, an expression, or a pattern.
+Output: a ``Material``, which computes the ``Surface`` at a place of the shape that it paints. The
+formulas are scene code of ``render.material``; this module checks the values and records what the
+choice of a renderer depends on: whether the material reflects or refracts rays.
 """
 
 from __future__ import annotations
@@ -34,39 +34,40 @@ if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Number, Varying
 
 _WEIGHTS: Final = ("diffuse", "specular", "transmission")
-# Weights like 0.85, 0.05 and 0.1 add up to a little more than 1 in floats.
+# The sum of weights like 0.85, 0.05 and 0.1 is slightly above 1 in floats.
 _SLACK: Final = 1e-6
-# No glass is black: what it leaves of the light at least, so that its logarithm is finite.
+# The least transmittance of glass, so that its logarithm is finite.
 _DARKEST: Final = 1e-4
 
 
 class Material(CalledObject):
-    """What a shape looks like. It never changes once it is made.
+    """The appearance of a shape. A material never changes after construction.
 
-    ``diffuse``, ``specular`` and ``transmission`` share out the light that arrives, and add up to
-    at most 1. Each argument is a number (a colour), a parameter, an expression, or a pattern.
+    ``diffuse``, ``specular`` and ``transmission`` are shares of the incoming light and add up to at
+    most 1. Each argument is a number (or a colour), a parameter, an expression, or a pattern.
 
     Args:
-        color: What it scatters, and a metal mirrors: "#rrggbb", or linear red, green, blue.
-        diffuse: Share of light scattered to all sides.
-        specular: Share of light mirrored.
-        transmission: Share of light let in.
+        color: Colour of scattered light, and of a metal's reflections: "#rrggbb", or linear red,
+            green, blue.
+        diffuse: Share of light that is scattered in all directions.
+        specular: Share of light that is reflected.
+        transmission: Share of light that is transmitted.
         ior: Index of refraction.
-        roughness: 0 mirrors sharply, 1 hardly at all.
-        metal: 1 colours what it mirrors, 0 mirrors white.
-        emission: Light that it gives off by itself, a colour.
-        absorption: What a unit of its inside takes from light, for each colour.
-        fresnel: Whether mirroring grows towards glancing angles as in glass; False keeps the
-            weights.
+        roughness: From 0 for sharp reflections to 1 for very blurred ones.
+        metal: From 0 for white reflections to 1 for reflections with the material's colour.
+        emission: Emitted light, a colour.
+        absorption: Absorption coefficient inside per scene unit, for each colour channel.
+        fresnel: Whether reflection increases towards grazing angles as in glass; False keeps the
+            weights constant.
 
     Raises:
         ValueError: A number is out of its range, or the weights add up to more than 1.
-        TypeError: Something is of another kind.
+        TypeError: An argument has the wrong type.
 
     Attributes:
-        call: The scene function ``(places…) -> Surface`` and what it is given.
-        reflects: Whether a ray may bounce off.
-        refracts: Whether a ray may go in.
+        call: The scene function ``(places…) -> Surface`` and its values.
+        reflects: Whether rays may be reflected.
+        refracts: Whether rays may enter the inside.
     """
 
     __slots__ = ("reflects", "refracts")
@@ -109,7 +110,7 @@ class Material(CalledObject):
 
     @classmethod
     def of(cls, call: FunctionCall, *, reflects: bool, refracts: bool) -> Material:
-        """A material of a scene function.
+        """Return the material of a scene function.
 
         Args:
             call: The function, which returns a ``Surface``, and its values.
@@ -122,7 +123,7 @@ class Material(CalledObject):
 
     @property
     def uses(self) -> frozenset[str]:
-        """Which of "p", "n", "cell" it needs."""
+        """Which of "p", "n", "cell" the material depends on."""
         return self.call.uses
 
     def mix(
@@ -130,11 +131,13 @@ class Material(CalledObject):
         other: Material | Color | Varying,
         t: Number | Varying = 0.5,
     ) -> Material:
-        """This where ``t`` is 0, another material where it is 1, every number mixed between.
+        """Return a mixture: this material at t = 0, another at t = 1.
+
+        All numbers are interpolated.
 
         Args:
             other: A material or a colour.
-            t: 0 to 1; a pattern too.
+            t: From 0 to 1; may be a pattern.
         """
         return mixed(self, as_material(other), t, "mix", author_place())
 
@@ -152,7 +155,7 @@ def surface(
     absorption: vec3,
     fresnel: float,
 ) -> library.Surface:
-    """A surface of its numbers."""
+    """Make a ``Surface`` from its numbers."""
     return library.Surface(
         color,
         diffuse,
@@ -169,12 +172,12 @@ def surface(
 
 @func
 def grey(amount: float) -> vec3:
-    """An amount as a colour."""
+    """Return an amount as a grey colour."""
     return vec3(amount)
 
 
 def accept(value: Any, asked: Asked) -> Any:
-    """The value for a parameter that is given a pattern, function or material, else None."""
+    """Return a pattern, function or material for a parameter; None for other values."""
     if isinstance(value, Func):
         value = own_pattern(value, (), {}, asked.place)
     if isinstance(asked.type, Struct):
@@ -196,7 +199,14 @@ def accept(value: Any, asked: Asked) -> Any:
 def own_pattern(
     function: Func, args: tuple[Any, ...], kwargs: Mapping[str, Any], place: Span | None
 ) -> Pattern | Material:
-    """An author's function of a place as a pattern, or as a material where it gives a Surface."""
+    """Make a pattern from an author's function; a material if it returns a ``Surface``.
+
+    Args:
+        function: The author's ``@func`` of a place.
+        args: Its numbers by position.
+        kwargs: Its numbers by name.
+        place: The author's line.
+    """
     what = function.name
     call = _call(what, function, kwargs, place, args, {})
     result = call.result
@@ -213,7 +223,15 @@ def own_pattern(
 
 
 def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Material:
-    """Two materials mixed by a share of the second."""
+    """Return a mixture of two materials.
+
+    Args:
+        a: The material at t = 0.
+        b: The material at t = 1.
+        t: The share of ``b``: a number or a pattern.
+        what: The name in messages.
+        place: The author's line.
+    """
     share = arguments(
         library.mix_surfaces,
         (),
@@ -232,11 +250,11 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
 
 
 def as_material(value: Any, place: Span | None = None) -> Material:
-    """A material of what an author may give for one: a colour, a pattern, a @func of a place.
+    """Return the material of a value: a material, a colour, a pattern, a ``@func`` of a place.
 
     Raises:
-        TypeError: It is none of these.
-        ValueError: It is no colour.
+        TypeError: The value is none of these.
+        ValueError: The value is not a valid colour.
     """
     place = place or author_place()
     if isinstance(value, Func):
@@ -278,16 +296,16 @@ def glass(
     *,
     absorption: Color | Varying | None = None,
 ) -> Material:
-    """Glass, water, ice: light goes in, and is mirrored more the flatter it comes.
+    """Make a transparent material (glass, water, ice) with refraction and Fresnel reflection.
 
     Args:
         ior: Index of refraction: 1.33 water, 1.5 glass, 2.42 diamond.
-        color: What white light becomes on one unit of way inside; instead of ``absorption``.
-        absorption: How much of each colour the inside takes for each unit of way.
+        color: Colour of white light after one scene unit inside; instead of ``absorption``.
+        absorption: Absorption coefficient inside per scene unit, for each colour channel.
 
     Raises:
         ValueError: The index is not above 0, or a number is out of its range.
-        TypeError: Something is of another kind, or both color and absorption are given.
+        TypeError: An argument has the wrong type, or both color and absorption are given.
     """
     place = author_place()
     if color is not None and absorption is not None:
@@ -304,7 +322,7 @@ def glass(
 
 
 def _absorption(color: Any, place: Span | None) -> Any:
-    """What takes white light to a colour in one unit of way (Beer and Lambert)."""
+    """Return the absorption that turns white light into a colour in one unit (Beer-Lambert)."""
     asked = Asked("color", "glass", VEC3, Limit.FRACTION, is_color=True, place=place)
     left: Any = number(color, asked).value
     if not isinstance(left, Expression):
@@ -328,7 +346,7 @@ def _call(
 
 
 def _may_be(value: Any) -> bool:
-    """Whether a weight is, or may become, more than nothing."""
+    """Return whether a weight is, or may become, larger than 0."""
     return not isinstance(value, CheckedNumber) or value.may_exceed(0.0)
 
 

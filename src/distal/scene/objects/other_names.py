@@ -39,13 +39,13 @@ _FLAT_ONLY: Final = "for flat shapes; slice() makes one of a solid"
 
 
 def instead(kind: str, name: str, *, flat: bool, of_others: bool) -> str:
-    """The message for a name that a shape does not have.
+    """Return the message for a name that a shape does not have.
 
     Args:
-        kind: What the shape is called.
-        name: What was looked for.
-        flat: Whether the shape is.
-        of_others: Whether shapes of the other dimension have it.
+        kind: The word for the shape in the message.
+        name: The name that was not found.
+        flat: Whether the shape is flat.
+        of_others: Whether shapes of the other dimension have the name.
     """
     message = f"'{kind}' has no '{name}'"
     if of_others:

@@ -1,8 +1,8 @@
-"""Drawings and letters as outlines: the chains of lines and curves that ``fields.outlines`` reads.
+"""Drawings and letters as outlines: closed chains of lines and curves for ``fields.outlines``.
 
-Input: the text of an SVG path, or a text and a font (``lettering`` lays it out). Output:
-an ``Outline``: the buffers of edges and the box around them. What cannot be read is an
-error at the author's line. Reading paths and fonts is left to fontTools, an optional package.
+Input: an SVG path, or a text and a font (which ``lettering`` lays out). Output: an ``Outline``: the
+buffers of edges and the box around them. Input that cannot be read is an error at the author's
+line. Paths and fonts are read by fontTools, an optional package.
 """
 
 from __future__ import annotations
@@ -21,25 +21,26 @@ from distal.packages import PackageError, imported
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
 
-# Two points: a line. Three: a quadratic Bézier curve. Four: a cubic one. y points up.
+# A line (two points), a quadratic Bézier curve (three) or a cubic one (four); y points up.
 Edge: TypeAlias = tuple[complex, ...]
 
-# How far a quadratic curve may leave the cubic that it replaces, in sides of the outline's box.
+# Largest deviation of a quadratic curve from the cubic that it approximates, as a fraction of the
+# side of the outline's box.
 TOLERANCE: Final = 1.0 / 4000.0
-# Flatter than this share of its length, a curve is a line.
+# A curve that deviates from a line by less than this fraction of its length becomes a line.
 STRAIGHT: Final = 1e-6
 _NOT_IN_A_PATH: Final = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+\-.,\s]")
 
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """Closed chains of edges, as the buffers of ``fields.outlines.outline``.
+    """Closed chains of edges, as the buffers of ``fields.flats.outlines.outline``.
 
     Attributes:
         lines: Start and end of each line, a vec4 each.
         curves: Start, control point and end of each quadratic curve, three vec2 each.
-        low: The lower left corner of the box around all.
-        high: The upper right corner.
+        low: The lower left corner of the box around all edges.
+        high: The upper right corner of this box.
     """
 
     lines: Buffer
@@ -49,18 +50,18 @@ class Outline:
 
 
 def svg_path(path: str, *, size: float | None = None, place: Span | None = None) -> Outline:
-    """The outline of an SVG path, its middle at the origin, upright.
+    """Return the outline of an SVG path; y points up, and the middle is at the origin.
 
-    Open parts are closed by a line, as SVG does before it fills them.
+    Open subpaths are closed by a line, as SVG does for filling.
 
     Args:
-        path: The value of the attribute ``d``: "M 0 0 L 10 0 …".
+        path: The value of the path's attribute ``d``: "M 0 0 L 10 0 …".
         size: The larger of width and height; None keeps the drawing's own units.
         place: The author's line.
 
     Raises:
-        SceneValueError: It is no path, or encloses nothing.
-        SceneTypeError: It is no text.
+        SceneValueError: The path is invalid, or encloses no area.
+        SceneTypeError: ``path`` is not a string.
     """
     place = place or author_place()
     if not isinstance(path, str):
@@ -89,10 +90,10 @@ def svg_path(path: str, *, size: float | None = None, place: Span | None = None)
 
 
 def font_tools(module: str, place: Span | None) -> Any:
-    """A module of fontTools.
+    """Import a module of fontTools.
 
     Raises:
-        SceneValueError: It is missing or broken.
+        SceneValueError: The package is missing or broken.
     """
     try:
         return imported(f"fontTools.{module}")
@@ -102,7 +103,7 @@ def font_tools(module: str, place: Span | None) -> Any:
 
 
 def outline_pen(glyphs: Any, place: Span | None) -> Any:
-    """A pen, in fontTools' sense, that keeps edges; ``finished()`` gives them, chains closed."""
+    """Return a fontTools pen that records edges; ``finished()`` returns them as closed chains."""
     base: Any = font_tools("pens.basePen", place).BasePen
 
     class OutlinePen(base):  # type: ignore[misc]
@@ -144,15 +145,15 @@ def outline_pen(glyphs: Any, place: Span | None) -> Any:
 
 
 def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
-    """An outline of closed chains.
+    """Return the outline made of closed chains of edges.
 
     Args:
-        edges: In any order.
-        what: What is drawn, for messages.
+        edges: The edges, in any order.
+        what: The name of the drawing in messages.
         place: The author's line.
 
     Raises:
-        SceneValueError: It encloses nothing, or a number is not finite.
+        SceneValueError: The edges enclose no area, or a number is not finite.
     """
     given = list(edges)
     low, high = _corners(given, what, place)
@@ -165,7 +166,7 @@ def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
                 curves.append(part)
             elif part[0] != part[1]:
                 lines.append(part)
-    # A buffer holds something: an edge without length is nowhere near and crosses nothing.
+    # A buffer must not be empty: add an edge of length 0, which changes neither distance nor sign.
     anywhere = (lines or curves)[0][0]
     lines = lines or [(anywhere, anywhere)]
     curves = curves or [(anywhere, anywhere, anywhere)]
@@ -178,7 +179,7 @@ def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
 
 
 def _numbers(edges: Sequence[Edge]) -> Any:
-    """Two floats for each point, rounded alike wherever the same point occurs."""
+    """Return two floats for each point; equal points are rounded in the same way."""
     return np.array(edges, np.complex128).view(np.float64).astype(np.float32)
 
 
@@ -196,7 +197,7 @@ def _corners(edges: Sequence[Edge], what: str, place: Span | None) -> tuple[comp
 
 
 def _parts(edge: Edge, tolerance: float) -> Iterator[Edge]:
-    """Lines, and quadratic curves that rise or fall all the way."""
+    """Yield lines, and quadratic curves that are monotonic in y."""
     match len(edge):
         case 2:
             yield edge
@@ -210,10 +211,10 @@ def _parts(edge: Edge, tolerance: float) -> Iterator[Edge]:
 
 
 def _quadratics(cubic: Edge, tolerance: float) -> Iterator[Edge]:
-    """Quadratic curves within a tolerance of a cubic one.
+    """Yield quadratic curves within a tolerance of a cubic curve.
 
-    A quadratic with the same ends and middle leaves a cubic by at most sqrt(3)/36 of its third
-    difference, which falls with the cube of the number of parts.
+    A quadratic with the same ends and middle deviates from the cubic by at most sqrt(3)/36 of its
+    third difference, which decreases with the cube of the number of parts.
     """
     a, b, c, d = cubic
     bend = abs(d - 3.0 * c + 3.0 * b - a)
@@ -228,7 +229,7 @@ def _quadratics(cubic: Edge, tolerance: float) -> Iterator[Edge]:
 
 
 def _cubic_at(cubic: Edge) -> Callable[[float], tuple[complex, complex]]:
-    """Place and velocity on a cubic curve; its ends as they were given."""
+    """Return the position and velocity on a cubic curve as a function; its ends are exact."""
     a, b, c, d = cubic
 
     def at(t: float) -> tuple[complex, complex]:
@@ -241,14 +242,14 @@ def _cubic_at(cubic: Edge) -> Callable[[float], tuple[complex, complex]]:
 
 
 def _rising_or_falling(quadratic: Edge) -> Iterator[Edge]:
-    """A curve, cut where it is level; a line where it is straight."""
+    """Cut a curve where its tangent is horizontal; return a line for a straight curve."""
     a, b, c = quadratic
     fall = a.imag - 2.0 * b.imag + c.imag
     t = (a.imag - b.imag) / fall if fall else -1.0
     if 0.0 < t < 1.0:
         first, second = a + (b - a) * t, b + (c - b) * t
         turn = first + (second - first) * t
-        # Exactly level there, so that neither part turns back by a rounding.
+        # Make the tangent exactly horizontal: rounding must not make a part non-monotonic.
         yield from _straightened(a, complex(first.real, turn.imag), turn)
         yield from _straightened(turn, complex(second.real, turn.imag), c)
     else:

@@ -1,10 +1,11 @@
-"""Patterns: colours and amounts that differ from place to place on a surface.
+"""Patterns: colours and amounts that vary over a surface.
 
-Input: the patterns that ``render.patterns`` declares; colours, materials, numbers, pictures, other
+Input: the patterns declared in ``render.patterns``; colours, materials, numbers, pictures, other
 patterns, authors' own functions of a place. Output: a ``Pattern``, which a material accepts instead
-of a colour or a number; a ``Material`` if one of a pattern's two sides is one, an amount if both
-are numbers. A place is ``p`` (the point in the painted shape's own space), ``n`` (the normal there)
-and ``cell`` (the index of the repetition it lies in). The formulas are scene code.
+of a colour or a number; a ``Material`` if one of a pattern's two sides is a material; an amount if
+both are numbers. A place is ``p`` (the point in the local space of the painted shape), ``n`` (the
+normal there) and ``cell`` (the index of the repetition that contains it). The formulas are scene
+code.
 """
 
 from __future__ import annotations
@@ -39,27 +40,27 @@ _MAPPINGS: Final[Mapping[str, Func]] = {
 
 @func
 def mix_colors(a: vec3, b: vec3, t: float) -> vec3:
-    """One colour where t is 0, another where it is 1."""
+    """Interpolate two colours: ``a`` at t = 0, ``b`` at t = 1."""
     return mix(a, b, t)
 
 
 @func
 def mix_amounts(a: float, b: float, t: float) -> float:
-    """One amount where t is 0, another where it is 1."""
+    """Interpolate two amounts: ``a`` at t = 0, ``b`` at t = 1."""
     return mix(a, b, t)
 
 
 def pattern(function: Func, *args: Any, **kwargs: Any) -> Any:
-    """An author's own ``@func`` of a place.
+    """Make a pattern from an author's own ``@func`` of a place.
 
     Args:
-        function: Of any of ``p: vec3``, ``n: vec3``, ``cell: vec3``, and of numbers. It gives a
-            float, a vec3 (a linear colour) or a ``Surface``; the last makes a material.
-        args: Its numbers by position.
-        kwargs: Its numbers by name.
+        function: A function of any of ``p: vec3``, ``n: vec3``, ``cell: vec3``, and of numbers. It
+            returns a float, a vec3 (a linear colour) or a ``Surface``, which makes a material.
+        args: The function's numbers by position.
+        kwargs: The function's numbers by name.
 
     Raises:
-        TypeError: It is no ``@func``, or gives something else.
+        TypeError: ``function`` is not a ``@func``, or returns another type.
 
     Returns:
         A ``Pattern``, or a ``Material`` if the function gives a ``Surface``.
@@ -75,18 +76,19 @@ def pattern(function: Func, *args: Any, **kwargs: Any) -> Any:
 
 
 def image_pattern(image: Image, mapping: str = "planar", size: Number | Varying = 1.0) -> Pattern:
-    """A picture on a surface.
+    """Project a picture onto a surface.
 
     Args:
-        image: A picture's file, looked for beside the scene (then in the working folder); an array
+        image: A picture's file, searched beside the scene, then in the working folder; an array
             (height, width, 3 or 4); a ``Picture``; a ``Texture2D`` of linear light.
-        mapping: "planar" (along z), "triplanar" (from all three sides, blended), "spherical" or
+        mapping: "planar" (along z), "triplanar" (along all three axes, blended), "spherical" or
             "cylindrical" (around the y axis).
-        size: How large the picture is, in scene units; around an axis, the share of the turn.
+        size: Size of the picture in scene units; with "spherical" and "cylindrical", as a fraction
+            of the full turn.
 
     Raises:
         ValueError: The picture cannot be read, or there is no such mapping.
-        TypeError: Something is of another kind.
+        TypeError: An argument has the wrong type.
     """
     place = author_place()
     if mapping not in _MAPPINGS:
@@ -98,15 +100,15 @@ def image_pattern(image: Image, mapping: str = "planar", size: Number | Varying 
 
 
 def cube_map(images: Images) -> Pattern:
-    """Six pictures, seen from the shape's centre.
+    """Project six pictures onto a surface from the shape's centre.
 
     Args:
         images: Six pictures as for ``image_pattern``, in the order +x, -x, +y, -y, +z, -z; or a
             ``TextureCube`` of linear light.
 
     Raises:
-        ValueError: There are not six, or one cannot be read.
-        TypeError: Something is of another kind.
+        ValueError: There are not six pictures, or one cannot be read.
+        TypeError: An argument has the wrong type.
     """
     place = author_place()
     texture = _images().cube_texture(images, "cube_map", place)
@@ -124,7 +126,7 @@ def _as_pattern(call: FunctionCall) -> Pattern:
 def _declared(
     declaration: Declaration, given: dict[str, Any], place: Span | None
 ) -> Pattern | Material:
-    """A declared pattern; if it has two sides, these mixed by the share that it computes."""
+    """Return a declared pattern. If it has two sides, mix them by the share it computes."""
     share = _as_pattern(declared_call(declaration, given, place, accept=accept))
     if not declaration.extras:
         return share
@@ -147,10 +149,10 @@ globals().update(FUNCTIONS)
 
 
 def is_amount(value: Any) -> bool:
-    """Whether a side of a pattern is a number, or a pattern of numbers, and no colour."""
+    """Return whether a side of a pattern is a number or a pattern of numbers, not a colour."""
     return value.result is FLOAT if isinstance(value, Pattern) else is_scalar(value)
 
 
 def _images() -> Any:
-    """What decodes pictures, loaded when there is one: the compile path needs no NumPy."""
+    """Import the module that decodes pictures; the compile path must not need NumPy."""
     return importlib.import_module("distal.scene.objects.images")

@@ -1,7 +1,7 @@
-"""The methods that solid and flat shapes share: placing, repeating, thickening.
+"""Methods that solid and flat shapes share: placement, repetition, thickness.
 
-Input: the author's numbers. Output: new shapes; none changes. Every method applies an operator of
-the field library; that of a flat shape applies its counterpart in the plane.
+Input: the author's numbers. Output: new shapes; shapes never change. Every method applies an
+operator of the field library; on a flat shape, it applies the operator's counterpart in the plane.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ _SHELLS: Final[Mapping[str, Operator]] = {
 
 
 class Placed(BaseShape):
-    """The methods that solid and flat shapes share."""
+    """A shape with the methods that solid and flat shapes share."""
 
     def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
-        """This shape under an operator, or under its counterpart in the plane."""
+        """Apply an operator; on a flat shape, its counterpart in the plane."""
         if self.flat:
             operator = IN_PLANE.get(operator, operator)
         made: Self = self._under(operator, args, kwargs, author_place())
@@ -53,10 +53,10 @@ class Placed(BaseShape):
         """Apply an operator of the library by its name in the catalogue.
 
         Args:
-            operator: The name: "twist", "flat repeat".
-            args: Its numbers by position.
-            others: The shapes that it combines this one with.
-            kwargs: Its numbers by name.
+            operator: The operator's name, such as "twist" or "flat repeat".
+            args: The operator's numbers by position.
+            others: The shapes to combine this one with.
+            kwargs: The operator's numbers by name.
 
         Raises:
             SceneValueError: There is no such operator, or it does not work on this shape.
@@ -71,29 +71,31 @@ class Placed(BaseShape):
         return self._with(placing.TRANSLATE, *offset, **parts)
 
     def scale(self, *factors: Any, **parts: Any) -> Self:
-        """Scale by one factor, or by one factor for each axis (no longer exact then)."""
+        """Scale by one factor, or by one factor for each axis (which loses exactness)."""
         if len(factors) == 1 and not parts and is_scalar(factors[0]):
             return self._with(placing.SCALE, *factors)
         return self._with(placing.STRETCH, *factors, **parts)
 
     def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
-        """Mirror in a plane: the half that ``normal`` points to replaces the other half.
+        """Replace the half behind a plane by the mirror image of the half in front of it.
+
+        On a flat shape, the plane is a line. The normal points to the half that is kept.
 
         Args:
-            normal: Length 1.
-            offset: How far the plane lies along the normal from the origin.
+            normal: Normal of the plane, of length 1.
+            offset: Distance of the plane from the origin along the normal.
         """
         return self._with(mirrors.MIRROR, normal, offset)
 
     def symmetry(self, axes: str) -> Self:
-        """Mirror the positive side of the named axes to the negative side: ``symmetry("xz")``."""
+        """Mirror the positive side of each named axis to the negative side: ``symmetry("xz")``."""
         known = "xy" if self.flat else "xyz"
         if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
             refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
         return self._with(mirrors.SYMMETRY, **{axis: axis in axes for axis in known})
 
     def kaleidoscope(self, count: int) -> Self:
-        """Repeat a wedge ``count`` times about the y axis, every other one mirrored."""
+        """Repeat a wedge ``count`` times about the y axis, mirroring every other copy."""
         return self._with(mirrors.KALEIDOSCOPE, count)
 
     def repeat(
@@ -103,20 +105,20 @@ class Placed(BaseShape):
         neighbours: int = 0,
         mirrored: bool = False,
     ) -> Self:
-        """Repeat on a grid, around the shape itself.
+        """Repeat on a grid that is centred on the shape itself.
 
         Args:
-            spacing: From cell to cell along each axis, in scene units; 0 for an axis along which it
-                is not repeated. One number counts for all axes.
-            count: Number of copies along each axis, two or three whole numbers; None repeats
-                without end. Cells are then counted from 0, at the lower corner.
-            neighbours: How many cells around the nearest are evaluated too: 0 for a shape that
+            spacing: Distance from cell to cell along each axis, in scene units; 0 for no repetition
+                along an axis. One number is used for all axes.
+            count: Number of copies along each axis, two or three whole numbers; the indices of
+                cells then start with 0 at the lower corner. None repeats infinitely.
+            neighbours: How many cells around the nearest are also evaluated: 0 for a shape that
                 stays within its cell, 1 or 2 for one that reaches into others.
-            mirrored: Whether every other cell is mirrored, so that adjacent copies touch.
+            mirrored: Whether every other copy is mirrored, so that adjacent copies match.
 
         Raises:
             SceneValueError: ``count`` is not one whole number for each axis, or the shape does not
-                fit its cell.
+                fit into its cell.
         """
         if mirrored:
             return self._with(grid.REPEAT_MIRRORED, *spacing)
@@ -145,20 +147,23 @@ class Placed(BaseShape):
         return self._with(polar.REPEAT_POLAR, count=count)
 
     def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
-        """Cut by a plane into two shapes: the part below, and the part above."""
+        """Cut by a plane into two shapes: the part behind the plane and the part in front of it.
+
+        The normal points to the second part.
+        """
         below = self._with(offsets.SPLIT_BELOW, normal, offset)
         return below, self._with(offsets.SPLIT_ABOVE, normal, offset)
 
     def round(self, radius: Any) -> Self:
-        """Grow by ``radius``, with round edges."""
+        """Move the surface outwards by ``radius``, which rounds the edges."""
         return self._with(offsets.ROUND, radius)
 
     def offset(self, distance: Any) -> Self:
-        """Grow by a distance, or shrink by a negative one."""
+        """Move the surface outwards by a distance, or inwards by a negative one."""
         return self._with(offsets.OFFSET, distance)
 
     def shell(self, thickness: Any, where: str = "centre") -> Self:
-        """Make a hollow shape whose wall lies "inner", "centre" or "outer" of the surface."""
+        """Make the shape hollow; ``where`` places the wall: "inner", "centre" or "outer"."""
         if where not in _SHELLS:
             refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
         return self._with(_SHELLS[where], thickness)

@@ -1,7 +1,7 @@
-"""What lights, cameras, materials and backgrounds share.
+"""Base classes of lights, cameras, materials and backgrounds.
 
-Input: the calls of scene functions that they hold. Output: the base classes of their classes.
-Does not depend on how the calls are made.
+Input: the calls of scene functions that the objects hold. Output: the base classes. Does not depend
+on how the calls are made.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from distal.scene.tree.calls import Composer, FunctionCall
 
 
 class SceneObject(Immutable):
-    """An object that never changes once it is made.
+    """An object that never changes after construction.
 
     Attributes:
-        noun: What messages call objects of its kind.
-        declaration: What its class was made from; only classes made from declarations have it.
+        noun: The word for such objects in messages.
+        declaration: The declaration that the class was made from, if it was made from one.
     """
 
     __slots__ = ("__weakref__",)
@@ -30,7 +30,7 @@ class SceneObject(Immutable):
     declaration: ClassVar[Declaration]
 
     def _keep(self, **attributes: Any) -> None:
-        """Set attributes, once."""
+        """Set attributes, on construction only."""
         for name, value in attributes.items():
             object.__setattr__(self, name, value)
 
@@ -56,9 +56,9 @@ class CalledObject(SceneObject):
         return f"<{self.noun} {self.call.what}>"
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
-        """What the function gives; ``site`` has what it takes besides its values."""
+        """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
         return self.call.emit(composer, site)
 
     def functions(self) -> Iterator[Func]:
-        """The functions that it calls."""
+        """Yield the scene functions that the object calls."""
         return self.call.functions()

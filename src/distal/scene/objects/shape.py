@@ -1,7 +1,7 @@
-"""Solid and flat shapes, and the methods that only one of the two has.
+"""Solid shapes, flat shapes, and the methods that only one of these classes has.
 
-Input: the author's numbers. Output: new shapes; none changes. Every method applies an operator of
-the field library.
+Input: the author's numbers. Output: new shapes; shapes never change. Every method applies an
+operator of the field library.
 """
 
 from __future__ import annotations
@@ -35,7 +35,10 @@ _ROTATIONS: Final[Mapping[str, Operator]] = {
 
 
 class Shape(Placed):
-    """A solid: a signed distance in space. Shapes never change; methods return new ones."""
+    """A solid: a signed distance function of a point in space.
+
+    Shapes never change; methods return new shapes.
+    """
 
     flat = False
     point_type = VEC3
@@ -51,19 +54,19 @@ class Shape(Placed):
         quaternion: Any = None,
         matrix: Any = None,
     ) -> Self:
-        """Rotate about the origin, in one of four ways; angles in radians.
+        """Rotate about the origin, given in exactly one of four ways; angles in radians.
 
         Args:
-            angle: About ``axis``.
-            axis: Of length 1.
-            x: About the fixed x axis, first.
-            y: About the fixed y axis, then.
-            z: About the fixed z axis, last.
+            angle: Angle about ``axis``.
+            axis: Axis of the rotation, of length 1.
+            x: Angle about the fixed x axis, applied first.
+            y: Angle about the fixed y axis, applied second.
+            z: Angle about the fixed z axis, applied last.
             quaternion: (x, y, z, w), of length 1.
-            matrix: Three rows, orthonormal.
+            matrix: Rotation matrix: three rows, orthonormal.
 
         Raises:
-            SceneValueError: No way is given, or more than one.
+            SceneValueError: No rotation is given, or more than one.
         """
         euler = {name: value for name, value in (("x", x), ("y", y), ("z", z)) if value is not None}
         warn_of_degrees(author_place(), angle, *euler.values())
@@ -90,11 +93,11 @@ class Shape(Placed):
         return self._with(placing.ROTATE, axis=axis, angle=angle)
 
     def orient(self, source: Any, target: Any) -> Self:
-        """Rotate by the smallest angle that takes direction ``source`` to ``target``."""
+        """Rotate by the smallest angle that maps direction ``source`` to direction ``target``."""
         return self._with(placing.ORIENT, source, target)
 
     def shear(self, xy: Any = 0.0, xz: Any = 0.0, yz: Any = 0.0) -> Self:
-        """Shear: x moves by ``xy`` times y and ``xz`` times z, y by ``yz`` times z.
+        """Shear: move x by ``xy`` times y plus ``xz`` times z, and y by ``yz`` times z.
 
         Args:
             xy: Shift of x for each unit of y.
@@ -108,7 +111,11 @@ class Shape(Placed):
         return self._with(grid.REPEAT_HALF, *spacing)
 
     def repeat_ring(self, *spacing: Any, count: Sequence[int]) -> Self:
-        """Repeat along the sides of a rectangle in the xz plane; ``count`` for x and for z."""
+        """Repeat along the sides of a rectangle in the xz plane.
+
+        ``spacing`` is the distance from copy to copy along x and z, ``count`` the number of copies
+        along each.
+        """
         try:
             count_x, count_z = count
         except (TypeError, ValueError):
@@ -126,13 +133,13 @@ class Shape(Placed):
         """Repeat at given positions, or ``count`` times evenly along a line.
 
         Args:
-            positions: An (n, 3) array.
-            start: Where the line begins.
-            end: Where it ends.
+            positions: Positions of the copies, an (n, 3) array.
+            start: Position of the first copy.
+            end: Position of the last copy.
             count: Number of copies on the line.
 
         Raises:
-            SceneValueError: Neither positions alone nor start, end and count are given.
+            SceneValueError: The arguments are neither ``positions`` alone nor start, end and count.
         """
         if positions is not None and start is None and end is None and count is None:
             return self._with(along.REPEAT_AT, positions)
@@ -142,7 +149,7 @@ class Shape(Placed):
         refuse("an array takes positions, or a line and a count", hint, author_place())
 
     def elongate(self, *lengths: Any) -> Self:
-        """Cut at the origin and pull apart by ``lengths`` along each axis."""
+        """Cut in the middle and move the halves apart by ``lengths`` along each axis."""
         return self._with(deform.ELONGATE, *lengths)
 
     def twist(self, rate: Any) -> Self:
@@ -154,23 +161,25 @@ class Shape(Placed):
         return self._with(deform.BEND, rate)
 
     def bend_linear(self, start: Any, end: Any, shift: Any, ease: str = "linear") -> Self:
-        """Move gradually from ``start`` on, by ``shift`` at ``end``.
+        """Move the part beyond ``end`` by ``shift``, with a gradual transition from ``start``.
 
         Args:
-            start: A point; before it nothing moves.
-            end: A point; beyond it all moves by ``shift``.
-            shift: A vector in scene units.
+            start: A point; the part before it does not move.
+            end: A point; the part beyond it moves by the whole ``shift``.
+            shift: Displacement vector in scene units.
             ease: How the shift begins and ends, one of ``EASES``.
         """
         return self._with(deform.BEND_LINEAR, start, end, shift, ease=ease_number(ease))
 
     def bend_radial(self, inner: Any, outer: Any, rise: Any, ease: str = "linear") -> Self:
-        """Raise gradually from radius ``inner`` about the y axis, by ``rise`` at ``outer``.
+        """Raise the part beyond radius ``outer``, with a gradual transition from ``inner``.
+
+        Both radii are distances from the y axis.
 
         Args:
-            inner: Radius in scene units.
-            outer: A larger radius.
-            rise: Shift along y.
+            inner: Radius within which nothing moves.
+            outer: Radius beyond which everything moves by ``rise``, larger than ``inner``.
+            rise: Displacement along y.
             ease: How the shift begins and ends, one of ``EASES``.
         """
         return self._with(deform.BEND_RADIAL, inner, outer, rise, ease=ease_number(ease))
@@ -180,48 +189,51 @@ class Shape(Placed):
 
         Args:
             bottom: Height up to which the shape keeps its size.
-            top: Height from which it is scaled fully.
-            factor: The scale there.
+            top: Height from which the shape is scaled by ``factor``.
+            factor: The scale at ``top`` and above.
         """
         return self._with(deform.TAPER, bottom, top, factor)
 
     def wrap(self, radius: Any) -> Self:
-        """Wrap the x axis around a cylinder about the y axis."""
+        """Wrap the x axis around a cylinder about the y axis; +z points outwards."""
         return self._with(folds.WRAP, radius)
 
     def attract(self, center: Any, radius: Any, strength: Any) -> Self:
-        """Pull towards a point, within a radius of it.
+        """Pull the part within a radius of a point towards this point.
 
         Args:
             center: The point.
-            radius: Beyond it nothing moves.
-            strength: How far the shape is pulled.
+            radius: Distance from the point beyond which nothing moves.
+            strength: How strongly the shape is pulled.
         """
         return self._with(deform.ATTRACT, center, radius, strength)
 
     def repel(self, center: Any, radius: Any, strength: Any) -> Self:
-        """Push away from a point, within a radius of it; arguments as for ``attract``."""
+        """Push the part within a radius of a point away from this point.
+
+        Takes the same arguments as ``attract``.
+        """
         return self._with(deform.REPEL, center, radius, strength)
 
     def warp(self, amount: Any, frequency: Any = 1.0, seed: int = 0) -> Self:
-        """Displace by noise: every point moves by up to about ``amount``.
+        """Displace every point by noise, by up to about ``amount`` along each axis.
 
         Args:
-            amount: Largest shift, in scene units.
-            frequency: Cells of the noise for each unit.
-            seed: Selects one of many noises.
+            amount: Largest displacement, in scene units.
+            frequency: Cells of the noise per scene unit.
+            seed: Selects one of many noise functions.
         """
         return self._with(folds.WARP, amount, frequency, seed)
 
     def transition_linear(
         self, other: BaseShape, start: Any, end: Any, ease: str = "linear"
     ) -> Self:
-        """Change from this shape at ``start`` to another at ``end``.
+        """Change gradually from this shape to another along the line from ``start`` to ``end``.
 
         Args:
             other: The other shape.
-            start: A point.
-            end: A point.
+            start: A point; before it, only this shape is seen.
+            end: A point; beyond it, only the other shape is seen.
             ease: How the change begins and ends, one of ``EASES``.
         """
         return self._joined(
@@ -231,49 +243,49 @@ class Shape(Placed):
     def transition_radial(
         self, other: BaseShape, inner: Any, outer: Any, ease: str = "linear"
     ) -> Self:
-        """Change from this shape within a radius about the y axis to another beyond a larger one.
+        """Change gradually from this shape near the y axis to another farther out.
 
         Args:
             other: The other shape.
-            inner: Radius in scene units.
-            outer: A larger radius.
+            inner: Radius about the y axis within which only this shape is seen.
+            outer: Radius beyond which only the other shape is seen.
             ease: How the change begins and ends, one of ``EASES``.
         """
         numbers = {"inner": inner, "outer": outer, "ease": ease_number(ease)}
         return self._joined(transitions.TRANSITION_RADIAL, other, **numbers)
 
     def clearance(self, other: BaseShape, gap: Any) -> Self:
-        """Cut away all that is nearer than ``gap`` to another shape."""
+        """Cut away everything that is nearer than ``gap`` to the other shape."""
         return self._joined(joins.CLEARANCE, other, gap=gap)
 
     def carve(self, other: BaseShape, depth: Any) -> Self:
-        """Cut the other shape into this one's surface, ``depth`` deep."""
+        """Cut the form of the other shape into the surface of this one, ``depth`` deep."""
         return self._joined(joins.CARVE, other, depth=depth)
 
     def emboss(self, other: BaseShape, height: Any) -> Self:
-        """Raise the other shape from this one's surface, ``height`` high."""
+        """Raise the form of the other shape on the surface of this one, ``height`` high."""
         return self._joined(joins.EMBOSS, other, height=height)
 
     def morph(self, other: BaseShape, t: Any) -> Self:
-        """Interpolate between this shape at t = 0 and another at t = 1."""
+        """Interpolate between this shape (t = 0) and another (t = 1)."""
         return self._joined(joins.MORPH, other, t=t)
 
     def displace(self, field: Any, height: Any = 1.0) -> Self:
-        """Move the surface out by the value of a field, times ``height``.
+        """Move the surface outwards by the value of a field times ``height``.
 
         Args:
-            field: A shape, or a ``@func`` of a point (its slope is then taken for 1).
-            height: A factor.
+            field: A shape, or a ``@func`` of a point, whose slope is assumed to be at most 1.
+            height: Factor on the field's value, which is limited to -1 to 1.
         """
         other = field if isinstance(field, BaseShape) else self.from_function(field)
         return self._joined(joins.DISPLACE, other, height=height)
 
     def engrave(self, other: BaseShape, depth: Any) -> Self:
-        """Cut a groove of a depth where the other shape's surface crosses this one."""
+        """Cut a V-shaped groove, ``depth`` deep, where the other shape's surface crosses this."""
         return self._joined(blends.ENGRAVE, other, k=depth)
 
     def pipe(self, other: BaseShape, radius: Any) -> Self:
-        """Keep only a round pipe along the curve where the two surfaces cross."""
+        """Keep only a pipe of this radius along the curve where the two surfaces cross."""
         return self._joined(blends.PIPE, other, k=radius)
 
     def groove(self, other: BaseShape, depth: Any, width: Any) -> Self:
@@ -301,27 +313,27 @@ class Shape(Placed):
         return made
 
     def slice(self, origin: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 0.0, 1.0)) -> Shape2D:
-        """Cut by a plane: the flat shape in it.
+        """Return the cross-section in a plane, as a flat shape.
 
         Args:
-            origin: A point of the plane; the flat shape's origin.
-            normal: The plane's, of length 1.
+            origin: A point of the plane; it becomes the flat shape's origin.
+            normal: Normal of the plane, of length 1.
         """
         return self._flat(lift.SLICE, origin, normal)
 
     def project(self, count: int = 32) -> Shape2D:
-        """Project onto the xy plane, by evaluating ``count`` depths."""
+        """Project onto the xy plane: the union of ``count`` cross-sections along z."""
         return self._flat(lift.PROJECT, count=count)
 
 
 class Shape2D(Placed):
-    """A flat shape: a signed distance in the plane."""
+    """A flat shape: a signed distance function of a point in the plane."""
 
     flat = True
     point_type = VEC2
 
     def rotate(self, angle: Any) -> Self:
-        """Rotate about the origin, counterclockwise; radians."""
+        """Rotate counterclockwise about the origin by an angle in radians."""
         warn_of_degrees(author_place(), angle)
         return self._with(flat_placing.ROTATE_FLAT, angle)
 
@@ -330,12 +342,12 @@ class Shape2D(Placed):
         return made
 
     def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
-        """Extrude along z to a solid centred at z = 0.
+        """Extrude along z to a solid whose middle is at z = 0.
 
         Args:
-            height: From end to end.
-            rounding: Radius of the edges.
-            chamfer: Size of the edges' bevels.
+            height: Full length along z.
+            rounding: Radius of the rounded edges; None for sharp edges.
+            chamfer: Size of the chamfered edges; None for sharp edges. Ignored with ``rounding``.
         """
         if rounding is not None:
             return self._solid(extrude.EXTRUDE_ROUNDED, height, rounding)
@@ -347,7 +359,7 @@ class Shape2D(Placed):
         """Revolve about the y axis; x > 0 is outwards.
 
         Args:
-            offset: Distance by which the outline is moved outwards first.
+            offset: Distance by which the outline is first moved away from the axis.
             angle: Angle of the revolution in radians; None for a full turn.
         """
         if angle is None:
@@ -366,15 +378,15 @@ class Shape2D(Placed):
         return cast("Shape", self._joined(extrude.LOFT, other, **numbers))
 
     def twist_extrude(self, height: Any, angle: Any) -> Shape:
-        """Extrude along z, rotated by ``angle`` from end to end."""
+        """Extrude along z and rotate by ``angle`` radians in total from end to end."""
         return self._solid(extrude.EXTRUDE_TWISTED, height, angle)
 
     def taper_extrude(self, height: Any, top: Any) -> Shape:
-        """Extrude along z, scaled by ``top`` at the upper end."""
+        """Extrude along z and scale gradually, by the factor ``top`` at the upper end."""
         return self._solid(extrude.EXTRUDE_TAPERED, height, top)
 
     def sweep(self, points: Any, up: Any = (0.0, 1.0, 0.0)) -> Shape:
-        """Sweep along a polyline through (n, 3) points."""
+        """Sweep along the polyline through (n, 3) points; ``up`` is the outline's y axis."""
         return self._solid(path.SWEEP, points, up)
 
     def sweep_bezier(
@@ -394,16 +406,16 @@ class Shape2D(Placed):
         )
 
     def wrap_cylinder(self, radius: Any, height: Any) -> Shape:
-        """Wrap around a cylinder about the y axis, to a solid."""
+        """Wrap around a cylinder about the y axis, as a relief of thickness ``height``."""
         return self._solid(lift.WRAP_CYLINDER, radius, height)
 
     def relief(self, *numbers: Any) -> Shape:
-        """Raise the ground to the height that this flat field gives at each point (x, z)."""
+        """Return terrain whose height at (x, z) is the value of this flat field."""
         return self._solid(heightfield.RELIEF, *numbers)
 
 
 def ease_number(name: str) -> int:
-    """The number of an easing by its name.
+    """Return the number of an easing, from its name.
 
     Raises:
         SceneValueError: There is no such easing.

@@ -1,7 +1,7 @@
-"""A class for every shape of the field library, ``Sphere`` to ``Hexagon``.
+"""A class for each shape of the field library, from ``Sphere`` to ``Hexagon``.
 
-Input: the library's primitives. Output: a class for each, called with the shape's
-numbers. Editors read ``distal/__init__.pyi``, which ``tools/gen_stubs.py`` makes.
+Input: the primitives of the library. Output: a class for each, called with the numbers of the
+shape. Editors read ``distal/__init__.pyi``, which ``tools/gen_stubs.py`` generates.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from distal.scene.tree.source_places import author_place
 
 
 def _make(primitive: Primitive) -> type[BaseShape]:
-    """The class of one primitive."""
+    """Make the class of one primitive."""
     base: type[BaseShape] = Shape2D if primitive.flat else Shape
 
     def initialise(self: BaseShape, *args: Any, **kwargs: Any) -> None:

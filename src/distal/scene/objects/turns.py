@@ -1,6 +1,6 @@
-"""A warning of angles in radians that look like degrees.
+"""A warning about angles in radians that look like degrees.
 
-Input: the angles that an author turns a shape by. Output: a warning at that line.
+Input: the angles of an author's rotation. Output: a warning at that line.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from typing import Any, Final
 
 from distal.diagnostics import Span
 
-# Nobody turns by 30, 45 or 90 radians; 15 may be the end of a loop.
+# Rotations by 30, 45 or 90 radians are unlikely; 15 may be the last value of a loop.
 LEAST_DEGREES: Final = 30
 STEP_OF_DEGREES: Final = 15
 
 
 def warn_of_degrees(place: Span | None, *angles: Any) -> None:
-    """Warn of plain angles that are whole multiples of 15 and so large that degrees are meant."""
+    """Warn of constant angles that are large multiples of 15: probably degrees."""
     for angle in angles:
         plain = isinstance(angle, int | float) and not isinstance(angle, bool)
         if plain and abs(angle) >= LEAST_DEGREES and angle % STEP_OF_DEGREES == 0:
