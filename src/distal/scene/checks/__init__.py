@@ -1,1 +1,1 @@
-"""Checks of scenes: validation, warnings, measured bounds, and what one pixel saw."""
+"""Checks of scenes: validation, warnings, measured bounds, and a report about one pixel."""

@@ -1,4 +1,4 @@
-"""The bounds of every shape of a tree as numbers: its slope, its divisor, its box.
+"""The bounds of every shape of a tree as numbers: slope, divisor, box.
 
 Input: a tree. Output: bounds for each node, computed in one call.
 """
@@ -26,11 +26,11 @@ from distal.scene.tree.values import StatementList, Values
 
 @dataclass(frozen=True, slots=True)
 class NodeBounds:
-    """The bounds of a shape at one time, for one set of parameters.
+    """The bounds of a shape at one time, for one set of parameter values.
 
     Attributes:
         slope: Bound on |gradient|.
-        divisor: What marchers divide by.
+        divisor: Number by which marchers divide distances.
         low: Lower corner of its box; a flat shape's third number is 0.
         high: Upper corner.
     """
@@ -42,16 +42,22 @@ class NodeBounds:
 
     @property
     def finite(self) -> bool:
-        """Whether the box ends on all sides."""
+        """Whether the box is finite on all sides."""
         return all(map(np.isfinite, (*self.low, *self.high)))
 
 
 def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[int, NodeBounds]:
-    """The bounds of each node of a tree, by the id of the node."""
+    """Return the bounds of each node of a tree, by the id of the node.
+
+    Args:
+        root: The root of the tree.
+        params: Values of parameters by name; the others have their defaults.
+        time: Time in seconds.
+    """
     nodes = list(root.walk())
     which = np.arange(len(nodes), dtype=np.int32)
     asked = _BoundsByNumber(root, nodes)
-    # Interpreted: machine code for the bounds of a thousand shapes takes half a minute to make.
+    # Interpreted, because compiling the bounds of a thousand shapes takes half a minute.
     rows = executor().call(asked, (which,), {}, params=params, time=time, device="reference")
     slopes, divisors, lows, highs = (np.asarray(part, np.float64) for part in rows)
     return {
@@ -66,7 +72,7 @@ def bounds_of_nodes(root: Node, params: Mapping[str, Any], time: float) -> dict[
 
 
 class _BoundsByNumber(Composed):
-    """The bounds of the node of a number."""
+    """The bounds of a node, selected by its number."""
 
     def __init__(self, root: Node, nodes: Sequence[Node]) -> None:
         self._root, self._nodes = root, nodes
@@ -75,7 +81,7 @@ class _BoundsByNumber(Composed):
         self.result = tuple_type((FLOAT, FLOAT, VEC3, VEC3))
 
     def compose(self, assembly: Assembly) -> str:
-        """The function of the number."""
+        """Add the function of the number, and return its name."""
         body = StatementList(taken={"i"})
         values = Values(assembly)
         composer = RememberedBounds(values)

@@ -1,7 +1,7 @@
-"""Measurements of a field at random points: its steepness, and whether it stays within its box.
+"""Measurements of a field at random points: its slope, and whether it stays within its box.
 
-Input: a shape, its box, a seed. Output: figures. A measurement finds mistakes; it
-proves nothing: what is steep in a place too small to be met stays unseen.
+Input: a shape, its box, a seed. Output: figures. A measurement finds mistakes but proves nothing: a
+steep place that is too small to be sampled is not found.
 """
 
 from __future__ import annotations
@@ -19,34 +19,34 @@ from distal.scene.objects.field import BaseShape
 Points: TypeAlias = NDArray[np.float64]
 
 POINTS: Final = 4096
-# Points around the steepest ones found, nearer in each round.
+# Number of points in the search around the steepest places; each round is closer to them.
 SEARCHED: Final = 32
 AROUND: Final = 24
 ROUNDS: Final = 4
-# How far around its box a shape is measured, in sizes of the box.
+# How far outside its box a shape is measured, as a fraction of the box's size.
 MARGIN: Final = 0.5
-# A shape without end is measured within this.
+# An infinite shape is measured up to this distance from its finite side, or from the origin.
 REACH: Final = 4.0
-# A point is on the surface if its foot is, within this share of the box.
+# Tolerance for a point on the surface, as a fraction of the box's size.
 FOOT: Final = 2e-3
 
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """Figures of a field, measured.
+    """Measured figures of a field.
 
     Attributes:
-        points: How many points were asked.
-        median: Of |gradient|.
-        most_of_99: What 99 % of |gradient| stay within.
+        points: Number of evaluated points.
+        median: The median of |gradient|.
+        most_of_99: The 99th percentile of |gradient|.
         steepest: The largest |gradient|.
-        steepest_at: Where.
+        steepest_at: The point of the largest |gradient|.
         largest_change: The largest |f(p) - f(q)| / |p - q|.
-        change_between: The p and q of it.
-        on_foot: Share of points p for which p - f * gradient lies on the surface: 1 where f is the
-            distance, but for points next to kinks.
+        change_between: The points p and q of the largest change.
+        on_foot: Share of points p for which p - f * gradient lies on the surface: 1 if f is the
+            true distance, except next to creases.
         outside_box: A point inside the shape and outside its box, or None.
-        undefined_at: A point where the value or the gradient is no number, or None.
+        undefined_at: A point where the value or the gradient is NaN, or None.
     """
 
     points: int
@@ -62,12 +62,12 @@ class Measured:
 
     @property
     def slope(self) -> float:
-        """The largest slope that was found by either method."""
+        """The largest slope found by either method."""
         return max(self.steepest, self.largest_change)
 
 
 class _EvaluatedShape:
-    """A shape for one time and one set of parameters, evaluated in 64 bits."""
+    """A shape at one time with one set of parameter values, evaluated in 64 bits."""
 
     def __init__(self, shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
         self._shape, self._params, self._time = shape, params, time
@@ -86,7 +86,15 @@ class _EvaluatedShape:
 def measure(
     shape: BaseShape, promised: NodeBounds, params: Mapping[str, Any], time: float, seed: int = 0
 ) -> Measured:
-    """Measure a shape in and around its box."""
+    """Measure a shape in and around its box.
+
+    Args:
+        shape: The shape.
+        promised: The bounds that the shape declares.
+        params: Values of parameters by name; the others have their defaults.
+        time: Time in seconds.
+        seed: Seed of the random points.
+    """
     asked = _EvaluatedShape(shape, params, time)
     n = asked.dimensions
     random = np.random.default_rng(seed)
@@ -102,7 +110,7 @@ def measure(
         nowhere = (0.0,) * n
         pair = (nowhere, nowhere)
         return Measured(0, 0.0, 0.0, 0.0, nowhere, 0.0, pair, 0.0, None, undefined)
-    # Half of all are drawn to the surface, where marchers evaluate most.
+    # Half of the points are moved to the surface, where marchers evaluate most.
     steep = np.linalg.norm(slopes, axis=1)
     foot = p - values[:, None] * slopes / np.maximum(steep**2, 1e-12)[:, None]
     near = foot[::2] + random.normal(0.0, 0.01 * size, foot[::2].shape)
@@ -138,7 +146,7 @@ def _looked_at(promised: NodeBounds, n: int) -> tuple[Points, Points]:
 def _steepest(
     asked: _EvaluatedShape, p: Points, steepness: Points, size: float, random: np.random.Generator
 ) -> tuple[Points, float]:
-    """The steepest place near the steepest ones found: a search that draws closer each round."""
+    """Return the steepest place near the steepest points found, by a search in shrinking steps."""
     for round in range(ROUNDS):
         best = p[np.argsort(steepness)[-SEARCHED:]]
         reach = 0.1 * size * 0.2**round
@@ -153,7 +161,7 @@ def _steepest(
 def _largest_change(
     asked: _EvaluatedShape, p: Points, size: float, random: np.random.Generator
 ) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], float]:
-    """The most that the value changes between two points, for what lies between them.
+    """Return the points with the largest change of value per distance, and this change.
 
     Half of the pairs lie along the gradient, where the value changes fastest.
     """
@@ -161,7 +169,7 @@ def _largest_change(
     along = _finite(asked.gradient(p))
     away[::2] = np.where(np.linalg.norm(along[::2], axis=1)[:, None] > 0, along[::2], away[::2])
     away /= np.maximum(np.linalg.norm(away, axis=1), 1e-12)[:, None]
-    # From a ten-thousandth of the box, where 64 bits still tell values apart, to a tenth.
+    # From a ten-thousandth of the box, where 64 bits still resolve differences, to a tenth.
     reach = size * 10.0 ** random.uniform(-4.0, -1.0, (len(p), 1))
     q = p + reach * away
     apart = np.linalg.norm(q - p, axis=1)

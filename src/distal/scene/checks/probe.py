@@ -1,7 +1,7 @@
-"""One pixel of a scene's picture: its ray, the march, the shape and the material that it hit.
+"""A report about one pixel of a scene: its ray, the march, the shape and the material that it hit.
 
-Input: a scene and a pixel. Output: a ``Probed``, in plain values and with the
-tree's own nodes. One small program over the scene's functions, with the march of the picture.
+Input: a scene and a pixel. Output: a ``Probed``: plain values and nodes of the tree. It is computed
+by a small program that calls the scene's functions and the same march as the picture.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from distal.scene.scene import Scene
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
-# A material's numbers, as ``render.material.Surface`` has them.
+# The numbers of a material, fields of ``render.material.Surface``.
 _NUMBERS = ("diffuse", "specular", "transmission", "ior", "roughness", "metal", "fresnel")
 _COLORS = ("color", "emission", "absorption")
 
@@ -37,14 +37,14 @@ class Probed:
 
     Attributes:
         pixel: Column and row, from the upper left.
-        size: Of the picture, in pixels.
+        size: Size of the picture in pixels.
         seen: The numbers of ``render.look_along.Seen``.
         ended: How the march ended: "hit", "left the box", "left the scene", "passed the box" or
             "ran out of steps".
-        path: The shape that was met, and what it is part of, from the whole inwards; empty where
-            nothing was met.
-        material: What paints it, or None.
-        slope: The bound on the slope of the whole.
+        path: The shape that was hit and the shapes that contain it, outermost first; empty if
+            nothing was hit.
+        material: The material of the hit, or None.
+        slope: Bound on the slope of the whole shape.
     """
 
     pixel: tuple[int, int]
@@ -61,7 +61,7 @@ class Probed:
         return bool(self.seen.found)
 
     def as_json(self) -> dict[str, Any]:
-        """Plain values: the schema of ``docs/guide/checking.md``."""
+        """Return plain values in the schema of ``docs/guide/checking.md``."""
         seen = self.seen
         made: dict[str, Any] = {
             "version": 1,
@@ -96,14 +96,14 @@ def probe(
     params: Mapping[str, Any] | None = None,
     time: float = 0.0,
 ) -> Probed:
-    """The ray, the hit and the shading of a pixel.
+    """Return the ray, the hit and the shading of a pixel.
 
     Args:
         scene: The scene.
         pixel: Column and row from 0; rows count from the top, as in a picture's array.
         size: Width and height of the picture in pixels.
         params: Values of parameters by name; the others have their defaults.
-        time: Seconds.
+        time: Time in seconds.
 
     Raises:
         ValueError: The picture has no such pixel.
@@ -137,7 +137,7 @@ def _ended(scene: Scene, seen: Any) -> str:
 
 
 def _path(root: Node, leaf: Node) -> tuple[Node, ...]:
-    """The way down from the whole to a part; the first of several."""
+    """Return the nodes from the root to a leaf; the first path if there are several."""
     above: dict[int, Node] = {}
     for node in root.walk():
         for child in node.children:
@@ -149,7 +149,7 @@ def _path(root: Node, leaf: Node) -> tuple[Node, ...]:
 
 
 class _Program(Composed):
-    """What a place in a picture sees; once composed it has the shapes and materials by number."""
+    """The function that evaluates one place of a picture; lists shapes and materials by number."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
@@ -159,7 +159,7 @@ class _Program(Composed):
         self.paints: Sequence[Any] = ()
 
     def compose(self, assembly: Assembly) -> str:
-        """The function that gives a ``Seen``."""
+        """Add the function that returns a ``Seen``, and return its name."""
         body = StatementList(taken={"coord", "resolution"})
         made = SceneLowering(assembly, self._scene)
         resolution = Read("resolution", VEC2)
@@ -175,19 +175,19 @@ class _Program(Composed):
         return assembly.define("probe", params, self.result, body.statements)
 
     def functions(self) -> Iterable[Func]:
-        """The functions that the scene is made of."""
+        """Yield the scene functions that the scene calls."""
         return self._scene.functions()
 
 
 class _Paint(SurfaceAttribute):
-    """Which material a place shows, as a number; of a blend, the one that shows more."""
+    """The number of the material at a place; of a blend, that with the larger share."""
 
     def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer, default)
         self.materials: list[Any] = []
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """The one with the larger share."""
+        """Return the number with the larger share."""
         return select(compare(CompareOp.GT, share, number(0.5)), b, a)
 
     def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:

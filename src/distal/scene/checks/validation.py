@@ -20,16 +20,16 @@ from distal.scene.checks.measuring import Measured, measure
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
 
-# Measuring a shape may compile its function; beyond so many only those that matter most are.
+# Measuring a shape may compile its function; of more shapes, only the most important are measured.
 MOST_MEASURED: Final = 24
-# BoundsComposer are computed in 32 bits, and 64 bits do not tell nearer values of a kink apart.
+# Tolerance: bounds are computed in 32 bits, and 64 bits do not resolve closer values at a crease.
 ROUNDING: Final = 1e-4
-# A share of points next to kinks has its foot elsewhere, though the distance is exact.
+# Next to creases, some points do not lead to the surface although the distance is exact.
 ON_FOOT: Final = 0.98
 
 
 class Severity(Enum):
-    """How severe a finding is: an error is a guarantee that does not hold."""
+    """Severity of a finding; an error is a guarantee that does not hold."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -38,11 +38,11 @@ class Severity(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CheckFinding:
-    """One thing to know of a shape.
+    """A finding about one shape.
 
     Attributes:
-        code: What kind of finding, for editors: "slope-exceeded", "outside-box" …
-        shape: The number of the shape in ``ValidationReport.shapes``.
+        code: Kind of the finding, for editors: "slope-exceeded", "outside-box" …
+        shape: Index of the shape in ``ValidationReport.shapes``.
     """
 
     severity: Severity
@@ -56,12 +56,12 @@ class CheckFinding:
 
 @dataclass(frozen=True, slots=True)
 class ShapeReport:
-    """One shape of a tree; a shape used in several places is listed once.
+    """The report about one shape; a shape used several times is listed once.
 
     Attributes:
-        children: Numbers of the shapes that it is made of.
-        raised: The slope of its steepest child, where its own is larger; else None.
-        measured: Figures, where it was measured.
+        children: Indices of the shapes that it is made of.
+        raised: The slope of the steepest child if the shape's own is larger, else None.
+        measured: Measured figures, or None if it was not measured.
     """
 
     node: Node
@@ -73,10 +73,10 @@ class ShapeReport:
 
 @dataclass(frozen=True, slots=True)
 class ValidationReport:
-    """What is known of a tree; the first shape is the whole.
+    """The report about a tree; the first shape is the whole.
 
     Attributes:
-        slope_from: Numbers of the shapes that raise the slope of the whole, the first one last.
+        slope_from: Indices of the shapes that increase the slope of the whole, outermost first.
     """
 
     shapes: tuple[ShapeReport, ...]
@@ -85,11 +85,11 @@ class ValidationReport:
 
     @property
     def holds(self) -> bool:
-        """Whether no guarantee was found violated."""
+        """Whether no violated guarantee was found."""
         return not any(f.severity is Severity.ERROR for f in self.findings)
 
     def as_json(self) -> dict[str, Any]:
-        """Plain values: the schema of ``docs/guide/checking.md``."""
+        """Return plain values in the schema of ``docs/guide/checking.md``."""
         return {
             "version": 1,
             "holds": self.holds,
@@ -115,10 +115,10 @@ def check(
     """Validate a shape and all its parts.
 
     Args:
-        shape: The whole.
+        shape: The whole shape.
         params: Values of parameters by name; the others have their defaults.
-        time: Seconds.
-        seed: What the random points start from.
+        time: Time in seconds.
+        seed: Seed of the random points.
     """
     given = dict(params or {})
     nodes = list(shape.node.walk())
@@ -142,7 +142,7 @@ def check(
 def _at_their_roots(
     found: Sequence[CheckFinding], rows: Sequence[ShapeReport]
 ) -> list[CheckFinding]:
-    """Without the errors of shapes that only pass on what is wrong with a part of theirs."""
+    """Drop the errors of shapes that only inherit the error of one of their parts."""
     wrong = {(f.code, id(rows[f.shape].node)) for f in found if f.severity is Severity.ERROR}
 
     def is_passed_on(f: CheckFinding) -> bool:
@@ -153,7 +153,10 @@ def _at_their_roots(
 
 
 def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> list[Node]:
-    """All shapes of a small tree; of a large one the whole, own functions, and what is steep."""
+    """Return the shapes to measure.
+
+    Of a small tree all shapes; of a large tree the whole, the author's functions, and steep shapes.
+    """
     if len(nodes) <= MOST_MEASURED:
         return list(nodes)
 
@@ -170,7 +173,7 @@ def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) 
 
 
 def is_own(node: Node) -> bool:
-    """Whether a shape is an author's own function."""
+    """Return whether a shape is an author's own function."""
     return isinstance(node.rule, Primitive) and node.rule.slope is given_slope
 
 
@@ -180,7 +183,7 @@ def _raised(node: Node, promised: Mapping[int, NodeBounds]) -> float | None:
 
 
 def _slope_from(rows: Sequence[ShapeReport]) -> tuple[int, ...]:
-    """From the whole down along the steepest child: the shapes that make it steeper."""
+    """Return the shapes that increase the slope, from the whole down the steepest children."""
     at, found = 0, []
     while True:
         row = rows[at]
@@ -264,7 +267,7 @@ def _endless(row: ShapeReport, finding: Any) -> CheckFinding:
 
 
 def _without_growth(node: Node) -> Node | None:
-    """The author's function because of which an operator that moves the surface out has no box."""
+    """Return the author's function without ``growth`` that leaves an operator without a box."""
     rule = node.rule
     if not isinstance(rule, Operator) or rule.bounds is None:
         return None
@@ -286,7 +289,7 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
             Severity.WARNING, "blend-everywhere", message, "blend='cubic' keeps far parts"
         )
     lost = [c for c in Guarantee if c not in row.node.claims and all(c in n.claims for n in inner)]
-    # Where the slope is 1 the value never exceeds the distance, whatever is guaranteed.
+    # If the slope is at most 1, the value never exceeds the distance.
     lost = [
         c for c in lost if c is not Guarantee.LOWER_BOUND or row.promised.slope > 1.0 + ROUNDING
     ]
@@ -297,11 +300,11 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
         yield finding(Severity.NOTE, "claim-lost", message)
 
 
-# Words
+# Text of messages
 
 
 def described(node: Node) -> str:
-    """A shape as its author made it: "twist(rate=3)"."""
+    """Return a shape as the author wrote it: "twist(rate=3)"."""
     arguments = []
     promises = ("slope", "low", "high") if is_own(node) else ()
     for name, value in node.numbers.items():
@@ -318,12 +321,12 @@ def _shown(plain: float | tuple[float, ...]) -> str:
 
 
 def shown_point(p: Sequence[float]) -> str:
-    """A point as people write it."""
+    """Return a point as text."""
     return f"({', '.join(f'{c:.4g}' for c in p)})"
 
 
 def _rounded_up(slope: float) -> str:
-    """A little more than a measured slope, with two digits."""
+    """Return a measured slope, rounded up to two digits."""
     digits = max(1 - math.floor(math.log10(slope)), 0)
     return f"{math.ceil(1.03 * slope * 10**digits) / 10**digits:.{digits}f}"
 
@@ -332,7 +335,7 @@ def _rounded_up(slope: float) -> str:
 
 
 def place_json(span: Span | None) -> dict[str, Any] | None:
-    """A place with lines and columns from 1, as editors count."""
+    """Return a place with lines and columns counted from 1, as in editors."""
     if span is None:
         return None
     return {
@@ -368,7 +371,7 @@ def _shape_json(i: int, row: ShapeReport) -> dict[str, Any]:
 
 
 def guarantee_names(node: Node) -> list[str]:
-    """A shape's guarantees in words, in a fixed order."""
+    """Return the names of a shape's guarantees, in a fixed order."""
     return [c.value for c in Guarantee if c in node.claims]
 
 
@@ -385,5 +388,5 @@ def _measured_json(measured: Measured) -> dict[str, Any]:
 
 
 def _plain(value: float) -> float | None:
-    """Six digits, which is what is meant; None for infinity, which JSON lacks."""
+    """Round to six digits; None for infinity, which JSON lacks."""
     return float(f"{value:.6g}") if math.isfinite(value) else None

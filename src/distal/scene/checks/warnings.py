@@ -1,8 +1,8 @@
-"""Warnings while a scene is drawn: own functions that break their bounds, black pictures.
+"""Warnings while a scene is rendered: functions that violate their bounds, black pictures.
 
 Input: a scene, the values of its parameters, the picture. Output: a warning at the author's line,
-or an error where nothing can be seen. A few hundred points are evaluated, enough for mistakes that
-spoil a picture; ``validation`` measures more closely.
+or an error if nothing can be seen. A few hundred points are evaluated, enough for mistakes that
+spoil a picture; ``validation`` measures more precisely.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ from distal.scene.tree.node import Node
 Points = NDArray[np.float64]
 
 PLACES: Final = 512
-# A function without a box is evaluated within this.
+# A function without a box is evaluated within this distance of the origin.
 REACH: Final = 2.0
-# Differences are taken over this share of the box.
+# Step of finite differences, as a fraction of the box's size.
 STEP: Final = 1e-4
-# A slope written with two digits is accepted.
+# Tolerance, so that a slope written with two digits is accepted.
 SLACK: Final = 1.05
 
 _looked_at: WeakSet[Node] = WeakSet()
 
 
 def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
-    """Check once every function of the author's in a shape.
+    """Check each of the author's functions in a shape, once per function.
 
     Raises:
-        SceneValueError: One gives no number anywhere.
+        SceneValueError: A function returns NaN at all points.
     """
     for node in shape.node.walk():
         own = isinstance(node.rule, Primitive) and node.rule.slope is given_slope
@@ -60,18 +60,18 @@ def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) 
 
 
 def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
-    """Refuse a shape in which parameters or the time take an operator's bound on its slope.
+    """Refuse a shape if parameters or the time leave an operator without a bound on its slope.
 
-    Where nothing moves, the operator was looked at when it was made.
+    Operators whose numbers do not change were checked on construction.
 
     Raises:
-        SceneValueError: At the innermost such operator.
+        SceneValueError: At the line of the innermost such operator.
     """
     risky = [n for n in shape.node.walk() if may_be_endless(n) and _moves(n)]
     if not risky:
         return
     promised = bounds_of_nodes(shape.node, _read(shape, params), time)
-    # Parents come first: the last one is the innermost.
+    # Parents come first, so the last one is the innermost.
     for node in reversed(risky):
         if not promised[id(node)].slope < ENDLESS:
             boxes = [promised[id(child)] for child in node.children]
@@ -79,7 +79,7 @@ def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> No
 
 
 def _moves(node: Node) -> bool:
-    """Whether a number in a tree follows parameters or the time."""
+    """Return whether a number in a tree depends on parameters or the time."""
     return any(n.plain is None for part in node.walk() for n in part.numbers.values())
 
 
@@ -104,14 +104,14 @@ def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
 
 
 def _read(obj: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of the parameters' values, by name or label, that an object reads."""
+    """Select those values, by parameter name or label, that an object reads."""
     asked = {key for p in executor().parameters(obj) for key in (p.name, p.label)}
     return {name: value for name, value in params.items() if name in asked}
 
 
 def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float) -> None:
     claimed = node.numbers["slope"].plain
-    if not isinstance(claimed, float):  # it may follow parameters: ``validation`` computes it
+    if not isinstance(claimed, float):  # computed from parameters: only ``validation`` checks it
         return
     h = STEP * size
     # Along the direction in which the value changes fastest, the change is at most the slope.
@@ -143,7 +143,7 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
     if picture.linear is None or shows(picture.linear[..., :3]):
         return
     eye = _Eye(scene)
-    shut = scene.renderer != "refracted"  # through glass a camera may look out
+    shut = scene.renderer != "refracted"  # from inside glass a camera can see out
     if shut and executor().call(eye, (), {}, params=_read(eye, params), time=time) < 0.0:
         refuse(
             f"the camera is inside '{scene.shape.name}', and all around it is dark",
@@ -154,12 +154,12 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
 
 
 def shows(values: NDArray[np.float32]) -> bool:
-    """Whether anything in a picture is above or below 0; most show it in a few pixels."""
+    """Return whether any value is not 0; most pictures show it in a few pixels."""
     return bool(values[::16, ::16].any() or values.any())
 
 
 class _Eye(Composed):
-    """The distance of a scene's shape at its camera, as a function of nothing."""
+    """The distance of a scene's shape at its camera, as a function without arguments."""
 
     name, signature, result = "eye", (), FLOAT
 
@@ -167,7 +167,10 @@ class _Eye(Composed):
         self._scene = scene
 
     def compose(self, assembly: Assembly) -> str:
-        """The distance where the ray in the middle of the picture begins."""
+        """Add the function, and return its name.
+
+        It evaluates the shape at the origin of the ray in the middle of the picture.
+        """
         made = SceneLowering(assembly, self._scene)
         node = self._scene.shape.node
         field = made.composer.field(node, made.composer.values.all(node), ZERO_CELL)

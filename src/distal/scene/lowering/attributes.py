@@ -1,7 +1,7 @@
-"""Attributes of a place besides its distance: its material, and the part it belongs to.
+"""Attributes of a place besides its distance: its material, and the part that it belongs to.
 
-Input: nodes, and a kind of attribute: what a leaf gives, how two are joined. Output:
-an expression. Each is computed once for each hit, so nothing is shared between subtrees.
+Input: nodes, and an attribute: the value at a leaf and the way to combine two values. Output: an
+expression. Each attribute is computed once per hit, so subtrees do not share functions.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from distal.scene.tree.values import StatementList
 
 
 class Attribute(ABC):
-    """A kind of attribute."""
+    """An attribute of a place."""
 
     def __init__(self, composer: ShapeComposer) -> None:
         self.composer = composer
 
     @abstractmethod
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """The attribute of the whole subtree, or None to descend into it."""
+        """Return the attribute of the whole subtree, or None to descend into it."""
 
     @abstractmethod
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """Both attributes combined, with ``share`` (0 to 1) of b."""
+        """Combine two attributes, with ``share`` (0 to 1) of ``b``."""
 
     @abstractmethod
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """The attribute of faces that the subtree cuts; None keeps that of the cut shape."""
+        """Return the attribute of faces cut by the subtree; None for that of the cut shape."""
 
 
 class AttributePoint:
@@ -48,14 +48,21 @@ class AttributePoint:
 
 
 def attribute(body: StatementList, kind: Attribute, node: Node, site: AttributePoint) -> Expr:
-    """The attribute of the place of a subtree that is nearest to a point."""
+    """Return the attribute of the place of a subtree that is nearest to a point.
+
+    Args:
+        body: The statements to add to.
+        kind: The attribute.
+        node: The root of the subtree.
+        site: The place at which the attribute is evaluated.
+    """
     return _visit(body, kind, node, site, measured=False)[1]
 
 
 def _visit(
     body: StatementList, kind: Attribute, node: Node, site: AttributePoint, *, measured: bool
 ) -> tuple[Expr | None, Expr]:
-    """A subtree's attribute, and its distance where that is wanted."""
+    """Return a subtree's attribute, and its distance if ``measured``."""
     composer = kind.composer
     whole = kind.leaf(body, node, site)
     if whole is not None:
@@ -136,12 +143,12 @@ def _more_shown(a: Expr, b: Expr, share: Expr) -> Expr:
 
 
 def paints(node: Node) -> bool:
-    """Whether anything in a subtree is painted."""
+    """Return whether any node of a subtree has a material."""
     return any(n.material is not None or n.cut_material is not None for n in node.walk())
 
 
 class SurfaceAttribute(Attribute):
-    """What a place looks like: a ``Surface``."""
+    """The appearance of a place: a ``Surface``."""
 
     def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer)
@@ -149,18 +156,18 @@ class SurfaceAttribute(Attribute):
         self._painted: dict[int, bool] = {}
 
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """The paint of a subtree; the default where nothing in it is painted."""
+        """Return the material of a subtree; the default if nothing in it has one."""
         material = node.material
         if material is None and (isinstance(node.rule, Primitive) or not self._paints(node)):
             material = self._default
         return None if material is None else self._shown(body, material, node, site)
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """Every number of both mixed."""
+        """Interpolate every number of both surfaces."""
         return self.composer.call(mix_surfaces, {"a": a, "b": b, "t": share})
 
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """The cutter's ``cut_material``."""
+        """Return the cutter's ``cut_material``."""
         material = node.cut_material
         return None if material is None else self._shown(body, material, node, site)
 
@@ -181,14 +188,14 @@ class SurfaceAttribute(Attribute):
 
 
 class MaterialNumber(SurfaceAttribute):
-    """Which material a place shows, as a number from 1 on, in the order of the author's tree."""
+    """The material of a place, as a number from 1 on, in the order of the author's tree."""
 
     def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer, default)
         self.materials: list[Any] = []
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """The one with the larger share."""
+        """Return the number with the larger share."""
         return _more_shown(a, b, share)
 
     def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
@@ -199,23 +206,23 @@ class MaterialNumber(SurfaceAttribute):
 
 
 class Part(Attribute):
-    """Which leaf of the tree a place belongs to, as a number."""
+    """The leaf of the tree that a place belongs to, as a number."""
 
     def __init__(self, composer: ShapeComposer) -> None:
         super().__init__(composer)
         self.nodes: list[Node] = []
 
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """The next number for a library shape."""
+        """Return the next number for a library shape."""
         if not isinstance(node.rule, Primitive):
             return None
         self.nodes.append(node)
         return number(float(len(self.nodes) - 1))
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """The one with the larger share."""
+        """Return the number with the larger share."""
         return _more_shown(a, b, share)
 
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """The cutter's own part: it made the face."""
+        """Return the cutter's own part: it made the face."""
         return attribute(body, self, node, site)

@@ -1,4 +1,4 @@
-"""Bounds of a tree: on its slope (Lipschitz bound), a divisor for marching, a box, its growth.
+"""Bounds of a tree: its Lipschitz bound (slope), a divisor for marching, its box, its growth.
 
 Input: nodes and the rules of their primitives and operators. Output: expressions of numbers alone,
 which every target computes once per frame.
@@ -37,9 +37,9 @@ class ShapeBounds:
 
     Attributes:
         slope: Bound on |gradient| everywhere.
-        divisor: What to divide the value by for a step that never passes the surface.
-        bounds: ``Bounds`` or ``Bounds2`` around surface and inside.
-        growth: How far from the box a point may be, for each unit of its value.
+        divisor: Number by which a value is divided to get a step that never passes the surface.
+        bounds: ``Bounds`` or ``Bounds2`` around the surface and the inside.
+        growth: How far from the box a point may be, at most, for each unit of its value.
         side_growth: The same for each side of the box.
     """
 
@@ -50,7 +50,7 @@ class ShapeBounds:
     side_growth: Expr
 
     def packed(self, body: StatementList) -> Expr:
-        """(slope, divisor, low, high, growth, side_growth), of ``packed_type``."""
+        """Return (slope, divisor, low, high, growth, side_growth) as one ``packed_type``."""
         bounds = body.let("bounds", self.bounds)
         low, high = field(bounds, "low"), field(bounds, "high")
         parts = (self.slope, self.divisor, low, high, self.growth, self.side_growth)
@@ -61,7 +61,7 @@ PACKED: Final = ("slope", "divisor", "low", "high", "growth", "side_growth")
 
 
 def packed_types(flat: bool) -> tuple[Type, ...]:
-    """The types of what ``packed`` holds."""
+    """Return the types of the parts of ``packed``."""
     corner = VEC2 if flat else VEC3
     return (FLOAT, FLOAT, corner, corner, FLOAT, FLOAT)
 
@@ -71,14 +71,14 @@ UNKNOWN: Final = constant_number(UNBOUNDED)
 
 
 class BoundsComposer:
-    """Composes the bounds of subtrees."""
+    """Composes the bounds of subtrees as IR expressions."""
 
     def __init__(self, values: Values) -> None:
         self._values = values
         self._call = values.assembly.call
 
     def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
-        """The bounds of a subtree with these numbers."""
+        """Return the bounds of a subtree with these numbers."""
         own, shares = self._values.split(node, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -95,7 +95,14 @@ class BoundsComposer:
         inner: Sequence[ShapeBounds],
         own: Mapping[str, Expr],
     ) -> ShapeBounds:
-        """The bounds of an operator on shapes with these bounds."""
+        """Return the bounds of an operator on children with these bounds.
+
+        Args:
+            body: The statements to add to.
+            rule: The operator.
+            inner: The bounds of the children.
+            own: The operator's numbers, by name.
+        """
         if len(inner) == 1:
             return self._one(body, rule, inner[0], own)
         if rule.bounds is None and rule.slope is None:
@@ -112,7 +119,7 @@ class BoundsComposer:
         inner: Sequence[ShapeBounds],
         own: Mapping[str, Expr],
     ) -> ShapeBounds:
-        """Many joined, the halves first: a chain of hundreds would be as deep as it is long."""
+        """Combine many children as a balanced tree, because a chain would be too deep."""
         if len(inner) == 1:
             return inner[0]
         middle = len(inner) // 2
@@ -122,7 +129,7 @@ class BoundsComposer:
     def given(
         self, body: StatementList, node: Node, shares: Sequence[Sequence[Expr]]
     ) -> dict[str, Expr]:
-        """The children's bounds, by the parameter names of an operator's functions."""
+        """Return the children's bounds, by the parameter names of an operator's functions."""
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
@@ -131,7 +138,7 @@ class BoundsComposer:
     def of_primitive(
         self, body: StatementList, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
     ) -> ShapeBounds:
-        """The bounds of a primitive with these numbers."""
+        """Return the bounds of a primitive with these numbers."""
         slope = self._number(body, "slope", rule.slope, own)
         whole = everywhere2 if flat else everywhere
         bounds = body.let("bounds", self._call(rule.bounds or whole, own))
@@ -199,7 +206,7 @@ class BoundsComposer:
         bounds: Expr,
         given: Mapping[str, Expr],
     ) -> tuple[Expr, Expr]:
-        """The growth of an operator's result, and that of its sides."""
+        """Return the growth of an operator's result, and that of its sides."""
         growth, side_growth = given["growth"], given["side_growth"]
         match rule.growth:
             case Growth.KEPT:
@@ -232,14 +239,14 @@ class BoundsComposer:
 
 
 class RememberedBounds(BoundsComposer):
-    """Bounds composed within one function: those of every node once."""
+    """Bounds composed within one function, once for each node."""
 
     def __init__(self, values: Values) -> None:
         super().__init__(values)
         self.found: dict[int, ShapeBounds] = {}
 
     def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
-        """The bounds of a subtree, composed once."""
+        """Return the bounds of a subtree, composed once."""
         known = self.found.get(id(node))
         if known is None:
             known = self.found[id(node)] = super().of(body, node, values)
@@ -247,13 +254,13 @@ class RememberedBounds(BoundsComposer):
 
 
 def _named(a: ShapeBounds, b: ShapeBounds | None) -> dict[str, Expr]:
-    """Under the names by which an operator's functions take them."""
+    """Return bounds by the parameter names of an operator's functions."""
     of = {"": a} if b is None else {"_a": a, "_b": b}
     return {f"{n}{end}": getattr(of[end], n) for n in BOUNDS_OF_CHILD for end in of}
 
 
 def _larger(body: StatementList, name: str, a: Expr, b: Expr) -> Expr:
-    """The larger of two; nothing to compute where both are constants, as for exact shapes."""
+    """Return the larger of two; folded if both are constants, as for exact shapes."""
     if a is b:
         return a
     if isinstance(a, Const) and isinstance(b, Const):
@@ -262,7 +269,7 @@ def _larger(body: StatementList, name: str, a: Expr, b: Expr) -> Expr:
 
 
 def _corner_growth(body: StatementList, side_growth: Expr, dimensions: int) -> Expr:
-    """How far from the box a point is that is as far past each side; infinity stays."""
+    """Return the growth of a corner: all sides passed by ``side_growth``; infinity stays."""
     root = constant_number(math.sqrt(dimensions))
     if isinstance(side_growth, Const):
         return constant_number(min(side_growth.value * math.sqrt(dimensions), UNBOUNDED))

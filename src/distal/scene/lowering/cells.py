@@ -1,7 +1,7 @@
-"""Refusing materials that depend on the cell outside of any repetition.
+"""A check that materials that depend on the cell are inside a repetition.
 
-Input: a shape's tree. Output: an error where a material asks for the cell of a
-repetition, but paints the repetition as a whole: every copy would look like the first.
+Input: a shape's tree. Output: an error if a material depends on the cell of a repetition but paints
+the repetition as a whole: all copies would look like the first.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from distal.scene.tree.node import Node
 
 
 def check_cells(root: Node) -> None:
-    """Refuse materials of cells that stand outside the repetition they are meant for.
+    """Refuse materials that depend on the cell but are outside the repetition.
 
     Raises:
-        CompileError: At the line where the material was made.
+        CompileError: At the line of the material.
     """
     seen: set[tuple[int, bool]] = set()
     stack = [(root, False)]

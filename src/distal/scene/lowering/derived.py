@@ -1,4 +1,4 @@
-"""A shape's gradient and its bounds as functions of their own.
+"""A shape's gradient and bounds, as functions that can be called.
 
 Input: a tree. Output: objects that the executor runs.
 """
@@ -16,7 +16,7 @@ from distal.scene.tree.values import StatementList, Values, plain_name
 
 
 class GradientOf(Composed):
-    """The gradient of a shape, as a function."""
+    """The gradient of a shape, as a function of a point."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -25,7 +25,7 @@ class GradientOf(Composed):
         self.signature = (("p", self.result),)
 
     def compose(self, assembly: Assembly) -> str:
-        """The function of a point."""
+        """Add the function to the program, and return its name."""
         node = self._node
         composer = ShapeComposer(assembly, [node])
         field = composer.field(node, composer.values.all(node), ZERO_CELL)
@@ -37,7 +37,7 @@ class GradientOf(Composed):
 
 
 class BoundsOf(Composed):
-    """Slope, divisor, box and growth of a shape, as a function of nothing."""
+    """Slope, divisor, box and growth of a shape, as a function without arguments."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -46,7 +46,10 @@ class BoundsOf(Composed):
         self.result = tuple_type(packed_types(node.flat))
 
     def compose(self, assembly: Assembly) -> str:
-        """The function that gives (slope, divisor, low, high, growth, side_growth)."""
+        """Add the function, and return its name.
+
+        It returns (slope, divisor, low, high, growth, side_growth).
+        """
         body, node = StatementList(), self._node
         values = Values(assembly)
         found = BoundsComposer(values).of(body, node, values.all(node))

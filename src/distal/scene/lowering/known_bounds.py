@@ -1,8 +1,8 @@
-"""Bounds of shapes as plain numbers, known as soon as the shapes are made.
+"""Bounds of shapes as plain numbers, available on construction of a shape.
 
-Input: a node. Output: its slope, box and growth for the parameters' defaults. Each
-operator is computed from the numbers of its children, once for each node, by a function that all
-operators of its kind share: making a shape composes and compiles nothing of what is below it.
+Input: a node. Output: its slope, box and growth for the parameters' defaults. The bounds of each
+operator are computed from those of its children, once for each node, by a function that all
+operators of the same kind share: making a shape does not compile its children again.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from distal.scene.lowering.bounds import PACKED, BoundsComposer, ShapeBounds, pa
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
 
-# Functions of operators and primitives are kept; those with data of their own are too many to be.
+# Size of the cache of functions; those of nodes with textures or buffers are not cached.
 MOST_KEPT: Final = 512
 
 
@@ -46,12 +46,12 @@ _bounds_steps: dict[Any, _BoundsStep] = {}
 
 
 def known_bounds_of(node: Node) -> KnownBounds:
-    """A node's bounds for the parameters' defaults at time 0.
+    """Return a node's bounds for the parameters' defaults at time 0.
 
     Raises:
-        PackageError: NumPy is missing or broken, without which nothing is computed.
+        PackageError: NumPy is missing or broken.
     """
-    # Children first, without recursion: chains are longer than Python's stack is deep.
+    # Children first, without recursion: a chain can be longer than Python's recursion limit.
     for part in reversed(list(node.walk())):
         if part not in _known:
             _known[part] = _computed(part)
@@ -92,7 +92,7 @@ def _plain(value: Any) -> Any:
 
 
 def _bounds_step(node: Node, count: int) -> _BoundsStep:
-    """The function of a node's kind."""
+    """Return the function for nodes of this kind."""
     data = any(isinstance(v, Buffer | TextureValue) for v in node.constants.values())
     choices = tuple((n, getattr(v, "value", v)) for n, v in node.constants.items())
     types = tuple((n, number.type) for n, number in node.numbers.items())
@@ -108,7 +108,7 @@ def _bounds_step(node: Node, count: int) -> _BoundsStep:
 
 
 class _BoundsStep(Composed):
-    """The bounds of a primitive from its numbers, of an operator from its children's bounds."""
+    """The bounds of a primitive from its numbers, or of an operator from its children's bounds."""
 
     def __init__(self, node: Node, count: int) -> None:
         flat_inner = [child.flat for child in node.children[:count]]
@@ -121,7 +121,7 @@ class _BoundsStep(Composed):
         self.result = tuple_type(packed_types(node.flat))
 
     def compose(self, assembly: Assembly) -> str:
-        """The function in a program."""
+        """Add the function to the program, and return its name."""
         values = Values(assembly)
         body = StatementList(taken={name for name, _ in self.signature})
         numbers = {name: Read(name, type) for name, type in self._own.items()}

@@ -1,7 +1,7 @@
-"""A scene's layers: depth, normal, albedo and material beside its color.
+"""Layers of a scene's picture besides color: depth, normal, albedo, material.
 
-Input: a scene and names. Output: arrays, made by programs of the library's scene
-code. Needs NumPy only when layers are rendered.
+Input: a scene and names of layers. Output: arrays, computed by programs of the library's scene
+code. Needs NumPy only to render layers.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ class Layer(Composed):
         self._scene, self._layer, self._steered = scene, layer, steered
 
     def compose(self, assembly: Assembly) -> str:
-        """The layer, as a function of the frame."""
+        """Add the function that maps the frame to the layer's values, and return its name."""
         return SceneLowering(assembly, self._scene).layer(self._layer, steered=self._steered)
 
     def functions(self) -> Iterable[Func]:
-        """The functions that it is made of."""
+        """Yield the scene functions that this object calls."""
         return self._scene.functions()
 
 
 def checked_layers(names: Any) -> tuple[str, ...]:
-    """Names of layers, each once, in the order of ``NAMES``.
+    """Return the names of layers, each once, in the order of ``NAMES``.
 
     Raises:
         ValueError: There is no such layer.
@@ -59,7 +59,7 @@ def checked_layers(names: Any) -> tuple[str, ...]:
 
 
 def values(name: str, pixels: Any) -> Any:
-    """A layer's values, of pixels whose alpha says whether anything was met.
+    """Return a layer's values from pixels whose alpha is 1 where a ray hit something.
 
     Returns:
         (height, width) or (height, width, 3), as ``Picture.layers`` has them.
@@ -67,7 +67,7 @@ def values(name: str, pixels: Any) -> Any:
     import numpy as np  # noqa: PLC0415 (scenes compile without it)
 
     if name == "depth":
-        # Farther than all else: nearer wins, whatever is merged with it.
+        # Infinity: in a merge with another picture, the nearer surface is chosen.
         return np.where(pixels[..., 3] > 0.5, pixels[..., 0], np.float32(np.inf))
     if name == "material":
         return np.rint(pixels[..., 0]).astype(np.uint32)

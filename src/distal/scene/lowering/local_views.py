@@ -1,7 +1,7 @@
-"""Views of an ``@image`` that show one of its locals: its coordinate, its signal.
+"""Views of an ``@image`` that show one of its local variables: its coordinate, its signal.
 
-Input: an author's image and the name of a local. Output: an image whose function is
-the author's, changed to return the color of the local's last value, whichever way it leaves.
+Input: an author's image and the name of a local. Output: an image whose function is the author's,
+changed to return the last value of the local as a color, on every path.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ SHOWN: Final[Mapping[Type, Func]] = {
 
 @dataclass(frozen=True, slots=True)
 class Local:
-    """A local of an image's function.
+    """A local variable of an image's function that can be shown.
 
     Attributes:
-        name: As the author writes it; a second one of the name has ``_2`` behind it.
-        type: Of a kind that can be shown.
-        varies: Whether it differs from pixel to pixel.
+        name: The name that the author wrote; a second local of the same name ends in ``_2``.
+        type: The type, one that can be shown.
+        varies: Whether the value differs from pixel to pixel.
     """
 
     name: str
@@ -61,15 +61,15 @@ class Local:
 
 
 def view_of_image(image: Image, view: str) -> Composed:
-    """An image seen in another way.
+    """Return another view of an image.
 
     Args:
         image: An author's image.
-        view: "coordinate": its first vec2, or the pixel's own coordinate; "signal": its first
-            number that differs from pixel to pixel; "local:NAME": any local.
+        view: "coordinate": the first vec2, or the pixel's own coordinate. "signal": the first
+            number that differs from pixel to pixel. "local:NAME": any local.
 
     Raises:
-        ValueError: It has no such local; the text lists what can be shown.
+        ValueError: There is no such local; the message lists those that can be shown.
         CompileError: The image has mistakes.
     """
     found = locals_of(image)
@@ -94,7 +94,7 @@ def view_of_image(image: Image, view: str) -> Composed:
 
 
 def locals_of(image: Image) -> list[Local]:
-    """The locals of an image's own function that can be shown, in the order of the source."""
+    """Return the locals of an image's function that can be shown, in source order."""
     module = lower(image)
     function = module.function(module.entry)
     written = set(image.python_function.__code__.co_varnames)
@@ -107,16 +107,16 @@ def locals_of(image: Image) -> list[Local]:
 
 
 def _is_own(name: str, written: set[str]) -> bool:
-    """Whether the author wrote a local, and not the compiler, for a part of an expression."""
+    """Return whether the author wrote a local; others are made by the compiler."""
     plain = {w.strip("_") for w in written}
     return name in plain or re.sub(r"_\d+$", "", name) in plain
 
 
 def _varying(function: Function) -> set[str]:
-    """The locals that depend on which pixel it is: the frame's coordinate flows into them."""
+    """Return the locals that depend on the frame's coordinate."""
     varying: set[str] = set()
     size = -1
-    while len(varying) > size:  # values that flow around a loop need another round
+    while len(varying) > size:  # values that flow through a loop need another iteration
         size = len(varying)
         for stmt in statements_in(function.body):
             if isinstance(stmt, Let | Var | Assign):
@@ -142,7 +142,7 @@ def _listed(found: Iterable[Local]) -> str:
 
 
 class _ImageView(Composed):
-    """What views of an image share."""
+    """Base class of the views of an image."""
 
     kind: ClassVar[EntryKind] = EntryKind.IMAGE
     signature = (("frame", FRAME),)
@@ -154,18 +154,18 @@ class _ImageView(Composed):
         self._image = image
 
     def functions(self) -> Iterable[Func]:
-        """The image itself."""
+        """Yield the scene functions that the image calls."""
         return (self._image,)
 
 
 class PixelCoordinate(_ImageView):
-    """Where a pixel lies, as a color."""
+    """The coordinate of a pixel, as a color."""
 
     def __init__(self, image: Image) -> None:
         super().__init__(image, "coordinate")
 
     def compose(self, assembly: Assembly) -> str:
-        """The function of the frame."""
+        """Add the function of the frame, and return its name."""
         frame = Read("frame", FRAME)
         given = {n: field(frame, n) for n in ("coord", "resolution")}
         place = assembly.call(library.pixel_place, given)
@@ -174,14 +174,14 @@ class PixelCoordinate(_ImageView):
 
 
 class LocalView(_ImageView):
-    """A local of an image as a color."""
+    """A local variable of an image, as a color."""
 
     def __init__(self, image: Image, local: Local) -> None:
         super().__init__(image, local.name)
         self._local = local
 
     def compose(self, assembly: Assembly) -> str:
-        """The image's own function with other returns."""
+        """Add the image's own function with changed returns, and return its name."""
         slot = read_signature(self._image.overloads[0]).parameters[0].name
         call: Any = assembly.call(self._image, {slot: Read(slot, FRAME)})
         function = assembly.function(call.function)
@@ -202,7 +202,7 @@ class LocalView(_ImageView):
 
 
 def _free(stem: str, function: Function) -> str:
-    """A name that no local of a function has."""
+    """Return a name that no local of the function has."""
     taken = {p.name for p in function.params}
     taken |= {s.name for s in statements_in(function.body) if hasattr(s, "name")}
     name, n = stem, 2
@@ -214,7 +214,7 @@ def _free(stem: str, function: Function) -> str:
 def _watched(
     body: tuple[Stmt, ...], name: str, kept: tuple[Read, Read], color: Expr
 ) -> Iterator[Stmt]:
-    """A block that keeps each value a local gets, and returns the color of the last one."""
+    """Yield a block that records each value of a local and returns the last one as a color."""
     ahead = {id(s.span) for s in statements_in(body) if isinstance(s, Assign) and _gives(s, name)}
     for stmt in body:
         if isinstance(stmt, Return):
@@ -223,7 +223,7 @@ def _watched(
         yield map_statement(
             stmt, lambda e: e, lambda inner: tuple(_watched(inner, name, kept, color))
         )
-        # A local whose first value is set in an inner block is declared before it with a zero.
+        # A local that is first assigned in an inner block is declared before it, as zero.
         hoisted = isinstance(stmt, Var) and stmt.name == name and id(stmt.span) in ahead
         if _gives(stmt, name) and not hoisted:
             value, reached = kept

@@ -1,8 +1,7 @@
-"""A scene's function from a pixel to its light, put together.
+"""Construction of a scene's function from a pixel to its light.
 
-Input: a scene. Output: functions in a program: distance, surface, lights, what is
-around, rays, and one that joins them by a renderer of the library. Values are bound by
-parameter name.
+Input: a scene. Output: functions in a program: distance, surface, lights, background, rays, and one
+that connects them by a renderer of the library. Values are bound by parameter name.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ from distal.scene.tree.values import StatementList
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
 
-# How normals are found, in the order of ``render.normals``.
+# Methods to compute normals, in the order of ``render.normals``.
 NORMALS: Final = ("exact", "six_taps", "tetrahedron", "forward")
 
 RENDERERS: Final[dict[str, Func]] = {
@@ -41,13 +40,13 @@ RENDERERS: Final[dict[str, Func]] = {
     "mirrored": bounce.seen_mirrored,
     "refracted": bounce.seen_refracted,
 }
-# Of tables of different functions the type checker knows no more than that they hold objects.
+# The type checker infers only ``object`` for tables of different functions.
 LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
 VIEWS: Final = cast(Mapping[str, Func], views.VIEWS)
 
 
 class SceneLowering:
-    """Puts one scene's functions into one program."""
+    """The lowering of one scene to functions of one program."""
 
     def __init__(self, assembly: Assembly, scene: Scene) -> None:
         self._assembly = assembly
@@ -61,7 +60,15 @@ class SceneLowering:
     def main(
         self, view: str, *, transparent: bool, sampled: bool, encoded: bool, steered: bool = False
     ) -> str:
-        """The function of the frame that gives a pixel."""
+        """Add the function that maps the frame to a pixel, and return its name.
+
+        Args:
+            view: The view of the scene.
+            transparent: Whether alpha is 0 where a ray hits nothing.
+            sampled: Whether a pixel is the mean of ``Samples`` rays.
+            encoded: Whether pixels are display values instead of linear light.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
         frame = Read("frame", FRAME)
         body = StatementList(taken={"frame"})
         resolution = field(frame, "resolution")
@@ -85,7 +92,10 @@ class SceneLowering:
         return self._assembly.define("picture", params, VEC4, body.statements, self._scene.place)
 
     def layer(self, name: str, *, steered: bool) -> str:
-        """The function of the frame that gives a layer's values at a pixel's middle."""
+        """Add the function that maps the frame to a layer's values, and return its name.
+
+        The values are those at the middle of each pixel.
+        """
         frame = Read("frame", FRAME)
         resolution = field(frame, "resolution")
         given: dict[str, Expr] = {
@@ -99,7 +109,7 @@ class SceneLowering:
         return self._assembly.define("layer", params, VEC4, (Return(value),), self._scene.place)
 
     def displayed(self, color: Expr) -> Expr:
-        """Linear light encoded for display."""
+        """Return linear light encoded for display."""
         given = {
             "color": color,
             "exposure": self._numbers["exposure"],
@@ -108,7 +118,7 @@ class SceneLowering:
         return self.composer.call(tonemap.display, given)
 
     def given(self, body: StatementList, resolution: Expr) -> dict[str, Expr]:
-        """Everything that a renderer may take, by name."""
+        """Return all values that a renderer may take, by name."""
         composer, scene, node = self.composer, self._scene, self._node
         values = composer.values.all(node)
         bounds_of_scene = composer.bounds.of(body, node, values)
@@ -144,7 +154,10 @@ class SceneLowering:
         make: Callable[[StatementList, Mapping[str, Expr]], Expr],
         captured: Sequence[Expr] = (),
     ) -> FunctionRef:
-        """A function of its own, as a value; ``captured`` are given to its last parameters."""
+        """Add a function, and return it as a value.
+
+        The values of ``captured`` are bound to its last parameters.
+        """
         body = StatementList(taken={n for n, _ in params})
         result = make(body, {n: Read(n, t) for n, t in params})
         body.statements.append(Return(result))
@@ -154,7 +167,7 @@ class SceneLowering:
         return FunctionRef(defined, tuple(captured), FunctionType(free, result.type))
 
     def _shown(self, view: str) -> Func:
-        """What follows a ray for a view."""
+        """Return the library function that computes a view along a ray."""
         return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
 
     def _radiance(self, shown: Func, resolution: Expr) -> FunctionRef:
@@ -172,11 +185,11 @@ class SceneLowering:
         return self._function("radiance", params, make, (resolution,))
 
     def surface(self) -> FunctionRef:
-        """What a place looks like: ``(p) -> Surface``."""
+        """Return the function ``(p) -> Surface`` of the material at a place."""
         return self.known_of_place("surface", SurfaceAttribute(self.composer, self._scene.material))
 
     def known_of_place(self, name: str, kind: Attribute) -> FunctionRef:
-        """An attribute of the place of the scene that is nearest to a point, as a function."""
+        """Return an attribute of the place nearest to a point, as a function."""
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             site = AttributePoint(given["p"], ZERO_CELL, self.composer.values.all(self._node))
@@ -188,7 +201,7 @@ class SceneLowering:
         return [light.sample for light in self._scene.lights if light.sample is not None]
 
     def _lights(self) -> FunctionRef:
-        """The light of a number, as a place sees it: one place asks for all, in a loop."""
+        """Return the function of a light's number to its light at a place; called in one loop."""
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             site = {"p": given["p"]}
@@ -221,7 +234,7 @@ class SceneLowering:
         return self._function("background", (("direction", VEC3),), make)
 
     def _steered(self, resolution: Expr) -> FunctionRef:
-        """The camera, moved by hand as the numbers of a ``Steering`` say."""
+        """Return the camera moved by the numbers of a ``Steering``."""
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             camera = self._scene.camera
@@ -236,7 +249,7 @@ class SceneLowering:
         return self._function("steered_ray", params, make, (resolution,))
 
     def elevation(self) -> str:
-        """The function that gives how high the camera stands above what it looks at."""
+        """Add the function that returns the camera's elevation above its target."""
         given = {
             "camera": self._camera(self._assembly.constant((1.0, 1.0), VEC2)),
             "up": self._up(),
@@ -245,12 +258,12 @@ class SceneLowering:
         return self._assembly.define("elevation", (), FLOAT, (Return(value),))
 
     def _up(self) -> Expr:
-        """The axis that the camera stands upright along."""
+        """Return the camera's vertical axis."""
         found = self._scene.camera.number(self.composer, "up")
         return self._assembly.constant((0.0, 1.0, 0.0), VEC3) if found is None else found
 
     def _pivot(self, body: StatementList, given: Mapping[str, Expr]) -> Expr:
-        """What a camera without a target turns around."""
+        """Return the point that a camera without a target is rotated about."""
         values = self.composer.values.all(self._node)
         bounds = self.composer.bounds.of(body, self._node, values).bounds
         return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})

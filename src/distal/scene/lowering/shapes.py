@@ -1,8 +1,8 @@
-"""A shape's tree becomes functions of the IR.
+"""Lowering of a shape's tree to functions of the IR.
 
-Input: nodes. Output: calls of the field library's functions, bound by parameter
-name. Floats become number uniforms; a subtree that occurs again, with whatever numbers,
-becomes a function of its own that takes them. Materials are lowered by ``attributes``.
+Input: nodes. Output: calls of the field library's functions, bound by parameter name. Floats become
+uniforms. A subtree that occurs several times, even with other numbers, becomes one function that
+takes its numbers as parameters. Materials are lowered by ``attributes``.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 
-# The cell of what lies in no repetition.
+# The cell outside of any repetition.
 ZERO_CELL: Final = constant_number(0.0, VEC3)
 
 
@@ -43,10 +43,10 @@ class ShapeComposer:
         self._kinds: dict[int, set[int]] = {}
         self._count_kinds(root_nodes)
 
-    # What is equal
+    # Equality of subtrees
 
     def key(self, node: Node) -> int:
-        """Equal for subtrees that differ in the values of their numbers only."""
+        """Return a key that is equal for subtrees that differ only in values of numbers."""
         found = self._keys.get(id(node))
         if found is None:
             constants = tuple((n, _identity(v)) for n, v in node.constants.items())
@@ -57,7 +57,7 @@ class ShapeComposer:
         return found
 
     def _count_kinds(self, roots: Sequence[Node]) -> None:
-        """How often each kind of subtree is met; those within a repeated one count once."""
+        """Count the occurrences of each kind of subtree; inside a repeated one only once."""
         stack = list(roots)
         while stack:
             node = stack.pop()
@@ -68,7 +68,7 @@ class ShapeComposer:
                 stack.extend(node.children)
 
     def uses_cell(self, node: Node) -> bool:
-        """Whether the subtree's distance depends on the cell of a repetition around it."""
+        """Return whether the subtree's distance depends on the cell of a repetition."""
         found = self._uses_cell.get(id(node))
         if found is None:
             names = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
@@ -79,7 +79,7 @@ class ShapeComposer:
     # Distances
 
     def field(self, node: Node, values: Sequence[Expr], cell: Expr) -> FunctionRef:
-        """A subtree's distance as a function of the point alone."""
+        """Return a subtree's distance as a function of the point alone."""
         name, captures = self._function(node, values, cell)
         point = VEC2 if node.flat else VEC3
         return FunctionRef(name, captures, FunctionType((point,), FLOAT))
@@ -87,9 +87,9 @@ class ShapeComposer:
     def _function(
         self, node: Node, values: Sequence[Expr], cell: Expr
     ) -> tuple[str, tuple[Expr, ...]]:
-        """The function of a subtree: its name, and what to pass beside the point.
+        """Return the function of a subtree: its name, and the arguments to pass besides the point.
 
-        Where only this node is of its kind, the function reads its numbers itself.
+        If no other subtree is of the same kind, the function reads its numbers itself.
         """
         key = self.key(node)
         closed = len(self._kinds.get(key, ())) <= 1 and tuple(values) == self.values.all(node)
@@ -116,7 +116,15 @@ class ShapeComposer:
     def distance(
         self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> Expr:
-        """A subtree's distance at a point."""
+        """Return a subtree's distance at a point.
+
+        Args:
+            body: The statements to add to.
+            node: The root of the subtree.
+            p: The point.
+            cell: The index of the repetition.
+            values: The numbers of the subtree.
+        """
         shared = self._count.get(self.key(node), 0) > 1 and len(node.children) > 0
         if not shared and not node.label:
             return self._emit(body, node, p, cell, values)
@@ -154,7 +162,10 @@ class ShapeComposer:
     def given(
         self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
     ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
-        """What a node's functions may take by name, and the numbers of each child."""
+        """Return the values for a node's functions by name, and the numbers of each child.
+
+        Takes the same arguments as ``distance``.
+        """
         own, shares = self.values.split(node, values)
         given = {**own, "p": p, "cell": cell}
         taken = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
@@ -165,13 +176,13 @@ class ShapeComposer:
     def moved(
         self, body: StatementList, rule: Operator, given: Mapping[str, Expr]
     ) -> tuple[Expr, Expr]:
-        """The point and the cell at which an operator's children are evaluated."""
+        """Return the point and the cell at which an operator's children are evaluated."""
         if rule.point is None:
             return given["p"], given["cell"]
         return self.site(body, self.call(rule.point, given), given["cell"])
 
     def site(self, body: StatementList, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
-        """The point and the cell of a place that an operator gave."""
+        """Return the point and the cell of a place that an operator returned."""
         if isinstance(place.type, Struct):
             site = body.let("site", place)
             return field_of(site, "p"), field_of(site, "cell")
@@ -179,7 +190,7 @@ class ShapeComposer:
 
 
 def rule_functions(node: Node) -> tuple[Func, ...]:
-    """The functions of a node's rule that are called for each point."""
+    """Return the functions of a node's rule that are called for each point."""
     rule = node.rule
     if isinstance(rule, Primitive):
         return (rule.distance,)
@@ -195,7 +206,7 @@ def _identity(value: Any) -> Any:
 
 
 def fresh_names(node: Node) -> list[str]:
-    """Parameter names for all numbers of a subtree, distinguished by a number."""
+    """Return parameter names for all numbers of a subtree, made unique by a number."""
     names: list[str] = []
     taken = {"p", "cell"}
 

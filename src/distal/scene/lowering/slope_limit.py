@@ -1,8 +1,8 @@
-"""Refusing shapes that no ray can be marched to: fields without a bound on their slope.
+"""A check that operators have a bound on their slope; a ray cannot be marched through other fields.
 
-Input: a shape's tree. Output: an error at the place where the bound was lost: a
-twist of something that has no end, say. An operator is refused when it is made, for the parameters'
-defaults; other values and times are checked when it is drawn (``scene.checks.warnings``).
+Input: a shape's tree. Output: an error at the place where the bound is lost, such as a twist of an
+infinite shape. An operator is checked on construction for the parameters' defaults; other values
+and times are checked when the scene is rendered (``scene.checks.warnings``).
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from distal.scene.lowering.known_bounds import known_bounds_of
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 
-# The low corner and the high one.
+# The low and the high corner.
 Box: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
 
 
 def check_slope(node: Node) -> None:
-    """Refuse an operator that has no bound on its slope on the shapes that it is given.
+    """Refuse an operator that has no bound on its slope for its children.
 
     Raises:
-        SceneValueError: At the operator's place.
+        SceneValueError: At the operator's line.
     """
     if not may_be_endless(node):
         return
     try:
         slope = known_bounds_of(node).slope
-    except PackageError:  # without NumPy nothing is marched here, only compiled to text
+    except PackageError:  # without NumPy, scenes are only compiled to text
         return
     if not slope < ENDLESS:
         boxes = [known_bounds_of(child) for child in node.children]
@@ -38,12 +38,12 @@ def check_slope(node: Node) -> None:
 
 
 def may_be_endless(node: Node) -> bool:
-    """Whether a node is an operator that has a slope on some shapes only."""
+    """Return whether a node is an operator that has a slope only for some children."""
     return isinstance(node.rule, Operator) and node.rule.needs is not None
 
 
 def refuse_steepness(node: Node, boxes: Sequence[Box]) -> NoReturn:
-    """Refuse an operator on children with these boxes, at its place."""
+    """Raise the error for an operator on children with these boxes, at its line."""
     assert isinstance(node.rule, Operator)
     message = f"{node.rule.name} gives this shape no bound on its slope"
     hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(boxes)}"
@@ -51,7 +51,7 @@ def refuse_steepness(node: Node, boxes: Sequence[Box]) -> NoReturn:
 
 
 def _boxed(boxes: Sequence[Box]) -> str:
-    """The box that the rule judged, in words; none where it has no end, as the rule says that."""
+    """Describe the box that the rule checked; "" if it is infinite, as the rule says so."""
     if len(boxes) != 1 or any(abs(c) >= ENDLESS for corner in boxes[0] for c in corner):
         return ""
     low, high = map(_corner, boxes[0])

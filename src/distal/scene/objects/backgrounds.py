@@ -1,4 +1,4 @@
-"""Backgrounds: the light of rays that hit nothing; skies and environments, which can also be lights.
+"""Backgrounds: the light of rays that hit nothing. Skies and environments can also be lights.
 
 Input: a colour, the numbers of a sky, a picture of an environment, or the author's own function of
 a direction. Output: a ``Background``, which computes the light from a direction. Only the camera

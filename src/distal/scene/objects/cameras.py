@@ -126,7 +126,7 @@ class TurnedCamera(BaseCamera):
 
 
 class PlacedCamera(BaseCamera):
-    """A ``Camera``: adds to its declaration what its scene function does not take."""
+    """The class of ``Camera``; ``Camera.yaw_pitch_roll`` is a camera rotated by angles."""
 
     __slots__ = ()
 

@@ -1,1 +1,1 @@
-"""The tree behind shapes, and the checked arguments of its nodes."""
+"""The tree of nodes behind a shape, and the checks of its arguments."""

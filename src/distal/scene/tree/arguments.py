@@ -1,8 +1,8 @@
-"""Python arguments of a shape, light or material to values for a scene function's parameters.
+"""Conversion of Python arguments to values for a scene function's parameters.
 
 Input: scene functions (of ``fields``, ``render`` or the author), positional and keyword arguments,
 limits. Output: checked ``Number``s, choices, textures and buffers by name. Every mistake is
-reported at the author's line with a hint. Does not depend on what the functions mean.
+reported at the author's line with a hint. Does not depend on what the functions compute.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ from distal.scene.tree.conversion import (
 )
 from distal.scene.tree.errors import refuse, refuse_kind
 
-# What a parameter is given; an object of another kind where the caller accepts some (a pattern).
+# The value of a parameter; may be another object, such as a pattern, if the caller accepts it.
 Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
-# Takes a value and the type wanted: what represents it, or None to treat it as a number.
+# Converts a value for the requested parameter, or returns None to treat it as a number.
 Accept: TypeAlias = Callable[[Any, Asked], Any]
 
-# Parameter names with a meaning of their own (``fields.guarantees``): no numbers of a shape.
+# Parameter names with a fixed meaning (``fields.guarantees``): they are not numbers of a shape.
 RESERVED: Final = BOUNDS_OF_CHILDREN | {"p", "d", "a", "b", "field", "cell", "copies"}
-# Those that a shape of its own keeps from its numbers: it has no distances to join.
+# The reserved names of an author's own shape: it has no children, so ``a`` or ``d`` are free.
 RESERVED_OF_SHAPES: Final = RESERVED - {"a", "b", "d", "copies"}
-# One number sets all components of these.
+# For these parameters one number sets all components.
 SPLATTED: Final = frozenset(
     ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")
 )
@@ -54,7 +54,7 @@ _LETTERS: Final = "xyzw"
 
 @dataclass(frozen=True, slots=True)
 class FunctionParameter:
-    """One parameter of a scene function; ``type`` is None where a call decides it."""
+    """A parameter of a scene function; ``type`` is None if each call decides it."""
 
     name: str
     type: Type | None
@@ -62,12 +62,12 @@ class FunctionParameter:
 
     @property
     def is_vector(self) -> bool:
-        """Whether several scalars may be given for it."""
+        """Whether several scalars may be passed for the parameter."""
         return isinstance(self.type, Vector) and self.type.kind is Kind.FLOAT
 
     @property
     def is_number(self) -> bool:
-        """Whether it takes a float or a vector of floats."""
+        """Whether the parameter is a float or a vector of floats."""
         return self.type is FLOAT or self.is_vector
 
 
@@ -75,10 +75,10 @@ _slots: WeakKeyDictionary[Func, tuple[FunctionParameter, ...]] = WeakKeyDictiona
 
 
 def slots_of(func: Func) -> tuple[FunctionParameter, ...]:
-    """A function's parameters (of its first overload).
+    """Return the parameters of a function's first overload.
 
     Raises:
-        CompileError: Its first line says what scene code cannot say.
+        CompileError: The signature is not valid scene code.
     """
     found = _slots.get(func)
     if found is None:
@@ -111,27 +111,29 @@ def arguments(
     colors: Collection[str] = (),
     accept: Accept | None = None,
 ) -> dict[str, Given]:
-    """The values of functions' parameters, by name, in the order of the parameters.
+    """Return the values of functions' parameters by name, in the order of the parameters.
 
     Parameters of the same name in several functions are one parameter.
 
     Args:
         functions: Scene functions.
-        args: What was given by position.
-        kwargs: What was given by name. ``x=``, ``y=``, ``z=`` are the parts of a vector, where only
-            one parameter is a vector.
-        what: What is being made, for messages: "Sphere".
-        limits: What each number must be.
-        requires: Returns why numbers do not go together. Called with plain values by name, with
-            the default of a slider; not called if a number that it names is computed.
+        args: Arguments by position.
+        kwargs: Arguments by name. ``x=``, ``y=``, ``z=`` set the components of a vector if only one
+            parameter is a vector.
+        what: The name in messages of the object that is made: "Sphere".
+        limits: The limit of each number.
+        requires: Returns why numbers contradict each other, or None. Called with plain values by
+            name, and with the default of a parameter that can change; not called if one of its
+            numbers is computed.
         place: The author's line.
-        reserved: Parameters that are no numbers.
-        colors: Parameters that understand "#rrggbb"; ``color`` and ``…_color`` always do.
-        accept: Takes other objects than numbers.
+        reserved: Names of parameters that the author does not set.
+        colors: Parameters that accept "#rrggbb"; ``color`` and ``…_color`` always do.
+        accept: Accepts objects that are not numbers.
 
     Raises:
-        SceneTypeError: Something unknown, missing, twice, too many, or of another kind.
-        SceneValueError: A number is not finite, beyond its limit, or does not go with the others.
+        SceneTypeError: An argument is unknown, missing, passed twice, surplus, or of the wrong
+            type.
+        SceneValueError: A number is not finite, is beyond its limit, or contradicts others.
     """
     binding = _ArgumentBinding(_number_slots(functions, reserved), what, place, accept is not None)
     binding.take_keywords(kwargs)
@@ -153,14 +155,14 @@ def arguments(
 
 
 def takes_color(name: str, colors: Collection[str]) -> bool:
-    """Whether a parameter takes "#rrggbb": it is named so, or among ``colors``."""
+    """Return whether a parameter accepts "#rrggbb": by its name, or because ``colors`` has it."""
     return name in colors or name == "color" or name.endswith("_color")
 
 
 def _number_slots(
     functions: Func | Iterable[Func], reserved: Collection[str]
 ) -> tuple[FunctionParameter, ...]:
-    """The parameters of all functions that are numbers or choices, each name once."""
+    """Return the parameters of all functions that are numbers or choices, each name once."""
     found: dict[str, FunctionParameter] = {}
     for func in (functions,) if isinstance(functions, Func) else functions:
         for slot in slots_of(func):
@@ -205,7 +207,7 @@ def _value(given: Any, asked: Asked, accept: Accept | None) -> Given:
 
 @dataclass(slots=True)
 class _ArgumentBinding:
-    """Which argument belongs to which parameter."""
+    """The assignment of arguments to parameters."""
 
     slots: tuple[FunctionParameter, ...]
     what: str
@@ -222,7 +224,7 @@ class _ArgumentBinding:
     # By name
 
     def take_keywords(self, kwargs: Mapping[str, Any]) -> None:
-        """Sort out what was given by name."""
+        """Assign the arguments by name."""
         names = {s.name for s in self.slots}
         vectors = [s for s in self.slots if s.is_vector]
         parts: dict[str, Any] = {}
@@ -249,7 +251,7 @@ class _ArgumentBinding:
     # By position
 
     def take_positional(self, args: Sequence[Any]) -> None:
-        """Sort out what was given by position."""
+        """Assign the arguments by position."""
         left = list(args)
         for slot in self.slots:
             if not left:
@@ -277,7 +279,7 @@ class _ArgumentBinding:
             self._wrong(message, hint)
 
     def _gathered(self, slot: FunctionParameter, left: Sequence[Any]) -> int:
-        """How many scalars give a vector: its size, or 0 where it is given whole."""
+        """Return how many scalars make up a vector; 0 if it is passed as one value."""
         size = _size(slot)
         scalars = 0
         while scalars < min(size, len(left)) and is_scalar(left[scalars]):
@@ -296,7 +298,7 @@ class _ArgumentBinding:
         )
 
     def value_of(self, slot: FunctionParameter) -> Any:
-        """What a parameter was given, or its default."""
+        """Return the argument of a parameter, or its default."""
         if slot.name in self.given:
             return self.given[slot.name]
         if slot.default is MISSING:
@@ -310,7 +312,7 @@ def _size(slot: FunctionParameter) -> int:
 
 
 def _parts_of_default(slot: FunctionParameter) -> tuple[Any, ...]:
-    """What the parts are that nobody gave: the default's, else those that change nothing."""
+    """Return the components for those not passed: the default's, or neutral ones."""
     size = _size(slot)
     if slot.default is MISSING:
         return (1.0 if slot.name in ("factor", "factors", "scale") else 0.0,) * size
@@ -335,7 +337,7 @@ def _check_together(
 
 
 def _plain(value: Given) -> Any:
-    """The value for a requirement: itself, or a slider's default; None where it is computed."""
+    """Return the value for a requirement: a parameter's default, or None if it is computed."""
     if not isinstance(value, Number):
         return value
     if value.plain is not None:

@@ -1,8 +1,8 @@
-"""A scene function together with its arguments: patterns, materials, lights, cameras.
+"""Calls of scene functions with their arguments: patterns, materials, lights, cameras.
 
-Input: a function and checked values, which may be such calls themselves (a material whose
-colour is a pattern). Output: on request, the call as an expression of the IR. Knows nothing
-of what the function means.
+Input: a function and checked values, which may be such calls themselves (a material whose colour is
+a pattern). Output: on request, the call as an expression of the IR. Does not depend on what the
+function computes.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ from distal.scene.tree.conversion import Number
 
 
 class Composer(Protocol):
-    """What emits values into a program: anything that has the program's assembly."""
+    """An object that adds values to a program: any object with the program's assembly."""
 
     @property
     def assembly(self) -> Assembly:
-        """Where functions, numbers and resources are added."""
+        """The assembly to which functions, numbers and resources are added."""
         ...
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class FunctionCall(Immutable):
-    """A scene function and its values.
+    """A scene function and its arguments.
 
     Attributes:
-        what: What messages call it, and the stem of its numbers' names in emitted text.
+        what: The name in messages, and the stem of the numbers' names in emitted text.
         func: The function. Its other parameters come from the place where it is evaluated.
-        values: By parameter: numbers, choices, textures, buffers, or something that emits.
-        place: Where the author made it.
+        values: The values by parameter: numbers, choices, textures, buffers, or objects that emit.
+        place: The author's line.
     """
 
     what: str
@@ -52,14 +52,14 @@ class FunctionCall(Immutable):
     place: Span | None = None
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
-        """The call, where ``site`` has what the function may ask for besides its values."""
+        """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
         given = dict(site)
         for name, value in self.values.items():
             given[name] = self._emitted(composer, site, name, value)
         return composer.assembly.call(self.func, given)
 
     def value(self, composer: Composer, name: str) -> Expr:
-        """One of its values, as the call gets it."""
+        """Emit one of the call's values."""
         return self._emitted(composer, {}, name, self.values[name])
 
     def _emitted(self, composer: Composer, site: Mapping[str, Expr], name: str, value: Any) -> Expr:
@@ -68,7 +68,7 @@ class FunctionCall(Immutable):
         if not isinstance(value, Number | TextureValue | Buffer):
             nested: Expr = value.emit(composer, site)
             return nested
-        # What is read at several places, or by several functions, is one number of the program.
+        # A value that several places or functions read is one number of the program.
         made = composer.assembly.made
         key = (FunctionCall, id(value))
         if key not in made:
@@ -76,24 +76,24 @@ class FunctionCall(Immutable):
             made[key] = (
                 value,
                 expression_of(composer.assembly, value, stem),
-            )  # alive, so the id stays
+            )  # kept alive, so that its id is not reused
         found: Expr = made[key][1]
         return found
 
     @property
     def uses(self) -> frozenset[str]:
-        """Which of "p", "n", "cell" it needs, itself or for its values."""
+        """Which of "p", "n", "cell" the call or its values depend on."""
         own = {slot.name for slot in slots_of(self.func)} - set(self.values)
         nested = (value.uses for value in self.values.values() if hasattr(value, "uses"))
         return PLACE_NAMES & own.union(*nested)
 
     @property
     def result(self) -> Type | None:
-        """What the function says it gives; None where only a call decides."""
+        """The type that the function's signature declares; None if each call decides it."""
         return result_of(self.func)
 
     def functions(self) -> Iterator[Func]:
-        """The functions that it and its values call."""
+        """Yield the scene functions that the call and its values need."""
         yield self.func
         for value in self.values.values():
             if hasattr(value, "functions"):
@@ -101,7 +101,7 @@ class FunctionCall(Immutable):
 
 
 def result_of(func: Func) -> Type | None:
-    """The type that a function's first line says it gives, or None."""
+    """Return the result type that a function's signature declares, or None."""
     result = read_signature(func.overloads[0]).result
     if result is MISSING:
         return None
@@ -112,7 +112,16 @@ def result_of(func: Func) -> Type | None:
 
 
 def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, stem: str) -> Expr:
-    """A value in a program: a uniform of its own, the author's expression, a resource."""
+    """Return a value as an expression of a program.
+
+    A constant number becomes a uniform, an expression of the author stays one, and a texture or
+    buffer becomes a resource.
+
+    Args:
+        assembly: The program.
+        value: The value.
+        stem: The stem of the name of the uniform or resource.
+    """
     if not isinstance(value, Number):
         return assembly.resource(value, stem)
     if isinstance(value.value, Expression):
@@ -125,9 +134,9 @@ def _identifier(what: str) -> str:
 
 
 class Pattern(FunctionCall):
-    """A colour (vec3) or an amount (float) that differs from place to place on a surface.
+    """A colour (vec3) or an amount (float) that varies over a surface.
 
-    It stands wherever a material takes a colour or a number.
+    A material accepts it instead of a colour or a number.
     """
 
     __slots__ = ()

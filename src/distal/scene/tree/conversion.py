@@ -30,17 +30,17 @@ Plain: TypeAlias = "float | tuple[float, ...]"
 
 _OF_ARRAYS: Final = {TEXTURE_2D: Texture2D, TEXTURE_3D: Texture3D}
 _WORDS: Final = {2: "two", 3: "three", 4: "four"}
-# A direction written with six digits counts as one of length 1.
+# A direction written with six digits is accepted as having length 1.
 _UNIT_TOLERANCE: Final = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A float or a vector of floats among a scene object's arguments.
+    """A float or a vector of floats among the arguments of a scene object.
 
     Attributes:
         type: float, vec2, vec3 or vec4.
-        value: Plain numbers, or an expression of this type.
+        value: Constant numbers, or an expression of this type.
     """
 
     type: Type
@@ -48,26 +48,27 @@ class Number:
 
     @property
     def plain(self) -> Plain | None:
-        """The value where it is known now, else None."""
+        """The value if it is constant, else None."""
         return None if isinstance(self.value, Expression) else self.value
 
     def may_exceed(self, low: float) -> bool:
-        """Whether a component is, or may become, larger than ``low``."""
+        """Return whether a component is, or may become, larger than ``low``."""
         known = self.plain
         return known is None or any(c > low for c in components(known))
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a value is for: what messages call it, what it must be.
+    """The parameter that a value is for: its name in messages, its type and its limits.
 
     Attributes:
-        name: The parameter: "radius".
-        what: What is being made: "Sphere".
-        type: The type the scene function wants.
-        limit: What each number must be.
-        is_color: Whether "#rrggbb" and one number (a grey) are understood, and no part is negative.
-        splats: Whether one number stands for all components.
+        name: The name of the parameter: "radius".
+        what: The name of the object that is made: "Sphere".
+        type: The type of the scene function's parameter.
+        limit: The limit of each number.
+        is_color: Whether "#rrggbb" and a single number (a grey) are accepted, and components must
+            not be negative.
+        splats: Whether one number sets all components.
         place: The author's line.
     """
 
@@ -81,16 +82,16 @@ class Asked:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name in messages."""
         return f"{self.name} of {self.what}"
 
 
 def number(value: Any, asked: Asked) -> Number:
-    """A float or vector.
+    """Convert a value to a float or a vector.
 
     Raises:
-        SceneTypeError: It is no number, or not as many as asked for.
-        SceneValueError: It is not finite, or beyond the limit.
+        SceneTypeError: The value is not a number, or has the wrong number of components.
+        SceneValueError: A number is not finite, or is beyond its limit.
     """
     value = unwrapped(value)
     if asked.type is FLOAT:
@@ -103,11 +104,11 @@ def number(value: Any, asked: Asked) -> Number:
 
 
 def choice(value: Any, asked: Asked) -> int | bool:
-    """A count or a switch, fixed when the scene is compiled.
+    """Convert a value to an int or a bool that is fixed when the scene is compiled.
 
     Raises:
-        SceneTypeError: It is of another kind, or changes after the scene is compiled.
-        SceneValueError: It is beyond the limit.
+        SceneTypeError: The value has the wrong type, or can change after the scene is compiled.
+        SceneValueError: The value is beyond its limit.
     """
     value = unwrapped(value)
     if isinstance(value, Symbolic):
@@ -125,11 +126,11 @@ def choice(value: Any, asked: Asked) -> int | bool:
 
 
 def resource(value: Any, asked: Asked) -> TextureValue | Buffer:
-    """A texture or a buffer: an object of that kind, a picture's file, or a list of points.
+    """Convert a value to a texture or a buffer: a resource, a picture's file, or a list of points.
 
     Raises:
-        SceneTypeError: It is of another kind.
-        SceneValueError: It is empty, or holds what is not finite.
+        SceneTypeError: The value has the wrong type.
+        SceneValueError: The value is empty, or contains numbers that are not finite.
     """
     if isinstance(asked.type, Texture):
         return _texture(value, asked, asked.type)
@@ -138,7 +139,7 @@ def resource(value: Any, asked: Asked) -> TextureValue | Buffer:
 
 
 def unwrapped(value: Any) -> Any:
-    """NumPy's scalars and arrays, and vectors, as plain numbers and tuples."""
+    """Convert NumPy scalars, arrays and vectors to plain numbers and tuples."""
     if isinstance(value, VectorValue):
         return tuple(value)
     convert: Callable[[], object] | None = getattr(value, "tolist", None)
@@ -146,7 +147,7 @@ def unwrapped(value: Any) -> Any:
 
 
 def is_scalar(value: Any) -> bool:
-    """Whether a value is one number, known now or not."""
+    """Return whether a value is one number, constant or computed."""
     value = unwrapped(value)
     if isinstance(value, Symbolic):
         return isinstance(value.as_expression().node.type, Scalar)
@@ -156,7 +157,7 @@ def is_scalar(value: Any) -> bool:
 
 
 def components(value: Plain) -> tuple[float, ...]:
-    """The floats of a plain number."""
+    """Return the floats of a constant number."""
     return value if isinstance(value, tuple) else (value,)
 
 
@@ -229,12 +230,12 @@ def _refuse_vector(value: Any, asked: Asked, type: Vector) -> None:
 
 
 def type_name(value: object) -> str:
-    """What messages call a value's type."""
+    """Return the name of a value's type for messages."""
     return type(value).__name__
 
 
 def _gathered(parts: Sequence[Component], type: Vector) -> Number:
-    """A vector of numbers, of which some may be expressions."""
+    """Return a vector of numbers, some of which may be expressions."""
     plain = tuple(p for p in parts if not isinstance(p, Expression))
     if len(plain) == len(parts):
         return Number(type, plain)
@@ -260,7 +261,7 @@ def _check_limit(made: Number, asked: Asked) -> None:
     assert isinstance(made.value, Expression)
     node, parameters = made.value.node, made.value.parameters
     if len(parameters) != 1 or not isinstance(node, Uniform):
-        return  # a computed value: what it may become is not known here
+        return  # a computed value: its range is not known here
     _check_parameter(parameters[0], asked)
 
 
@@ -303,7 +304,7 @@ def _reach(end: str) -> str:
 
 
 def complaint(known: Plain, limit: Limit) -> str | None:
-    """What a number must be that this one is not, or None."""
+    """Return the limit that a number violates, in words, or None."""
     parts = components(known)
     match limit:
         case Limit.POSITIVE:
@@ -332,7 +333,7 @@ def _direction_hint(known: Plain, limit: Limit) -> str | None:
 
 
 def shown(known: Plain) -> str:
-    """A number as an author writes it."""
+    """Return a number as an author writes it."""
     if isinstance(known, tuple):
         return f"({', '.join(f'{c:.6g}' for c in known)})"
     return f"{known:.6g}"
@@ -357,7 +358,7 @@ def _texture(value: Any, asked: Asked, type: Texture) -> TextureValue:
 
 
 def beside(value: str | os.PathLike[str], place: Span | None) -> str | os.PathLike[str]:
-    """The path of a file in the folder of the author's file, if there is one; else the name."""
+    """Return a file's path in the folder of the author's file if it exists there, else the name."""
     if place is None:
         return value
     candidate = os.path.join(os.path.dirname(os.path.abspath(place.file)), os.fspath(value))

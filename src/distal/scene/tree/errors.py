@@ -1,8 +1,8 @@
-"""Errors in how a scene object is made, at the author's own line.
+"""Errors in the construction of a scene object, reported at the author's line.
 
-Input: what is wrong, a hint, and where (by default the innermost call outside this
-package). Output: an exception that prints as every other mistake in a scene does, and that
-``except ValueError`` or ``except TypeError`` catches as Python's own.
+Input: a message, a hint, and a place (by default the innermost call outside this package). Output:
+an exception that is printed like every other error in a scene, and that ``except ValueError`` or
+``except TypeError`` catches.
 """
 
 from __future__ import annotations
@@ -14,15 +14,20 @@ from distal.scene.tree.source_places import author_place
 
 
 class SceneValueError(CompileError, ValueError):
-    """A value that a scene object cannot take."""
+    """A scene object does not accept this value."""
 
 
 class SceneTypeError(CompileError, TypeError):
-    """A thing of another kind than a scene object takes."""
+    """A scene object does not accept a value of this type."""
 
 
 def refuse(message: str, hint: str | None = None, place: Span | None = None) -> NoReturn:
-    """Refuse a value.
+    """Raise an error about a value.
+
+    Args:
+        message: What is wrong.
+        hint: What to write instead.
+        place: The author's line; the innermost call outside this package by default.
 
     Raises:
         SceneValueError: Always.
@@ -31,7 +36,7 @@ def refuse(message: str, hint: str | None = None, place: Span | None = None) -> 
 
 
 def refuse_kind(message: str, hint: str | None = None, place: Span | None = None) -> NoReturn:
-    """Refuse a thing that is not of the kind asked for.
+    """Raise an error about a value of the wrong type; arguments as for ``refuse``.
 
     Raises:
         SceneTypeError: Always.

@@ -1,4 +1,4 @@
-"""The tree behind a shape: primitives and operators with their numbers.
+"""The tree of nodes behind a shape: primitives and operators with their numbers.
 
 Input: primitives and operators of the field library, checked numbers, other nodes. Output:
 immutable nodes that ``scene.lowering`` turns into functions. A node records where the author wrote
@@ -21,19 +21,20 @@ Rule: TypeAlias = Primitive | Operator
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Node:
-    """One shape in a tree.
+    """A node of the tree: one shape.
 
     Attributes:
-        rule: Its primitive or operator.
-        flat: Whether it lies in the plane.
-        children: What an operator works on.
-        numbers: Values of the rule's floats and vectors, by name.
+        rule: The primitive or operator.
+        flat: Whether the shape lies in the plane.
+        children: The shapes that an operator is applied to.
+        numbers: Values of the floats and vectors, by name.
         constants: Choices (counts, switches), textures and buffers, by name.
-        place: Where the author made it.
-        material: What paints it and everything in it, or None.
-        cut_material: What the faces show that it cuts into other shapes, or None.
-        label: What the author calls it, or "".
-        parts: Number of primitives that one distance evaluates; one evaluated twice counts twice.
+        place: The author's line.
+        material: The material of this node and everything below it, or None.
+        cut_material: The material of faces that this node cuts into other shapes, or None.
+        label: The author's name for the shape, or "".
+        parts: Number of primitives evaluated for one distance; a primitive evaluated twice counts
+            twice.
     """
 
     rule: Rule
@@ -53,12 +54,12 @@ class Node:
 
     @property
     def name(self) -> str:
-        """The author's name for it, else the rule's."""
+        """The author's name for the shape, else that of the primitive or operator."""
         return self.label or self.rule.name
 
     @property
     def claims(self) -> frozenset[Guarantee]:
-        """Its guarantees besides the bound on its slope."""
+        """The guarantees besides the bound on the slope."""
         rule = self.rule
         if isinstance(rule, Primitive):
             return rule.claims
@@ -68,20 +69,20 @@ class Node:
 
     @property
     def signed(self) -> bool:
-        """Whether it has an inside."""
+        """Whether the shape has an inside."""
         if isinstance(self.rule, Primitive):
             return self.rule.signed
         return all(child.signed for child in self.children) or bool(self.rule.finish)
 
     @property
     def estimate(self) -> bool:
-        """Whether its slope is an estimate (fractals)."""
+        """Whether the slope is an estimate (fractals)."""
         if isinstance(self.rule, Primitive):
             return self.rule.estimate
         return any(child.estimate for child in self.children)
 
     def walk(self) -> Iterator[Node]:
-        """This node and all below, each once, parents first."""
+        """Yield this node and all below it, each once, parents first."""
         seen: set[int] = set()
         stack = [self]
         while stack:
@@ -92,7 +93,7 @@ class Node:
                 stack.extend(reversed(node.children))
 
     def functions(self) -> Iterator[Func]:
-        """The functions that it and everything in it call."""
+        """Yield the scene functions that this node and all below it call."""
         for node in self.walk():
             rule = node.rule
             if isinstance(rule, Primitive):

@@ -1,8 +1,9 @@
-"""The place in the author's source where a scene object is made.
+"""The line of the author's source where a scene object is made.
 
-Input: the running frames. Output: a ``Span`` of the innermost call outside this
-package (examples are outside). Called for every shape, light and material, so that a mistake found
-later still points at the line; a place costs a microsecond or two, not a look at the file.
+Input: the running frames. Output: a ``Span`` of the innermost call outside this package (examples
+count as outside). Called for every shape, light and material, so that a mistake that is found later
+is still reported at the right line. A call takes one or two microseconds and does not read the
+file.
 """
 
 from __future__ import annotations
@@ -18,20 +19,21 @@ from typing import Final, TypeAlias
 import distal
 from distal.diagnostics import Span
 
-# First and last line, first and last column in bytes of UTF-8; None where Python kept none.
+# First and last line, first and last column in bytes of UTF-8; None if Python did not record it.
 _Position: TypeAlias = tuple[int | None, int | None, int | None, int | None]
 
 _PACKAGE: Final = os.path.dirname(os.path.abspath(distal.__file__)) + os.sep
 _GALLERY: Final = os.path.join(_PACKAGE, "gallery") + os.sep
-# A scene of a thousand lines has a table of 100 kB; a few codes take turns, as loops call helpers.
+# The table of a scene of a thousand lines takes 100 kB; a few code objects are enough, because
+# loops call few functions.
 _REMEMBERED: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
 class _CodeText:
-    """What is known of a code object: where each instruction stands, and the file's lines."""
+    """Cached facts about a code object: the position of each instruction, the file's lines."""
 
-    code: CodeType  # kept alive: it is known by its id
+    code: CodeType  # kept alive, so that its id is not reused
     positions: tuple[_Position, ...]
     lines: Sequence[str]
 
@@ -41,7 +43,7 @@ _inside: dict[str, bool] = {}
 
 
 def author_place() -> Span | None:
-    """The innermost call outside this package, or None where there is none."""
+    """Return the innermost call outside this package, or None if there is none."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None and _is_inside(frame):
         frame = frame.f_back
@@ -53,8 +55,8 @@ def _is_inside(frame: FrameType) -> bool:
     found = _inside.get(file)
     if found is None:
         if file.startswith("<"):
-            # Code made at run time, as dataclasses do, belongs to whose globals it has; one name
-            # ("<string>") stands for many files, so nothing is remembered.
+            # Code made at run time (by dataclasses, for example) belongs to the module of its
+            # globals; the name "<string>" is not unique, so it is not cached.
             module = str(frame.f_globals.get("__name__", ""))
             return module.partition(".")[0] == "distal"
         path = os.path.abspath(file)
@@ -65,7 +67,7 @@ def _is_inside(frame: FrameType) -> bool:
 
 def _span(frame: FrameType) -> Span:
     text = _text(frame)
-    index = frame.f_lasti // 2  # one position for each unit of two bytes
+    index = frame.f_lasti // 2  # one position for each two bytes of bytecode
     known: _Position = (None, None, None, None)
     if 0 <= index < len(text.positions):
         known = text.positions[index]
@@ -84,7 +86,7 @@ def _text(frame: FrameType) -> _CodeText:
     code = frame.f_code
     found = _texts.get(id(code))
     if found is None:
-        # A file edited and loaded again in one process must not show its old lines.
+        # If a file is edited and loaded again in one process, its new lines must be shown.
         linecache.checkcache(code.co_filename)
         lines = linecache.getlines(code.co_filename, frame.f_globals)
         if len(_texts) >= _REMEMBERED:
@@ -94,7 +96,7 @@ def _text(frame: FrameType) -> _CodeText:
 
 
 def _characters(line: str, column: int) -> int:
-    """A column in characters, of one in bytes of UTF-8."""
+    """Convert a column in bytes of UTF-8 to a column in characters."""
     if line.isascii():
         return min(column, len(line))
     return len(line.encode()[:column].decode(errors="ignore"))

@@ -1,7 +1,7 @@
-"""The numbers of a tree as expressions, and the statements they go into.
+"""The numbers of a tree as IR expressions, and lists of IR statements.
 
-Input: nodes with checked numbers. Output: a uniform for each float, the author's
-expression where one was given, constants for choices.
+Input: nodes with checked numbers. Output: a uniform for each constant float, the author's
+expression if there is one, constants for choices.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from distal.scene.tree.node import Node, Rule
 
 @dataclass(slots=True)
 class StatementList:
-    """The statements of a function in the making."""
+    """The statements of a function under construction."""
 
     statements: list[Stmt] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
 
     def let(self, stem: str, value: Expr) -> Expr:
-        """Name a value."""
+        """Add a named value and return the expression that reads it."""
         if isinstance(value, Read):
             return value
         name, n = stem, 2
@@ -39,16 +39,16 @@ class StatementList:
 
 
 class Values:
-    """The numbers of one program's nodes; each node's become expressions once."""
+    """The numbers of one program's nodes; each node's numbers become expressions once."""
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly = assembly
         self._own: dict[int, tuple[Expr, ...]] = {}
         self._all: dict[int, tuple[Expr, ...]] = {}
-        self._alive: list[Node] = []  # what is known by its id must stay
+        self._alive: list[Node] = []  # keys are ids, so the nodes must stay alive
 
     def own(self, node: Node) -> tuple[Expr, ...]:
-        """The values of a node's own numbers."""
+        """Return the values of a node's own numbers."""
         found = self._own.get(id(node))
         if found is None:
             stem = plain_name(node.name)
@@ -61,7 +61,7 @@ class Values:
         return found
 
     def all(self, node: Node) -> tuple[Expr, ...]:
-        """The values of all numbers of a subtree: its own, then its children's."""
+        """Return the values of all numbers of a subtree: the node's own, then its children's."""
         found = self._all.get(id(node))
         if found is None:
             parts = list(self.own(node))
@@ -73,7 +73,7 @@ class Values:
     def split(
         self, node: Node, values: Sequence[Expr]
     ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
-        """A subtree's numbers as the node's own by name, and those of each child."""
+        """Split a subtree's values into the node's own, by name, and those of each child."""
         own = dict(zip(node.numbers, values, strict=False))
         shares, at = [], len(own)
         for child in node.children:
@@ -85,13 +85,13 @@ class Values:
     def complete(
         self, rule: Rule, own: Mapping[str, Expr], constants: Mapping[str, Any], stem: str
     ) -> dict[str, Expr]:
-        """All that a rule's functions take of its own: numbers, constants, what follows from them.
+        """Return all values that a rule's functions take: numbers, constants and derived values.
 
         Args:
             rule: The primitive or operator.
-            own: Its numbers, by name.
-            constants: Its choices, textures and buffers, by name.
-            stem: The start of the names that resources get.
+            own: The numbers, by name.
+            constants: The choices, textures and buffers, by name.
+            stem: The start of the names of resources.
         """
         given = {**own, **self._constants(constants, stem)}
         if isinstance(rule, Operator):
@@ -101,7 +101,7 @@ class Values:
         return given
 
     def _constants(self, constants: Mapping[str, Any], stem: str) -> dict[str, Expr]:
-        """Choices, textures and buffers as expressions; resources are named after ``stem``."""
+        """Return choices, textures and buffers as expressions; resources are named by ``stem``."""
         made: dict[str, Expr] = {}
         for name, value in constants.items():
             if isinstance(value, TextureValue | Buffer):
@@ -116,5 +116,5 @@ class Values:
 
 
 def plain_name(name: str) -> str:
-    """A name as an identifier of small letters."""
+    """Return a name as an identifier in lower case."""
     return "".join(c if c.isalnum() else "_" for c in name).strip("_").lower() or "shape"

@@ -1,1 +1,1 @@
-"""One interface to everything that can be viewed, and how a person moves its camera."""
+"""One interface to everything that can be viewed, and the movement of cameras by a person."""

@@ -1,9 +1,9 @@
-"""What gestures do to a camera, a time and a slider: the same in windows, pages and notebooks.
+"""The effect of gestures on a camera, a time and a slider, for windows, pages and notebooks.
 
-Input: movements in parts of the picture's height, notches of a wheel, steps, positions.
-Output: numbers. ``tools/gen_player.py`` translates this module to TypeScript for the page's
-player: it is written in the part of Python which that tool knows, and a test holds both together.
-Knows no window and no page.
+Input: movements as fractions of the picture's height, notches of a wheel, steps, positions. Output:
+numbers. ``tools/gen_player.py`` translates this module to TypeScript for the page's player, so it
+is written in the subset of Python that this tool supports; a test compares the results. Does not
+depend on windows or pages.
 """
 
 from __future__ import annotations
@@ -16,47 +16,53 @@ from distal.lang.number_text import fixed, precise
 
 # The camera
 
-# A drag over the picture's height turns half around: the far side comes within one drag.
+# A drag over the picture's height rotates by half a turn, so one drag shows the far side.
 TURN_PER_HEIGHT: Final = math.pi
-# At the poles "right" has no direction; so near them nothing is seen to be missing.
+# Limit of the elevation: at the poles the direction "right" is undefined.
 HIGHEST: Final = math.pi / 2.0 - 0.02
-# Pan counts half heights.
+# The unit of pan is half the picture's height.
 PAN_PER_HEIGHT: Final = 2.0
 FARTHEST_PAN: Final = 1000.0
 NEAREST: Final = 0.015625
 FARTHEST: Final = 64.0
 ZOOM_PER_NOTCH: Final = 1.15
-# A touch pad's burst may carry hundreds: one event does no more than this.
+# Limit for one event: a touch pad may send hundreds of notches at once.
 MOST_NOTCHES: Final = 10.0
 # A wheel's notch is 100 pixels, or 3 lines, or a quarter of a page.
 NOTCHES_PER_UNIT: Final = (0.01, 1.0 / 3.0, 4.0)
-# A pinch on a touch pad arrives as a wheel with ctrl, in small steps.
+# Browsers send a pinch on a touch pad as wheel events with ctrl, in small steps.
 NOTCHES_PER_PINCH: Final = 7.0
-# An arrow key's turn or way, in picture heights.
+# Movement by an arrow key, in picture heights.
 ARROW: Final = 1.0 / 24.0
 
 
 def clamped(value: float, low: float, high: float) -> float:
-    """The nearest number within a range."""
+    """Return the nearest number within a range."""
     return min(max(value, low), high)
 
 
 def whole(value: float) -> float:
-    """The nearest whole number; halves go up."""
+    """Return the nearest whole number; halves are rounded up."""
     return math.floor(value + 0.5)
 
 
 def turned(yaw: float, right: float) -> float:
-    """The yaw after a drag to the right: the scene follows the hand, the eye goes against it."""
+    """Return the yaw after a drag to the right: the eye moves in the opposite direction."""
     moved = yaw - TURN_PER_HEIGHT * right
     full = 2.0 * math.pi
     return moved - full * whole(moved / full)
 
 
 def raised(pitch: float, down: float, elevation: float) -> float:
-    """The pitch after a drag downward; with the camera's own elevation it stays off the poles.
+    """Return the pitch after a drag downwards.
 
-    A camera that starts beyond them goes no further.
+    The camera's elevation plus the pitch is kept away from the poles. A camera that starts beyond
+    the limit moves no further.
+
+    Args:
+        pitch: Pitch before the drag, in radians.
+        down: Length of the drag, in picture heights.
+        elevation: The camera's own elevation, in radians.
     """
     low = min(-HIGHEST - elevation, 0.0)
     high = max(HIGHEST - elevation, 0.0)
@@ -64,22 +70,22 @@ def raised(pitch: float, down: float, elevation: float) -> float:
 
 
 def dragged(pan: float, way: float) -> float:
-    """One of pan's numbers after a drag along its axis."""
+    """Return one component of pan after a drag along its axis."""
     return clamped(pan + PAN_PER_HEIGHT * way, -FARTHEST_PAN, FARTHEST_PAN)
 
 
 def zoomed(zoom: float, factor: float) -> float:
-    """The zoom times a factor."""
+    """Return the zoom multiplied by a factor."""
     return clamped(zoom * factor, NEAREST, FARTHEST)
 
 
 def notched(zoom: float, notches: float) -> float:
-    """The zoom after so many notches of a wheel; farther where they are positive."""
+    """Return the zoom after a number of wheel notches; a positive number moves the camera away."""
     return zoomed(zoom, ZOOM_PER_NOTCH ** clamped(notches, -MOST_NOTCHES, MOST_NOTCHES))
 
 
 def notches_of(delta: float, unit: int, is_pinch: bool) -> float:
-    """The notches of a wheel event: its way in pixels (unit 0), lines (1) or pages (2)."""
+    """Return the notches of a wheel event whose unit is pixels (0), lines (1) or pages (2)."""
     return delta * NOTCHES_PER_UNIT[unit] * (NOTCHES_PER_PINCH if is_pinch else 1.0)
 
 
@@ -93,7 +99,10 @@ SPEEDS: Final = (0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
 def advanced(time: float, passed: float, start: float, duration: float | None) -> float:
-    """The time after so many seconds: a loop begins anew, an endless time ends at last."""
+    """Return the time after ``passed`` seconds.
+
+    A loop restarts at its end; a time without a duration stops at ``LATEST_S``.
+    """
     if duration is None:
         return min(time + passed, max(time, LATEST_S))
     past = time + passed - start
@@ -101,12 +110,15 @@ def advanced(time: float, passed: float, start: float, duration: float | None) -
 
 
 def first_time(start: float, duration: float | None) -> float:
-    """The earliest time that a hand reaches: 0, or where the time starts before it, or the loop."""
+    """Return the earliest time that a person can choose: the smaller of 0 and ``start``.
+
+    In a loop it is ``start``.
+    """
     return min(start, 0.0) if duration is None else start
 
 
 def last_time(time: float, start: float, duration: float | None) -> float:
-    """The right end of the time's strip: ten seconds, doubled until the time is on it."""
+    """Return the right end of the timeline: ten seconds, doubled until the time is within it."""
     if duration is not None:
         return start + duration
     low = first_time(start, duration)
@@ -117,18 +129,18 @@ def last_time(time: float, start: float, duration: float | None) -> float:
 
 
 def jumped(time: float, start: float, duration: float | None) -> float:
-    """The nearest time that a hand reaches."""
+    """Return the nearest time that a person can choose."""
     high = LATEST_S if duration is None else start + duration
     return clamped(time, first_time(start, duration), high)
 
 
 def index_at(time: float) -> float:
-    """The frame's number: by time, so that a paused one can be made again."""
+    """Return the frame number of a time, so that a paused frame can be reproduced."""
     return whole(time * FRAMES_PER_S)
 
 
 def speed_after(speed: float, steps: int) -> float:
-    """The speed so many of the offered ones up or down."""
+    """Return the speed some steps up or down in the list of speeds."""
     at = 0
     for i in range(len(SPEEDS)):
         if SPEEDS[i] <= speed:
@@ -138,20 +150,28 @@ def speed_after(speed: float, steps: int) -> float:
 
 # Sliders
 
-# About as many as a hand can tell apart, where a slider has no steps.
+# Number of positions of a slider without steps; about as many as a person can distinguish.
 POSITIONS: Final = 200.0
-# Of a point's coordinate.
+# Step of a point's coordinate.
 POINT_STEP: Final = 0.05
 
 
 def position_count(low: float, high: float, step: float | None) -> float:
-    """The positions of a slider: it runs from 0 to this number."""
-    # A step that does not divide the range leaves a last, shorter one, so that the end is reached.
+    """Return the number of the last position of a slider, which starts at 0."""
+    # If the step does not divide the range, the last step is shorter and ends at the limit.
     return POSITIONS if step is None else float(math.ceil((high - low) / step - 1e-6))
 
 
 def position_of(value: float, low: float, high: float, step: float | None, log: bool) -> float:
-    """Where a slider stands for a value."""
+    """Return the position of a slider for a value.
+
+    Args:
+        value: The value.
+        low: Start of the range.
+        high: End of the range.
+        step: The slider's step, or None.
+        log: Whether the slider is logarithmic.
+    """
     count = position_count(low, high, step)
     inside = clamped(value, low, high)
     if inside == high:
@@ -164,9 +184,17 @@ def position_of(value: float, low: float, high: float, step: float | None, log: 
 def value_at(
     position: float, low: float, high: float, step: float | None, log: bool, usual: float
 ) -> float:
-    """The value for which a slider stands; the ends are the range's to the last bit.
+    """Return the value at a position of a slider; the ends are exactly those of the range.
 
-    Where the slider has no steps, the position that is nearest to the default stands for it.
+    If the slider has no steps, the position nearest to the default stands for the default.
+
+    Args:
+        position: The position, from 0.
+        low: Start of the range.
+        high: End of the range.
+        step: The slider's step, or None.
+        log: Whether the slider is logarithmic.
+        usual: The default.
     """
     count = position_count(low, high, step)
     if position <= 0.0:
@@ -185,5 +213,5 @@ def value_at(
 
 
 def rounded(value: float, unit: float) -> float:
-    """A number without the digits far below ``unit``: 0.1 + 0.2 is 0.3."""
+    """Round away the digits far below ``unit``: 0.1 + 0.2 becomes 0.3."""
     return fixed(value, int(clamped(3.0 - math.floor(math.log10(unit)), 0.0, 20.0)))

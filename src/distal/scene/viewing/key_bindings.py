@@ -1,7 +1,7 @@
-"""Which key means what, in windows, pages and notebooks, and how the help says it.
+"""Keys and their actions in windows, pages and notebooks, with the text of the help.
 
-Input: nothing. Output: tables; ``tools/gen_player.py`` copies those of pages to
-TypeScript. Does nothing itself.
+Input: nothing. Output: tables; ``tools/gen_player.py`` copies those of pages to TypeScript. Has no
+behaviour.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ class Binding:
     """The keys of an action.
 
     Attributes:
-        action: Its name.
-        keys: Typed characters, or the names of keys as browsers have them; a small letter means
-            the capital too, unless that has an action of its own.
-        in_page: Whether pages and notebooks have it; what concerns a window they leave alone.
-        window_keys: Further keys of windows, which a browser needs itself.
+        action: The name of the action.
+        keys: Typed characters, or names of keys as in browsers. A small letter includes the
+            capital, unless the capital has an action.
+        in_page: Whether pages and notebooks have the action; those of windows only do not.
+        window_keys: Further keys in windows, which a browser uses itself.
     """
 
     action: str
@@ -33,14 +33,14 @@ BINDINGS: Final = (
     Binding("right", ("ArrowRight",)),
     Binding("up", ("ArrowUp",)),
     Binding("down", ("ArrowDown",)),
-    # Where plus and underscore need shift, so that either hand's habit is right.
+    # Plus and underscore need shift on many keyboards; accept the keys with and without it.
     Binding("nearer", ("+", "=")),
     Binding("farther", ("-", "_")),
     Binding("reset_camera", ("r",)),
     Binding("pause", (" ",)),
     Binding("back", (",",)),
     Binding("forth", (".",)),
-    # The same two keys with shift, on American and on European keyboards.
+    # These keys with shift, on American and on European keyboards.
     Binding("frame_back", ("<", ";")),
     Binding("frame_forth", (">", ":")),
     Binding("begin", ("Home",)),
@@ -64,10 +64,10 @@ class Help:
 
     Attributes:
         keys: The keys or the gesture.
-        meaning: What they do.
-        needs: "camera", "mouse" (a picture that reads it), or an action of ``BINDINGS``; a page
-            leaves the line out where there is none.
-        in_page: Whether pages have it.
+        meaning: Their effect.
+        needs: What must exist for the line to be shown: "camera", "mouse" (a picture that reads
+            it), or an action of ``BINDINGS``.
+        in_page: Whether pages show the line.
     """
 
     keys: str

@@ -1,7 +1,7 @@
-"""A scene around a lone shape: a ground, a camera that sees all of it, the light of a studio.
+"""A default scene for a single shape: a ground, a camera that sees the whole shape, studio lights.
 
-Input: a shape. Output: a scene framed by the shape's box, as it is at one time and
-for one set of parameters.
+Input: a shape. Output: a scene framed by the shape's box at one time, for one set of parameter
+values.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.scene import Scene
 
-# How far a shape without end is shown along an axis.
+# Length at which an infinite shape is cut, along each axis.
 REACH: Final = 2.0
-# From where: a little to the right and from above, as products are photographed.
+# Direction to the camera: slightly to the right and above, as in product photographs.
 _FROM: Final = (0.5, 0.42, 1.0)
 _VIEW_DEG: Final = 35.0
 _MARGIN: Final = 1.06
-# A flat shape becomes a plate this thick, of its size.
+# Thickness of the plate that shows a flat shape, as a fraction of its size.
 _PLATE: Final = 0.08
 
 
 def stage(shape: BaseShape, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Scene:
-    """The scene of a shape.
+    """Return the default scene of a shape.
 
     Args:
         shape: A solid; a flat one is shown as a plate.
-        params: Values of parameters by name, for the frame.
-        time: Seconds.
+        params: Values of parameters by name, for the framing.
+        time: Time in seconds, for the framing.
     """
     given = shape
     if isinstance(shape, Shape2D):
@@ -71,7 +71,7 @@ def stage(shape: BaseShape, params: Mapping[str, Any] | None = None, time: float
 def _finite(
     shape: BaseShape, params: Mapping[str, Any] | None, time: float
 ) -> tuple[list[float], list[float]]:
-    """The shape's box, cut where it has no end."""
+    """Return the shape's box, cut where it is infinite."""
     low, high = shape.bounds(params=params, time=time)
     pairs = [_cut(a, b) for a, b in zip(low, high, strict=True)]
     return [a for a, _ in pairs], [b for _, b in pairs]

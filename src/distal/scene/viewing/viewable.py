@@ -1,7 +1,7 @@
-"""What windows, pages, notebooks and videos show: one interface to scenes, shapes and images.
+"""One interface to scenes, shapes and images, for windows, pages, notebooks and videos.
 
-Input: any object that is a picture. Output: its programs by view, with a camera
-that can be moved where it has one, and its parameters. Knows no window and no page.
+Input: any object that is a picture. Output: its programs by view, with a movable camera if it has
+one, and its parameters. Does not depend on windows or pages.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ COLOR: Final = "color"
 
 
 class Viewable:
-    """A picture that can be looked at in several ways.
+    """A picture that can be shown in several views.
 
     Attributes:
-        name: What the author calls it.
-        scene: The scene, with the stage of a lone shape around it; None for an ``@image``.
-        views: The ways it can be looked at; "color" is the first.
+        name: The author's name for it.
+        scene: The scene; the default scene of a single shape; None for an ``@image``.
+        views: The names of the views; "color" is the first.
     """
 
     def __init__(self, name: str, source: Scene | Image) -> None:
@@ -52,24 +52,24 @@ class Viewable:
 
     @cached_property
     def views(self) -> tuple[str, ...]:
-        """The names of what ``image`` shows."""
+        """The names of the views that ``image`` accepts."""
         if self.scene is not None:
             return (COLOR, *VIEWS)
         return (COLOR, *(view for view in IMAGE_VIEWS if self._has(view)))
 
     @cached_property
     def parameters(self) -> list[Parameter]:
-        """Its parameters, by first use."""
+        """Return the parameters, in the order of first use."""
         return self._source.parameters()
 
     @property
     def steers(self) -> bool:
-        """Whether its camera can be moved; else drags are the frame's mouse."""
+        """Whether the camera can be moved; if not, drags set the frame's mouse."""
         return self.scene is not None
 
     @cached_property
     def elevation(self) -> float:
-        """The camera's first elevation above what it looks at, in radians."""
+        """The camera's initial elevation above its target, in radians."""
         if self.scene is None:
             return 0.0
         return float(executor().call(_Elevation(self.scene), (), {}))
@@ -81,19 +81,19 @@ class Viewable:
 
     @property
     def file(self) -> Path | None:
-        """The file that the author wrote it in, where known."""
+        """The author's file, if known."""
         return _file_of(self._source)
 
     def image(
         self, view: str = COLOR, *, steered: bool = False, encoded: bool = False
     ) -> Image | Composed:
-        """What is rendered and compiled.
+        """Return the object to render and compile.
 
         Args:
-            view: One of ``views``; of an ``@image`` also "local:NAME".
-            steered: Whether the camera is moved by a ``Steering``; nothing for an ``@image``.
-            encoded: Whether pixels are display values. Else they are linear light where the
-                renderer makes such, with a ``display`` that encodes it.
+            view: One of ``views``; for an ``@image`` also "local:NAME".
+            steered: Whether the camera is moved by a ``Steering``; no effect for an ``@image``.
+            encoded: Whether pixels are display values. Otherwise they are linear light if the
+                renderer computes it, with a ``display`` that encodes it.
 
         Raises:
             ValueError: There is no such view.
@@ -108,18 +108,18 @@ class Viewable:
         return self._images[view]
 
     def settings(self, steering: Steering = STILL) -> dict[str, Any]:
-        """The values of a steered program's numbers; empty where no camera is moved."""
+        """Return the uniforms of a steered program; empty if there is no camera."""
         return steering.settings if self.steers else {}
 
     def render(
         self, options: RenderOptions, *, view: str = COLOR, steering: Steering | None = None
     ) -> Picture:
-        """The picture.
+        """Render the picture.
 
         Args:
             options: How it is rendered.
             view: One of ``views``.
-            steering: How the camera is moved by hand; None: not.
+            steering: How a person has moved the camera; None if it was not moved.
         """
         image = self.image(view, steered=steering is not None)
         settings = {} if steering is None else self.settings(steering)
@@ -147,26 +147,26 @@ class _Elevation(Composed):
         self._scene = scene
 
     def compose(self, assembly: Assembly) -> str:
-        """The function of nothing."""
+        """Add the function, and return its name."""
         return SceneLowering(assembly, self._scene).elevation()
 
 
 def view_label(view: str) -> str:
-    """What a person reads of a view: "local:half_way" is "Half way"."""
+    """Return a view's name for people: "Half way" for "local:half_way"."""
     label = view.removeprefix("local:").replace("_", " ")
     return label[:1].upper() + label[1:]
 
 
 def viewable(obj: Any, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Viewable:
-    """The one interface over a scene, a shape and an ``@image``.
+    """Return the common interface of a scene, a shape or an ``@image``.
 
     Args:
-        obj: What is to be shown; what is a ``Viewable`` already stays as it is.
-        params: Values of parameters by name: the stage of a lone shape is as large as it is then.
-        time: Seconds, for the same.
+        obj: The object to show; a ``Viewable`` is returned unchanged.
+        params: Values of parameters by name, for the framing of a single shape.
+        time: Time in seconds, for the framing of a single shape.
 
     Raises:
-        LoadError: It is no picture.
+        LoadError: The object is not a picture.
     """
     if isinstance(obj, Viewable):
         return obj
@@ -177,10 +177,10 @@ def viewable(obj: Any, params: Mapping[str, Any] | None = None, time: float = 0.
 
 
 def checked_picture(obj: object) -> Image | Scene | BaseShape:
-    """What a picture can be made of.
+    """Return the object if it can be shown as a picture.
 
     Raises:
-        LoadError: It is something else.
+        LoadError: The object is not a picture.
     """
     if isinstance(obj, Image | Scene | BaseShape):
         return obj
