@@ -1,5 +1,6 @@
-"""The field library: shapes and operators, written once as scene code.
+"""The field library: shapes and operators, each written once as scene code.
 
-A field is a function of a point that answers how far the nearest surface is. Each is declared with
-what it guarantees (``guarantees``); the object model, the documentation and the tests read that.
+A field is a function of a point that returns the distance to the nearest surface, negative inside.
+Each field is declared with its guarantees (``guarantees``); the object model, the documentation and
+the tests read these declarations.
 """

@@ -11,7 +11,7 @@ from typing import Final
 PI: Final = math.pi
 TAU: Final = math.tau
 HALF_ROOT: Final = 0.7071067811865476  # sqrt(1/2)
-# sqrt(3); a point that is past three sides of a box by r each is this times r from the box.
+# sqrt(3); a point that is outside three sides of a box by r each is this times r from the box.
 ROOT_THREE: Final = 1.7320508075688772
-# Keeps a division defined where numbers vanish; far below any length that a scene has.
+# Lower limit of divisors; far below any length in a scene.
 TINY: Final = 1e-12

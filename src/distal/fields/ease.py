@@ -1,8 +1,8 @@
-"""Ways from 0 to 1: how a transition starts and ends.
+"""Easing functions from 0 to 1: how a transition starts and ends.
 
-Input: how far along, from 0 to 1, and which way (a choice fixed when it is compiled). Output: how
-much of the change is done, from 0 to 1, and the steepest rise, which the slopes of operators rest
-on. All rise everywhere.
+Input: the progress, from 0 to 1, and the easing (a choice fixed when the scene is compiled).
+Output: the eased progress, from 0 to 1, and the largest derivative, which the slopes of operators
+depend on. All easings increase monotonically.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from distal.fields.constants import PI
 from distal.lang import clamp, cos, func
 
 LINEAR = 0
-SMOOTH = 1  # 3t^2 - 2t^3: starts and ends at rest
-SMOOTHER = 2  # also without a jump in the second derivative
+SMOOTH = 1  # 3t^2 - 2t^3: derivative 0 at both ends
+SMOOTHER = 2  # second derivative also 0 at both ends
 SINE = 3
 SLOW_START = 4
 SLOW_END = 5
@@ -23,7 +23,7 @@ EASES = ("linear", "smooth", "smoother", "sine", "slow start", "slow end", "cubi
 
 @func
 def eased(t: float, ease: int) -> float:
-    """How much of a change is done; ``t`` outside 0 to 1 counts as the nearer end."""
+    """Return the eased progress; ``t`` is clamped to 0 to 1."""
     x = clamp(t, 0.0, 1.0)
     if ease == SMOOTH:
         return x * x * (3.0 - 2.0 * x)
@@ -43,7 +43,7 @@ def eased(t: float, ease: int) -> float:
 
 @func
 def ease_slope(ease: int) -> float:
-    """The steepest rise of ``eased``."""
+    """Return the largest derivative of ``eased``."""
     if ease == SMOOTH:
         return 1.5
     if ease == SMOOTHER:
@@ -58,7 +58,7 @@ def ease_slope(ease: int) -> float:
 
 
 def ease_requirement(ease: int) -> str | None:
-    """Why an ease does not exist, or None."""
+    """Return why an easing is invalid, or None."""
     if 0 <= ease < len(EASES):
         return None
     listed = ", ".join(f"{i} {name}" for i, name in enumerate(EASES))

@@ -1,7 +1,7 @@
-"""Geometry of boxes, for the rules of operators and for the guards that keep their values safe.
+"""Geometry of boxes, for the bounds of operators and for the code that keeps their values safe.
 
-Input: boxes of shapes, finite or with sides beyond ``ENDLESS``. Output: grown,
-overlapping and turned boxes, distances to a box, radii. Knows no operator.
+Input: boxes of shapes, finite or with sides beyond ``ENDLESS``. Output: enlarged, intersected and
+rotated boxes, distances to a box, radii. Does not depend on operators.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TypeVar
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds, Bounds2
 from distal.lang import Vectors, abs, func, length, mat2, mat3, max, min, select, vec2, vec3
 
-# What is left of infinity after turning a box by a rounded zero; no shape is that large.
+# The least that remains of infinity after a rotation with rounding; no shape is that large.
 LEAK = 1e9
 
 
@@ -20,7 +20,7 @@ Boxes = TypeVar("Boxes", Bounds, Bounds2)
 
 @func
 def hull_of(bounds_a: Boxes, bounds_b: Boxes) -> Boxes:
-    """The smallest box around two."""
+    """Return the smallest box around two boxes."""
     around = bounds_a
     around.low = min(bounds_a.low, bounds_b.low)
     around.high = max(bounds_a.high, bounds_b.high)
@@ -29,7 +29,7 @@ def hull_of(bounds_a: Boxes, bounds_b: Boxes) -> Boxes:
 
 @func
 def overlap(bounds_a: Boxes, bounds_b: Boxes) -> Boxes:
-    """What two boxes share; a point where they share nothing."""
+    """Return the intersection of two boxes; a box of size 0 on axes where they do not overlap."""
     shared = bounds_a
     shared.low = max(bounds_a.low, bounds_b.low)
     shared.high = max(min(bounds_a.high, bounds_b.high), shared.low)
@@ -38,7 +38,7 @@ def overlap(bounds_a: Boxes, bounds_b: Boxes) -> Boxes:
 
 @func
 def grown(bounds: Boxes, by: float) -> Boxes:
-    """A box with its sides moved out."""
+    """Return a box with its sides moved outwards."""
     larger = bounds
     larger.low = bounds.low - by
     larger.high = bounds.high + by
@@ -47,34 +47,42 @@ def grown(bounds: Boxes, by: float) -> Boxes:
 
 @func
 def moved_out(bounds: Boxes, by: float, side_growth: float) -> Boxes:
-    """The box of a shape whose surface is moved out; without end where its growth is not known."""
+    """Return the box of a shape whose surface is moved outwards.
+
+    It is infinite if the growth is not known.
+    """
     return grown(bounds, select(side_growth > ENDLESS and by > 0.0, UNBOUNDED, by * side_growth))
 
 
 @func
 def largest(v: vec3) -> float:
-    """The largest component."""
+    """Return the largest component."""
     return max(max(v.x, v.y), v.z)
 
 
 @func
 def smallest(v: vec3) -> float:
-    """The smallest component."""
+    """Return the smallest component."""
     return min(min(v.x, v.y), v.z)
 
 
 @func
 def box_distance(p: vec3, bounds: Bounds) -> float:
-    """The distance to a box, negative inside. Exact; a missing side is nowhere near."""
+    """Return the exact distance to a box, negative inside; infinite sides are ignored."""
     beyond = max(bounds.low - p, p - bounds.high)
     return length(max(beyond, vec3(0.0))) + min(largest(beyond), 0.0)
 
 
 @func
 def drum_distance(across: float, along: float, radius: float, low: float, high: float) -> float:
-    """The distance to a drum, negative inside. Exact.
+    """Return the exact distance to a cylinder, negative inside.
 
-    ``across`` is how far the place is from the axis, ``along`` where on the axis.
+    Args:
+        across: Distance of the point from the axis.
+        along: Position of the point along the axis.
+        radius: Radius.
+        low: Lower end on the axis.
+        high: Upper end on the axis.
     """
     beyond = vec2(across - radius, max(low - along, along - high))
     return length(max(beyond, vec2(0.0))) + min(max(beyond.x, beyond.y), 0.0)
@@ -82,53 +90,53 @@ def drum_distance(across: float, along: float, radius: float, low: float, high: 
 
 @func
 def rectangle_distance(p: vec2, bounds: Bounds2) -> float:
-    """The distance to a rectangle, negative inside. Exact."""
+    """Return the exact distance to a rectangle, negative inside."""
     beyond = max(bounds.low - p, p - bounds.high)
     return length(max(beyond, vec2(0.0))) + min(max(beyond.x, beyond.y), 0.0)
 
 
 @func
 def reach(bounds: Bounds) -> vec3:
-    """How far a box goes from the origin along each axis, on either side."""
+    """Return how far a box extends from the origin along each axis, on either side."""
     return max(abs(bounds.low), abs(bounds.high))
 
 
 @func
 def reach_flat(bounds: Bounds2) -> vec2:
-    """How far a rectangle goes from the origin along each axis, on either side."""
+    """Return how far a rectangle extends from the origin along each axis, on either side."""
     return max(abs(bounds.low), abs(bounds.high))
 
 
 @func
 def diameter(bounds: Bounds) -> float:
-    """The length of a box's diagonal."""
+    """Return the length of a box's diagonal."""
     return length(bounds.high - bounds.low)
 
 
 @func
 def at_least_one(slope: float) -> float:
-    """The slope of a shape where a true distance (to a box, to a plane) may stand too."""
+    """Return the slope of a shape whose value may also be a true distance (to a box or plane)."""
     return max(slope, 1.0)
 
 
 @func
 def unless_endless(size: float, slope: float) -> float:
-    """A slope, where the size that it rests on is finite; else no bound."""
+    """Return a slope if the size that it depends on is finite; otherwise no bound."""
     return select(size > ENDLESS, UNBOUNDED, slope)
 
 
 @func
 def least_product(factor: Vectors, low: float, high: float) -> Vectors:
-    """The lower ends of ``factor`` times everything between two numbers."""
+    """Return the least values of ``factor`` times any number between two limits."""
     return min(factor * low, factor * high)
 
 
 @func
 def turned(bounds: Bounds, m: mat3) -> Bounds:
-    """The box around a box after the linear map ``m``.
+    """Return the box around a box after the linear map ``m``.
 
-    Interval by interval rather than about the middle: an infinite side on one axis leaves the
-    others as they are.
+    Each axis is computed as an interval, not from the centre and half sizes, so that an infinite
+    side on one axis leaves the others finite.
     """
     a, b = bounds.low, bounds.high
     low = least_product(m[0], a.x, b.x) + least_product(m[1], a.y, b.y)
@@ -141,7 +149,7 @@ def turned(bounds: Bounds, m: mat3) -> Bounds:
 
 @func
 def turned_flat(bounds: Bounds2, m: mat2) -> Bounds2:
-    """The rectangle around a rectangle after the linear map ``m``."""
+    """Return the rectangle around a rectangle after the linear map ``m``."""
     a, b = bounds.low, bounds.high
     low = least_product(m[0], a.x, b.x) + least_product(m[1], a.y, b.y)
     high = least_product(-m[0], a.x, b.x) + least_product(-m[1], a.y, b.y)

@@ -4,22 +4,23 @@ Input: ``@func`` functions, and bounds on their slopes, boxes and growth. Output
 ``Operator`` declarations, in their order. Does not depend on the object model that reads them, or
 on rendering.
 
-Values are bound by parameter name. Some names have a fixed meaning:
-``p`` the point, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a function of a point,
-``cell`` the index of the repetition the point lies in, ``slope``/``slope_a``/``slope_b`` bounds on
-|gradient|, ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and ``side_growth`` (with ``_a``,
-``_b``; of two children without either: the larger) how fast the box grows with the level. Every
-other parameter is a number of the shape, or a choice (int, bool) fixed when it is compiled.
+Values are bound by parameter name. Some names have a fixed meaning: ``p`` the point, ``d`` a
+distance, ``a`` and ``b`` two distances, ``field`` a function of a point, ``cell`` the index of the
+repetition that contains the point, ``slope``/``slope_a``/``slope_b`` Lipschitz bounds (bounds on
+|gradient|), ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and ``side_growth`` (with
+``_a``, ``_b``; without a suffix on two children: the larger) how fast the box grows with the level.
+Every other parameter is a number of the shape, or a choice (int, bool) that is fixed when the scene
+is compiled.
 
-Growth. A box holds the surface and the inside: all points where the field is 0 or less. An operator
-that moves the surface out by r (rounding, offsets, blends) needs a box around all points where the
-field is r or less. A field may be far below the distance there, so each field also declares its
-*growth* c: for every r >= 0 these points lie within c * r of the box. In other words: a point
-outside the box is at most c times its value away from it. ``growth`` measures the Euclidean
-distance from the box, which rotations keep. ``side_growth`` measures how far each side must be
-moved out, which intersections keep; boxes are grown by it, and it is never above ``growth``. Both
-are 1 for exact fields. Both are ``UNBOUNDED`` where they are not known: then a shape whose surface
-is moved out has no box.
+Growth. A box contains the surface and the inside: all points where the field is 0 or less. An
+operator that moves the surface outwards by r (rounding, offsets, blends) needs a box around all
+points where the field is r or less. The field may be far less than the distance there, so each
+field also declares its *growth* c: for every r >= 0 these points lie within c * r of the box. In
+other words: the distance of a point outside the box from the box is at most c times its value.
+``growth`` measures the Euclidean distance from the box, which rotations preserve. ``side_growth``
+measures how far each side must be moved outwards, which intersections preserve; boxes are enlarged
+by it, and it is never above ``growth``. Both are 1 for exact fields. Both are ``UNBOUNDED`` if they
+are not known: then a shape whose surface is moved outwards has no finite box.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ from distal.lang.functions import Func
 UNBOUNDED: Final = 1e18
 ENDLESS: Final = UNBOUNDED / 1000.0
 
-# What an operator's functions may take of its one child, or of its two children.
+# Values of the children that an operator's functions may take, by parameter name.
 BOUNDS_OF_CHILD: Final = ("slope", "bounds", "growth", "side_growth")
 BOUNDS_OF_CHILDREN: Final = frozenset(
     f"{name}{of}" for name in BOUNDS_OF_CHILD for of in ("", "_a", "_b")
@@ -49,7 +50,7 @@ BOUNDS_OF_CHILDREN: Final = frozenset(
 
 @struct
 class Bounds:
-    """A box that holds the whole surface and the inside."""
+    """A box that contains the whole surface and the inside."""
 
     low: vec3
     high: vec3
@@ -57,7 +58,7 @@ class Bounds:
 
 @struct
 class Bounds2:
-    """A rectangle that holds the whole outline and the inside."""
+    """A rectangle that contains the whole outline and the inside."""
 
     low: vec2
     high: vec2
@@ -65,7 +66,7 @@ class Bounds2:
 
 @struct
 class Site:
-    """A place in a repetition: the point in its cell's own space, and which cell."""
+    """A place in a repetition: the point in the local space of its cell, and the cell's index."""
 
     p: vec3
     cell: vec3
@@ -73,14 +74,14 @@ class Site:
 
 @struct
 class Site2:
-    """A place in a repetition in the plane; ``cell`` has its third number 0."""
+    """A place in a repetition in the plane; the third component of ``cell`` is 0."""
 
     p: vec2
     cell: vec3
 
 
 class Limit(Enum):
-    """What a number must be; the value finishes the sentence "radius must be …"."""
+    """The limit of a number; the value completes the sentence "radius must be …"."""
 
     POSITIVE = "above 0"
     NOT_NEGATIVE = "0 or more"
@@ -90,7 +91,7 @@ class Limit(Enum):
     ANY = "finite"
 
 
-# What numbers of a shape must be whose names have one meaning in the whole library.
+# Limits of numbers by name; these names have the same meaning in the whole library.
 USUAL_LIMITS: Final[Mapping[str, Limit]] = {
     **dict.fromkeys(("radius", "radii", "size", "width", "height", "thickness"), Limit.POSITIVE),
     **dict.fromkeys(("cell_size", "apothem", "major", "minor", "pitch", "angle"), Limit.POSITIVE),
@@ -101,10 +102,10 @@ USUAL_LIMITS: Final[Mapping[str, Limit]] = {
 
 
 class Guarantee(Enum):
-    """What a field may guarantee besides a bound on its slope.
+    """Guarantees of a field besides the bound on its slope.
 
-    EXACT_OUTSIDE: outside, the value is the distance to the surface. EXACT_INSIDE: inside, it is
-    minus that. LOWER_BOUND: outside, it is never more than the distance.
+    EXACT_OUTSIDE: outside, the value is the distance to the surface. EXACT_INSIDE: inside, the
+    value is the negative distance. LOWER_BOUND: outside, the value is never more than the distance.
     """
 
     EXACT_OUTSIDE = "exact outside"
@@ -114,21 +115,22 @@ class Guarantee(Enum):
 
 EXACT: Final = frozenset(Guarantee)  # all three
 EXACT_OUTSIDE: Final = frozenset({Guarantee.EXACT_OUTSIDE, Guarantee.LOWER_BOUND})
-# What the largest of several plane distances keeps: a convex shape's inside is exact.
+# The guarantees of the maximum of several plane distances: exact inside a convex shape.
 INSIDE_AND_BOUND: Final = frozenset({Guarantee.EXACT_INSIDE, Guarantee.LOWER_BOUND})
 LOWER_BOUND: Final = frozenset({Guarantee.LOWER_BOUND})
-NOTHING: Final[frozenset[Guarantee]] = frozenset()  # the slope's bound alone
+NOTHING: Final[frozenset[Guarantee]] = frozenset()  # only the bound on the slope
 
 
 class Growth(Enum):
-    """What an operator makes of the growth of its children; see the module's text.
+    """How an operator changes the growth of its children; see the module's docstring.
 
-    KEPT: It stays; of two children: the larger.
-    FIRST: That of the first child stays.
-    TURNED: The box is turned: the sides grow as fast as the distance from the box.
-    CORNERED: The growth of sides stays (of two: the larger). A point may be as far past all sides
-        of a corner, which is the root of the number of dimensions times as far from the box.
-    HELD: Both are 1: the value is at least the distance to the operator's box, or it has no box.
+    KEPT: The growth does not change; of two children, the larger is used.
+    FIRST: The growth of the first child does not change.
+    TURNED: The box is rotated: ``side_growth`` becomes the child's ``growth``.
+    CORNERED: ``side_growth`` does not change (of two children, the larger is used). At a corner a
+        point may be outside all sides by that much, so ``growth`` is larger by the square root of
+        the number of dimensions.
+    HELD: Both are 1: the value is at least the distance to the operator's box, or there is none.
     UNKNOWN: No bound is known.
     """
 
@@ -140,9 +142,9 @@ class Growth(Enum):
     UNKNOWN = "unknown"
 
 
-# Returns a reason why numbers do not go together, or None. Called with plain floats by name.
+# Returns why numbers contradict each other, or None. Called with plain floats by name.
 Requirement: TypeAlias = "Callable[..., str | None]"
-# A number, or a @func of some of the shape's numbers (and slope, bounds) that gives a float.
+# A number, or a @func of some of the shape's numbers (and slope, bounds) that returns a float.
 Rule: TypeAlias = "float | Func"
 
 
@@ -151,21 +153,21 @@ class Primitive:
     """A shape of the library.
 
     Attributes:
-        name: The class's name in the object model: "CappedTorus".
-        distance: ``(p, *numbers) -> float``; the point's type is vec3 for a solid, vec2 for a flat
-            shape. Defaults of its
-            parameters are the shape's defaults; its docstring is the shape's.
-        claims: Its guarantees besides the bound on its slope.
-        slope: Bound on |gradient| everywhere; a number, or a function of the shape's numbers.
-        bounds: ``(*numbers) -> Bounds`` (``Bounds2``), or None for a shape without end.
-        growth: Bound on the growth; a number, or a function of the shape's numbers. None: 1 where
-            the field is exact outside or has no box, else not known.
-        side_growth: The same for the sides alone, where it is less; None: ``growth``.
-        limits: What each number must be; a number not named is any finite one.
-        requires: Returns why numbers do not go together, or None.
+        name: Name of the class in the object model: "CappedTorus".
+        distance: ``(p, *numbers) -> float``; p is a vec3 for a solid, a vec2 for a flat shape. The
+            defaults of its parameters are the shape's defaults; its docstring is the shape's.
+        claims: The guarantees besides the bound on the slope.
+        slope: Lipschitz bound (slope): a bound on |gradient| everywhere; a number, or a function of
+            the shape's numbers.
+        bounds: ``(*numbers) -> Bounds`` (``Bounds2``), or None for an infinite shape.
+        growth: Bound on the growth; a number, or a function of the shape's numbers. None: 1 if the
+            field is exact outside or has no box, otherwise not known.
+        side_growth: The same for the sides alone, if it is less; None: ``growth``.
+        limits: The limits of numbers, by name; other numbers must only be finite.
+        requires: Returns why numbers contradict each other, or None.
         signed: False for surfaces and curves without an inside.
-        estimate: True for fractals and the like, whose slope is an estimate.
-        tier: 1, 2 or 3, the catalogue's.
+        estimate: True for fractals, whose slope is an estimate.
+        tier: The tier in the catalogue: 1, 2 or 3.
     """
 
     name: str
@@ -183,48 +185,50 @@ class Primitive:
 
     @property
     def flat(self) -> bool:
-        """Whether it lies in the plane."""
+        """Whether the shape lies in the plane."""
         return signature_types(self.distance)["p"] is vec2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operator:
-    """A way to make a shape of one or two others.
+    """An operator that makes a shape from one or two others.
 
-    One of four kinds, by what is given:
+    There are four kinds, distinguished by the functions that are declared:
 
     * ``point`` and/or ``finish``: the child is evaluated at ``point(p, …)`` (a vec3, a vec2 or a
-      ``Site``), and its value ``d`` goes through ``finish(d[, p], …) -> float``. ``p`` is the
-      operator's own point, before ``point`` moved it.
-    * ``combine(a, b[, p], …) -> float``: of two children; ``mix`` gives with the same parameters
-      the share of b's material, 0 to 1 (None: whichever child is nearer by ``b < a``).
+      ``Site``), and ``finish(d[, p], …) -> float`` changes its value ``d``. ``p`` is the operator's
+      own point, before ``point`` moved it.
+    * ``combine(a, b[, p], …) -> float``: for two children; ``mix`` takes the same parameters and
+      returns the share of b's material, 0 to 1 (None: that of the nearer child, by ``b < a``).
     * ``around(field, p, …) -> float``: evaluates the child at several points. ``site(field, p, …)``
-      gives the place (vec3 or ``Site``) whose material shows at p.
+      returns the place (vec3 or ``Site``) whose material is shown at p.
 
-    All of these may also take what the rules take, by the same names: the ``bounds`` and the
-    ``slope`` of the child (``bounds_a``, ``slope_b`` …), computed once per frame.
+    All of these may also take the parameters that the rules take: the ``bounds`` and the ``slope``
+    of the child (``bounds_a``, ``slope_b`` …), computed once per frame.
 
     Attributes:
-        name: What messages call it: "twist".
-        copies: ``(*numbers) -> struct``: a value of the numbers alone, which the other functions
-            take by the name ``copies``: which copies a repetition has.
-        fixed: Values of parameters of the other functions that are no numbers of the operator.
-        keeps: The guarantees that hold when they hold for all children. The others are lost (a
-            slope of at most 1 makes a lower bound in any case).
-        keeps_exact: The guarantees that hold, besides those, when all children are exact inside and
-            outside: a difference is exact inside only if what it takes away is exact outside.
-        slope: None where the slope stays (of two: the larger); a number multiplies it; a function
-            of ``slope`` (``slope_a``, ``slope_b``), ``bounds`` and numbers gives it.
-        bounds: None where the box stays (of two: the box around both); else a function of
-            ``bounds`` (``bounds_a``, ``bounds_b``) and numbers; ``no_bounds`` for no box.
-        growth: What becomes of the growth, or a function of ``growth``, ``slope``, ``bounds`` and
-            numbers that gives it. Not known where an operator says nothing.
+        name: The name in messages: "twist".
+        copies: ``(*numbers) -> struct``: a value that depends on the numbers alone and that the
+            other functions take by the name ``copies``: the copies of a repetition.
+        fixed: Values of parameters of the other functions that are not numbers of the operator.
+        keeps: The guarantees that hold if they hold for all children. Others are lost (but a slope
+            of at most 1 always makes a lower bound).
+        keeps_exact: Further guarantees that hold if all children are exact inside and outside: a
+            difference is exact inside only if the subtracted shape is exact outside.
+        slope: None if the slope does not change (for two children: the larger); a number multiplies
+            it; a function of ``slope`` (``slope_a``, ``slope_b``), ``bounds`` and numbers returns
+            it.
+        bounds: None if the box does not change (for two children: the box around both); else a
+            function of ``bounds`` (``bounds_a``, ``bounds_b``) and numbers; ``no_bounds`` for an
+            infinite result.
+        growth: How the growth changes, or a function of ``growth``, ``slope``, ``bounds`` and
+            numbers that returns it. UNKNOWN by default.
         limits: As for a primitive.
         requires: As for a primitive.
-        needs: What the children must be for a slope to exist; finishes the sentence "twist needs
-            …", said when the slope's rule answers ``UNBOUNDED``. None where it never does.
-        cuts: Whether the second shape is taken away, and its ``cut_material`` shows.
-        local: Whether it changes shapes only where they meet.
+        needs: What the children must be for a slope to exist; completes the message "twist needs
+            …", shown if the slope's rule returns ``UNBOUNDED``. None if it never does.
+        cuts: Whether the second shape is subtracted, so that its ``cut_material`` is shown.
+        local: Whether it changes the shapes only where they meet.
     """
 
     name: str
@@ -249,21 +253,23 @@ class Operator:
 
     @property
     def number_functions(self) -> tuple[Func, ...]:
-        """The functions whose parameters are the operator's numbers."""
+        """Return the functions whose parameters are the operator's numbers."""
         found = (self.copies, self.point, self.combine, self.around, self.finish)
         return tuple(function for function in found if function is not None)
 
     @property
     def point_functions(self) -> tuple[Func, ...]:
-        """The functions that are called for each point."""
+        """Return the functions that are called for each point."""
         found = (self.point, self.finish, self.combine, self.mix, self.around, self.site)
         return tuple(function for function in found if function is not None)
 
     def lies_flat(self, child: bool) -> bool:
-        """Whether the result lies in the plane: where the operator's own point does.
+        """Return whether the result lies in the plane.
+
+        It does if the operator's own point is a vec2.
 
         Args:
-            child: Whether what it works on does, which decides where no function takes a point.
+            child: Whether the child lies in the plane; used if no function takes a point.
         """
         for function in (self.point, self.around, self.finish, self.combine):
             if function is not None and "p" in signature_types(function):
@@ -272,12 +278,15 @@ class Operator:
 
     @property
     def repeats(self) -> bool:
-        """Whether what it works on is given its cell."""
+        """Whether the child receives the index of its cell."""
         places = (function for function in (self.point, self.site) if function is not None)
         return any(signature_types(place)["return"] in (Site, Site2) for place in places)
 
     def takes_flat(self, lies: bool) -> bool:
-        """Whether it works on flat shapes, where its result lies in the plane or not."""
+        """Return whether the operator takes flat children.
+
+        ``lies`` says whether its result lies in the plane.
+        """
         if self.around is not None:
             return bool(get_args(signature_types(self.around)["field"])[0] == [vec2])
         if self.point is not None:
@@ -287,7 +296,7 @@ class Operator:
 
 @cache
 def signature_types(function: Func) -> Mapping[str, Any]:
-    """The types in a library function's signature, by parameter; that of its result: "return"."""
+    """Return the types in a library function's signature; the result's name is "return"."""
     return get_type_hints(function.python_function)
 
 
@@ -298,7 +307,7 @@ F = TypeVar("F", bound=Func)
 
 
 def ended(value: float) -> float:
-    """A computed bound as a number, infinite where there is no bound."""
+    """Return a computed bound as a number; infinite if it is beyond ``ENDLESS``."""
     return float(value) if abs(value) < ENDLESS else math.copysign(math.inf, value)
 
 
@@ -318,7 +327,7 @@ def primitive(
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive``.
 
-    ``limits`` names only what differs from ``USUAL_LIMITS``.
+    ``limits`` contains only limits that differ from ``USUAL_LIMITS``.
     """
 
     def declare(distance: F) -> F:
@@ -356,7 +365,7 @@ def operator(name: str, **declared: Any) -> Operator:
 
 
 def named(name: str, function: Callable[..., Any]) -> SceneFunction[..., Any]:
-    """Scene code that a Python function makes, under the name that emitted text shows."""
+    """Return scene code from a generated Python function, with a name for emitted text."""
     function.__name__ = name
     function.__qualname__ = name
     return func(function)
@@ -364,11 +373,11 @@ def named(name: str, function: Callable[..., Any]) -> SceneFunction[..., Any]:
 
 @func
 def no_bounds(bounds: Bounds) -> Bounds:
-    """The box of an operator whose result has no end."""
+    """Return the box of an operator whose result is infinite."""
     return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED))
 
 
 @func
 def no_bounds2(bounds: Bounds2) -> Bounds2:
-    """The rectangle of an operator whose result has no end."""
+    """Return the rectangle of an operator whose result is infinite."""
     return Bounds2(vec2(-UNBOUNDED), vec2(UNBOUNDED))

@@ -1,4 +1,4 @@
-"""The whole field library, loaded: importing a module of it declares its shapes and operators."""
+"""Imports the whole field library: each module declares its shapes and operators on import."""
 
 from __future__ import annotations
 

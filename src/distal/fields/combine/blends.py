@@ -1,8 +1,9 @@
 """Blends by name: each smooth minimum and shaped edge, for unions, intersections and differences.
 
-Input: union forms from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an operator for
-each way to combine with each of them (``COMBINATIONS``). The other ways follow from the union: an
-intersection is the union of the outsides, a difference the intersection with an outside.
+Input: unions from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an operator for each
+combination with each blend (``COMBINATIONS``). The other combinations follow from the union: an
+intersection is the complement of the union of the complements; a difference is the intersection
+with a complement.
 """
 
 from __future__ import annotations
@@ -17,23 +18,24 @@ from distal.fields.extents import Boxes, hull_of, moved_out, overlap
 from distal.fields.guarantees import UNBOUNDED, Growth, Limit, Operator, named, operator
 from distal.lang import Func, exp2, func, length, max, min, vec2
 
-# 2 to this power is beyond any size.
+# Limit of an exponent; 2 to this power is larger than any size.
 MOST_DOUBLINGS: Final = 60.0
-# Scene code that takes two distances and the numbers of a blend.
+# Scene code with two distances and the numbers of a blend as parameters.
 Shared: TypeAlias = Callable[..., float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """One way to join surfaces.
+    """A blend of two surfaces.
 
     Attributes:
         union: ``(a, b, k[, count]) -> float``.
-        mix: The share of b, 0 to 1, with the same parameters.
-        counted: Whether it takes a ``count`` of parts.
-        local: Whether it is the hard minimum where the two are far enough apart.
-        steep: Whether its slope may be sqrt(slope_a^2 + slope_b^2) rather than the larger of both.
-        intersection: Of its own, where it is not the union of the outsides turned inside out.
+        mix: The share of b's material, 0 to 1, with the same parameters.
+        counted: Whether it takes ``count``, the number of parts.
+        local: Whether it is the hard minimum if the two distances differ enough.
+        steep: Whether its slope may be sqrt(slope_a^2 + slope_b^2) instead of the larger of the
+            two.
+        intersection: A separate intersection, if it does not follow from the union.
     """
 
     union: Func[..., Any]
@@ -74,13 +76,17 @@ BLENDS: Final[dict[str, Blend]] = {
 
 @func
 def crossed_slope(slope_a: float, slope_b: float) -> float:
-    """The slope of a length in the plane of both distances, where their gradients are parallel."""
+    """Return sqrt(slope_a^2 + slope_b^2).
+
+    It bounds the slope of a length in the plane of both distances, reached where their gradients
+    are parallel.
+    """
     return length(vec2(slope_a, slope_b))
 
 
 @func
 def swollen_hull(bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth: float) -> Boxes:
-    """The box around both, moved out by what a blend adds at most."""
+    """Return the box around both, enlarged by the most that a blend adds."""
     return moved_out(hull_of(bounds_a, bounds_b), k, side_growth)
 
 
@@ -88,27 +94,30 @@ def swollen_hull(bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth: float)
 def pipe_box(
     bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth_a: float, side_growth_b: float
 ) -> Boxes:
-    """Where neither field is above ``k``."""
+    """Return the box of the region where both fields are at most ``k``."""
     return overlap(moved_out(bounds_a, k, side_growth_a), moved_out(bounds_b, k, side_growth_b))
 
 
 @func
 def ridge_box(bounds_a: Boxes, bounds_b: Boxes, depth: float, side_growth_a: float) -> Boxes:
-    """The first shape's box, moved out by the ridge."""
+    """Return the first shape's box, enlarged by the ridge."""
     return moved_out(bounds_a, depth, side_growth_a)
 
 
 @func
 def power_growth(growth: float, exponent: float) -> float:
-    """Where both distances are equal the value is less by the exponent's root of 2."""
+    """Return the growth of ``power_union``.
+
+    Where both distances are equal, the value is less by a factor: 2 to the power 1 / exponent.
+    """
     return min(growth * exp2(min(1.0 / exponent, MOST_DOUBLINGS)), UNBOUNDED)
 
 
-# The other ways to combine, made of the union
+# Intersections, differences and exclusive ors, made from the union
 
 
 def _turned(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
-    """A difference: the intersection with everything but the second."""
+    """Return a difference: the intersection with the complement of the second shape."""
 
     def turned(a: float, b: float, k: float) -> float:
         return of_first(a, -b, k)
@@ -124,7 +133,7 @@ def _turned_counted(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
 
 
 def _intersection(name: str, union: Shared) -> Func[..., Any]:
-    """The union of the outsides, seen from inside."""
+    """Return the complement of the union of the complements."""
 
     def inverted(a: float, b: float, k: float) -> float:
         return -union(-a, -b, k)
@@ -154,7 +163,7 @@ def _intersection_mix_counted(name: str, share: Shared) -> Func[..., Any]:
 
 
 def _xor(name: str, difference: Shared) -> Func[..., Any]:
-    """What is in either without what is in both; the edges between the two are shaped."""
+    """Return what is in exactly one shape; the edges between the two parts are shaped."""
 
     def exclusive(a: float, b: float, k: float) -> float:
         return difference(min(a, b), max(a, b), k)
@@ -174,7 +183,7 @@ def _count_requirement(count: int) -> str | None:
 
 
 def _declare(name: str, blend: Blend) -> None:
-    """The four operators of a blend."""
+    """Declare the four operators of a blend."""
     counted = blend.counted
     inverted = _intersection_counted if counted else _intersection
     shared = _intersection_mix_counted if counted else _intersection_mix
@@ -184,8 +193,7 @@ def _declare(name: str, blend: Blend) -> None:
     difference = turned("difference", name, intersection)
     difference_mix = turned("difference_mix", name, intersection_mix)
     exclusive = (_xor_counted if counted else _xor)(name, difference)
-    # A union is nowhere below the nearer shape's value by more than k, nor an intersection below
-    # the farther one's.
+    # A union is at most k below the smaller value, and an intersection at most k below the larger.
     rows: dict[str, dict[str, Any]] = {
         "union": {
             "combine": blend.union,
@@ -219,7 +227,7 @@ def _declare(name: str, blend: Blend) -> None:
         )
 
 
-# By the sharp operator's name and the blend's.
+# The operators, by the name of the sharp operator and that of the blend.
 COMBINATIONS: Final[dict[tuple[str, str], Operator]] = {}
 for _name, _blend in BLENDS.items():
     _declare(_name, _blend)

@@ -1,12 +1,13 @@
-"""Shaped edges: material added where two shapes meet, and cut along their seam.
+"""Shaped edges: material added where two shapes meet, and cuts along their intersection.
 
 Input: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. Output: the
-distance of the union (``edges`` makes the intersections and differences of it), or of the one shape
-that pipes, engraving, grooves and tongues give. Knows no points.
+distance of the union (``blends`` makes the intersections and differences from it), or of the shape
+made by pipes, engraving, grooves and tongues. Does not depend on points.
 
-The sizes are true where the surfaces meet at a right angle. Worked out in the plane whose axes are
-the two distances: a union's corner is its origin, the outside the quarter where both are positive,
-and ``u`` and ``v`` are the distance from the corner along the diagonal and across it.
+The sizes are exact where the surfaces meet at a right angle. The formulas are derived in the plane
+whose axes are the two distances: a union's corner is its origin, the outside is the quadrant where
+both are positive, and ``u`` and ``v`` are the distance from the corner along the diagonal and
+across it.
 
 Source: the operators of the hg_sdf library by Mercury (https://mercury.sexy/hg_sdf/); the formulas
 are worked out anew from their geometry. Where a piece uses both distances at once the slope is that
@@ -24,46 +25,46 @@ SQRT_2 = 1.4142135623730951
 
 @func
 def edge_mix(a: float, b: float, k: float) -> float:
-    """The share of ``b`` across an edge of size ``k``: even in the middle, none at its ends."""
+    """Return the share of ``b`` across an edge of size ``k``: linear, 1/2 in the middle."""
     return share_of_second(a, b, 0.5 * nearness(a, b, max(k, SHARP)))
 
 
 @func
 def counted_edge_mix(a: float, b: float, k: float, count: int) -> float:
-    """``edge_mix`` for the edges made of ``count`` parts."""
+    """Return ``edge_mix`` for the edges made of ``count`` parts."""
     return edge_mix(a, b, k)
 
 
 @func
 def no_deeper(shaped: float, a: float, b: float, k: float) -> float:
-    """Inside, an edge's pieces are steeper than the shapes; the surface is above this floor.
+    """Limit an edge's value from below, because inside its parts are steeper than the shapes.
 
-    With ``k = 0`` the union is the hard one.
+    The surface is above this limit. With ``k = 0`` the union is the hard minimum.
     """
     return max(shaped, min(a, b) - k)
 
 
 @func
 def chamfer(a: float, b: float, k: float) -> float:
-    """A flat face across the corner, ``k`` along both surfaces."""
+    """Return the union with a flat face across the corner, ``k`` along both surfaces."""
     return no_deeper(min(min(a, b), (a + b - k) * SQRT_HALF), a, b, k)
 
 
 @func
 def soft(a: float, b: float, k: float) -> float:
-    """``quadratic``, measured by how near the two must be for it to act: |a - b| < k."""
+    """Return ``quadratic``, with ``k`` as the range in which it has an effect: |a - b| < k."""
     return quadratic(a, b, 0.25 * k)
 
 
 @func
 def soft_mix(a: float, b: float, k: float) -> float:
-    """The share of ``b`` in ``soft``."""
+    """Return the share of ``b`` in ``soft``."""
     return quadratic_mix(a, b, 0.25 * k)
 
 
 @func
 def row_of_circles(u: float, v: float, radius: float, count: int) -> float:
-    """The distance to ``count`` circles side by side on the line u = 0, centred."""
+    """Return the distance to ``count`` adjacent circles on the line u = 0, centred."""
     middle = 0.5 * (float(count) - 1.0)
     diameter = 2.0 * radius
     index = clamp(round(v / max(diameter, SHARP) + middle), 0.0, float(count) - 1.0)
@@ -72,7 +73,10 @@ def row_of_circles(u: float, v: float, radius: float, count: int) -> float:
 
 @func
 def columns(a: float, b: float, k: float, count: int) -> float:
-    """A row of ``count`` round columns in the corner; the outer ones stand half in the surfaces."""
+    """Return the union with ``count`` round columns in the corner.
+
+    The outer ones are half inside the surfaces.
+    """
     u = (a + b) * SQRT_HALF
     v = (b - a) * SQRT_HALF
     radius = k * SQRT_HALF / (float(count) - 1.0 + SQRT_HALF)
@@ -83,7 +87,10 @@ def columns(a: float, b: float, k: float, count: int) -> float:
 
 @func
 def columns_intersection(a: float, b: float, k: float, count: int) -> float:
-    """The edge cut flat and ``count`` round columns left standing, the outer ones at the faces."""
+    """Return the intersection whose edge is cut flat, with ``count`` round columns left.
+
+    The outer ones are at the faces.
+    """
     u = (a + b) * SQRT_HALF
     v = (b - a) * SQRT_HALF
     radius = k * SQRT_HALF / (float(count) - 1.0 + SQRT_2)
@@ -95,10 +102,10 @@ def columns_intersection(a: float, b: float, k: float, count: int) -> float:
 
 @func
 def stairs(a: float, b: float, k: float, count: int) -> float:
-    """``count`` steps down from one surface to the other.
+    """Return the union with ``count`` steps from one surface down to the other.
 
-    A triangle wave turned by 45 degrees is a staircase: each piece is one distance alone, so the
-    slope does not grow.
+    A triangle wave rotated by 45 degrees is a staircase. Each piece depends on one distance only,
+    so the slope does not grow.
     """
     step = max(k / float(count), SHARP)
     across = (b - k) - a + step
@@ -108,37 +115,39 @@ def stairs(a: float, b: float, k: float, count: int) -> float:
 
 @func
 def pipe(a: float, b: float, k: float) -> float:
-    """A tube of radius ``k`` along the line where the two surfaces cross; nothing else is left."""
+    """Return only a tube of radius ``k`` along the line where the two surfaces cross."""
     return length(vec2(a, b)) - k
 
 
 @func
 def engrave(a: float, b: float, k: float) -> float:
-    """A V-shaped cut, ``k`` deep, in the first shape along the second one's surface."""
+    """Return the first shape with a V-shaped cut, ``k`` deep, along the second surface."""
     return max(a, (a + k - abs(b)) * SQRT_HALF)
 
 
 @func
 def groove(a: float, b: float, depth: float, width: float) -> float:
-    """A rectangular cut in the first shape along the second one's surface.
+    """Return the first shape with a rectangular cut along the second shape's surface.
 
     Args:
         a: The shape that is cut.
-        b: The shape whose surface is followed.
-        depth: How deep it is cut.
-        width: Half the width of the cut: how far from the second surface it reaches.
+        b: The shape whose surface the cut follows.
+        depth: Depth of the cut.
+        width: Half the width of the cut: its extent on each side of the second surface.
     """
     return max(a, min(a + depth, width - abs(b)))
 
 
 @func
 def tongue(a: float, b: float, depth: float, width: float) -> float:
-    """A rectangular ridge on the first shape along the second one's surface; fits ``groove``.
+    """Return the first shape with a rectangular ridge along the second shape's surface.
+
+    The ridge fits into a ``groove`` of the same size.
 
     Args:
-        a: The shape that carries the ridge.
-        b: The shape whose surface is followed.
-        depth: How high the ridge stands.
+        a: The shape that the ridge is added to.
+        b: The shape whose surface the ridge follows.
+        depth: Height of the ridge.
         width: Half the width of the ridge.
     """
     return min(a, max(a - depth, abs(b) - width))

@@ -1,7 +1,7 @@
-"""Shapes made of two others: unions, cuts, morphs, displacement.
+"""Operators of two shapes: unions, cuts, morphs, displacement.
 
-Input: two distances. Output: the distance of the result, and the rules of its
-slope, its box and its material. Blends are declared in ``blends``.
+Input: two distances. Output: the distance of the result, and the rules for its slope, its box and
+its material. Blends are declared in ``blends``.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from distal.lang import abs, clamp, func, max, min, mix, select
 
 @func
 def first_shows(a: float, b: float) -> float:
-    """No share for ``b``: what the operator makes belongs to the first shape."""
+    """Return 0, no share of ``b``: the result has the first shape's material."""
     return 0.0
 
 
 @func
 def farther_shows(a: float, b: float) -> float:
-    """The share of ``b`` in an intersection: the face that ends the shape."""
+    """Return the share of ``b`` in an intersection: 1 if its surface bounds the result."""
     return select(a < b, 1.0, 0.0)
 
 
 @func
 def cutter_shows(a: float, b: float) -> float:
-    """The share of ``b`` in a difference: its face, seen from inside."""
+    """Return the share of ``b`` in a difference: 1 on its surface, which is seen from inside."""
     return select(a < -b, 1.0, 0.0)
 
 
@@ -44,13 +44,13 @@ def cutter_shows(a: float, b: float) -> float:
 
 @func
 def first_box(bounds_a: Boxes, bounds_b: Boxes) -> Boxes:
-    """The first shape's box: nothing is added to it."""
+    """Return the first shape's box, because nothing is added to it."""
     return bounds_a
 
 
 @func
 def endless(bounds: Boxes) -> Boxes:
-    """The box of a shape without end."""
+    """Return an infinite box."""
     everything = bounds
     everything.low = bounds.low * 0.0 - UNBOUNDED
     everything.high = bounds.high * 0.0 + UNBOUNDED
@@ -59,64 +59,64 @@ def endless(bounds: Boxes) -> Boxes:
 
 @func
 def complement(d: float) -> float:
-    """Everything but the shape."""
+    """Return the complement: everything outside the shape."""
     return -d
 
 
 @func
 def union(a: float, b: float) -> float:
-    """What is in either."""
+    """Return what is in either shape."""
     return min(a, b)
 
 
 @func
 def intersection(a: float, b: float) -> float:
-    """What is in both."""
+    """Return what is in both shapes."""
     return max(a, b)
 
 
 @func
 def difference(a: float, b: float) -> float:
-    """The first without the second."""
+    """Return what is in the first shape but not in the second."""
     return max(a, -b)
 
 
 @func
 def xor(a: float, b: float) -> float:
-    """What is in one and not in the other."""
+    """Return what is in exactly one of the shapes."""
     return max(min(a, b), -max(a, b))
 
 
 @func
 def clearance(a: float, b: float, gap: float) -> float:
-    """The first without the second and all within ``gap`` of it: room for it to fit."""
+    """Return the first shape without everything within ``gap`` of the second."""
     return max(a, gap - b)
 
 
 @func
 def morph(a: float, b: float, t: float) -> float:
-    """Between two shapes: the first at t = 0, the second at t = 1."""
+    """Interpolate between two shapes: the first at t = 0, the second at t = 1."""
     return mix(a, b, t)
 
 
 @func
 def morph_mix(a: float, b: float, t: float) -> float:
-    """The share of ``b``."""
+    """Return the share of ``b``."""
     return t
 
 
 @func
 def displaced(a: float, b: float, height: float) -> float:
-    """The first shape's surface moved out by the second field, times ``height``.
+    """Move the first shape's surface outwards by the second field times ``height``.
 
-    The field counts from -1 to 1; what it has beyond is cut off, or there would be no box.
+    The field is clamped to -1 to 1; otherwise there would be no box.
     """
     return a - height * clamp(b, -1.0, 1.0)
 
 
 @func
 def displaced_slope(slope_a: float, slope_b: float, height: float) -> float:
-    """The field's slope counts by the height."""
+    """Return the sum of slopes, the field's multiplied by the height."""
     return slope_a + abs(height) * slope_b
 
 
@@ -124,36 +124,36 @@ def displaced_slope(slope_a: float, slope_b: float, height: float) -> float:
 def displaced_bounds(
     bounds_a: Boxes, bounds_b: Boxes, height: float, side_growth_a: float
 ) -> Boxes:
-    """The first shape's box, moved out by the height."""
+    """Return the first shape's box, enlarged by the height."""
     return moved_out(bounds_a, abs(height), side_growth_a)
 
 
 @func
 def carved(a: float, b: float, depth: float) -> float:
-    """The second shape's form cut ``depth`` deep into the surface of the first (engraved text)."""
+    """Cut the second shape ``depth`` deep into the surface of the first (engraved text)."""
     return max(a, min(a + depth, -b))
 
 
 @func
 def embossed(a: float, b: float, height: float) -> float:
-    """The second shape's form raised by ``height`` on the surface of the first."""
+    """Raise the second shape by ``height`` on the surface of the first."""
     return min(a, max(a - height, b))
 
 
 @func
 def embossed_mix(a: float, b: float, height: float) -> float:
-    """The share of ``b``: all of what is raised."""
+    """Return the share of ``b``: 1 on the raised part."""
     return select(max(a - height, b) < a, 1.0, 0.0)
 
 
 @func
 def embossed_bounds(bounds_a: Boxes, bounds_b: Boxes, height: float, side_growth_a: float) -> Boxes:
-    """The first shape's box, moved out by the height."""
+    """Return the first shape's box, enlarged by the height."""
     return moved_out(bounds_a, height, side_growth_a)
 
 
-# Of a shape exact inside, cut by one exact outside, the inside is exact; only then. In a union the
-# outside stays exact, in an intersection the inside; an exclusive or swaps the two.
+# A difference is exact inside only if the first shape is exact inside and the second outside. A
+# union stays exact outside, an intersection inside; an exclusive or neither.
 UNION = operator(
     "union",
     combine=union,

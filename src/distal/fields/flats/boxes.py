@@ -1,7 +1,7 @@
 """Flat shapes with right angles: rectangles, crosses, stairs.
 
-Input: a point and the numbers of a shape. Output: the distance, negative inside.
-Sizes are full sizes, from side to side.
+Input: a point and the numbers of a shape. Output: the distance, negative inside. Sizes are full
+sizes, from side to side.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ def _arms_fit(span: float, thickness: float) -> str | None:
 @primitive("HalfPlane", EXACT)
 @func
 def half_plane(p: vec2, normal: vec2 = UP, offset: float = 0.0) -> float:
-    """All that lies behind a straight line.
+    """Half plane on one side of a straight line.
 
     Args:
         p: Point.
-        normal: Direction out of the inside, of length 1.
-        offset: How far the line lies from the origin, along the normal.
+        normal: Normal of the line that points outwards, of length 1.
+        offset: Distance of the line from the origin along the normal.
 
     Source: the point's projection on the normal.
 
@@ -64,14 +64,14 @@ def half_plane(p: vec2, normal: vec2 = UP, offset: float = 0.0) -> float:
 
 @func
 def rectangle_bounds(size: vec2) -> Bounds2:
-    """The rectangle itself."""
+    """Return the rectangle itself."""
     return centred_bounds(0.5 * size)
 
 
 @primitive("Rectangle", EXACT, bounds=rectangle_bounds)
 @func
 def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
-    """Rectangle with sides along the axes.
+    """Rectangle with sides along the axes, centred at the origin.
 
     Args:
         p: Point.
@@ -98,7 +98,7 @@ def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
 )
 @func
 def rounded_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, radii: vec4 = EQUAL_RADII) -> float:
-    """Rectangle whose corners are rounded, each by its own radius.
+    """Rectangle with rounded corners, each with its own radius.
 
     Args:
         p: Point.
@@ -123,12 +123,12 @@ def rounded_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, radii: vec4 = EQUAL_RAD
 @primitive("ChamferedRectangle", EXACT, bounds=rectangle_bounds, requires=_chamfer_fits)
 @func
 def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2) -> float:
-    """Rectangle whose corners are cut off at 45 degrees.
+    """Rectangle with corners chamfered at 45 degrees.
 
     Args:
         p: Point.
         size: Full width and height.
-        chamfer: How much of each side a cut takes away.
+        chamfer: Length that a chamfer removes from each side.
 
     Source: its three edges in one quarter, folded again at the diagonal of the corner.
 
@@ -148,7 +148,7 @@ def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2)
 
 @func
 def oriented_rectangle_bounds(start: vec2, end: vec2, thickness: float) -> Bounds2:
-    """The rectangle around all four corners."""
+    """Return the rectangle around all four corners."""
     along = end - start
     direction = along / max(length(along), TINY)
     reach = 0.5 * thickness * abs(vec2(direction.y, direction.x))
@@ -160,7 +160,7 @@ def oriented_rectangle_bounds(start: vec2, end: vec2, thickness: float) -> Bound
 def oriented_rectangle(
     p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, thickness: float = 0.25
 ) -> float:
-    """A bar with square ends between two points.
+    """Bar with square ends between two points.
 
     Args:
         p: Point.
@@ -186,14 +186,14 @@ def oriented_rectangle(
 
 @func
 def cross_bounds(span: float) -> Bounds2:
-    """The square as wide as the bars are long."""
+    """Return the square around the bars."""
     return centred_bounds(vec2(0.5 * span))
 
 
 @primitive("Cross", EXACT, bounds=cross_bounds, limits={"span": Limit.POSITIVE}, requires=_arms_fit)
 @func
 def cross_shape(p: vec2, span: float = 1.0, thickness: float = 0.3) -> float:
-    """Two equal bars across each other.
+    """Cross of two equal perpendicular bars.
 
     Args:
         p: Point.
@@ -218,19 +218,19 @@ def cross_shape(p: vec2, span: float = 1.0, thickness: float = 0.3) -> float:
 
 @func
 def tunnel_bounds(width: float, height: float) -> Bounds2:
-    """From the floor to the top of the arch."""
+    """Return the rectangle from the floor to the top of the arch."""
     return Bounds2(vec2(-0.5 * width, -height), vec2(0.5 * width, 0.5 * width))
 
 
 @primitive("Tunnel", EXACT, bounds=tunnel_bounds, limits={"height": Limit.NOT_NEGATIVE})
 @func
 def tunnel(p: vec2, width: float = 1.0, height: float = 0.5) -> float:
-    """Half a disc on top of two walls; the disc's centre is the origin.
+    """Tunnel profile: half a disc on top of a rectangle; the disc's centre is the origin.
 
     Args:
         p: Point.
-        width: From wall to wall.
-        height: Of the walls, below y = 0.
+        width: Distance between the walls.
+        height: Height of the walls, below y = 0.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -246,13 +246,13 @@ def tunnel(p: vec2, width: float = 1.0, height: float = 0.5) -> float:
 
 @func
 def stairs_bounds(step: vec2, count: int) -> Bounds2:
-    """From the first step's foot to the top."""
+    """Return the rectangle from the foot of the first step to the top."""
     return Bounds2(vec2(0.0), step * float(count))
 
 
 @func
 def from_step(p: vec2, step: vec2, index: float) -> vec2:
-    """The vector from the nearest point of one riser and its tread."""
+    """Return the vector from the nearest point of one step (its riser and tread) to p."""
     q = p - step * vec2(index, index + 1.0)
     from_riser = vec2(q.x, q.y - clamp(q.y, -step.y, 0.0))
     from_tread = vec2(q.x - clamp(q.x, 0.0, step.x), q.y)
@@ -262,12 +262,12 @@ def from_step(p: vec2, step: vec2, index: float) -> vec2:
 @primitive("Stairs", EXACT, bounds=stairs_bounds, limits={"step": Limit.POSITIVE})
 @func
 def stairs(p: vec2, step: vec2 = STEP, count: int = 4) -> float:
-    """A flight of stairs that climbs to the right, with what is below it; starts at the origin.
+    """Stairs that rise to the right from the origin, with the area below them.
 
     Args:
         p: Point.
         step: Width and height of each step.
-        count: How many steps.
+        count: Number of steps.
 
     Source: the step nearest along the flight and its neighbours; corners of steps are evenly
     spaced along the flight, so no other is nearer.

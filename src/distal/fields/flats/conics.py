@@ -2,9 +2,9 @@
 
 Input: a point and the numbers of a shape. Output: the distance, negative inside.
 
-The nearest point of a conic is the root of a polynomial; here an equation with the same root is
-chosen that Newton's method solves from one side, so that a fixed number of steps is enough. How
-many is measured: the error then is below 2e-6 of the shape's size, also beside the evolute.
+The nearest point of a conic is the root of a polynomial. Here an equation with the same root is
+used on which Newton's method converges from one side, so a fixed number of steps is enough. The
+number is measured: the error is below 2e-6 of the shape's size, even next to the evolute.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, dot, func, length, max, min, pow, select, sqrt, vec2
 
 WIDE: Final = vec2(0.7, 0.4)
-# The largest root of t^3 = t + 1: bounds that of t^3 + a t = b by the larger of its two terms.
+# The largest root of t^3 = t + 1. It bounds the root of t^3 + a t = b by the larger of two terms.
 PLASTIC: Final = 1.3247179572447460
-# The root of c^2 + c^3 = 1, a little less.
+# The root of c^2 + c^3 = 1, rounded down.
 BELOW_BOTH: Final = 0.7548
 CUBIC_STEPS: Final = 5
 ELLIPSE_STEPS: Final = 4
@@ -28,10 +28,10 @@ HYPERBOLA_STEPS: Final = 9
 
 @func
 def largest_root(a: float, b: float) -> float:
-    """The largest root of t^3 + a t = b for b >= 0.
+    """Return the largest root of t^3 + a t = b for b >= 0.
 
-    The cubic rises and is convex beyond its root, so Newton's method comes down to it from any
-    larger number; the start is at most half as large again.
+    Beyond its root the cubic increases and is convex, so Newton's method converges to it from any
+    larger number; the start is at most 1.5 times the root.
     """
     by_b = pow(max(b, TINY), 1.0 / 3.0)
     start = select(a > 0.0, min(by_b, b / max(a, TINY)), PLASTIC * max(by_b, sqrt(max(-a, 0.0))))
@@ -43,7 +43,10 @@ def largest_root(a: float, b: float) -> float:
 
 @func
 def parabola_foot(q: vec2, curvature: float) -> float:
-    """The x of the point nearest to ``q`` on y = curvature x^2, for q.x >= 0 and curvature > 0."""
+    """Return the x of the point nearest to ``q`` on y = curvature x^2.
+
+    Requires q.x >= 0 and curvature > 0.
+    """
     double = 2.0 * curvature
     return largest_root((1.0 / double - q.y) / curvature, q.x / (double * curvature))
 
@@ -51,11 +54,11 @@ def parabola_foot(q: vec2, curvature: float) -> float:
 @primitive("Parabola", EXACT, limits={"curvature": Limit.POSITIVE})
 @func
 def parabola(p: vec2, curvature: float = 1.0) -> float:
-    """All that lies above the parabola y = curvature x^2.
+    """Region above the parabola y = curvature x^2.
 
     Args:
         p: Point.
-        curvature: Half of the curvature at the lowest point.
+        curvature: Coefficient of x^2: half of the curvature at the lowest point.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
@@ -73,19 +76,19 @@ def parabola(p: vec2, curvature: float = 1.0) -> float:
 
 @func
 def parabola_segment_bounds(width: float, height: float) -> Bounds2:
-    """From the base to the top."""
+    """Return the rectangle from the base to the top."""
     return Bounds2(vec2(-0.5 * width, 0.0), vec2(0.5 * width, height))
 
 
 @primitive("ParabolaSegment", EXACT, bounds=parabola_segment_bounds)
 @func
 def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
-    """What a parabola cuts off above the x axis.
+    """Region between a parabola that opens downwards and the x axis.
 
     Args:
         p: Point.
-        width: Of the base, along the x axis.
-        height: Of the top above it.
+        width: Width of the base, along the x axis.
+        height: Height of the top above the base.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
@@ -97,7 +100,7 @@ def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     """
     half = 0.5 * width
     curvature = height / (half * half)
-    # Seen downwards from the top.
+    # Coordinates with the top as origin and y downwards.
     q = vec2(abs(p.x), height - p.y)
     x = min(parabola_foot(q, curvature), half)
     from_curve = q - vec2(x, curvature * x * x)
@@ -110,11 +113,11 @@ def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
 @primitive("QuadraticCircle", EXACT, bounds=disc_bounds)
 @func
 def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
-    """Nearly a circle, of four parabolas: each joins two axes and leaves them at right angles.
+    """Approximate circle made of four parabolas, each perpendicular to two axes at its ends.
 
     Args:
         p: Point.
-        radius: Along the axes; along the diagonals it is 6 per cent more.
+        radius: Radius along the axes; along the diagonals it is 6 % more.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
@@ -125,7 +128,7 @@ def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
         quadratic_circle((0.0, 0.0), 2.0) = -2.0
     """
     q = abs(p)
-    # Across the diagonal, and down from the parabola's top on it.
+    # Coordinates across the diagonal, and along it downwards from the parabola's top.
     top = 1.5 * HALF_ROOT * radius
     seen = vec2(HALF_ROOT * abs(q.x - q.y), top - HALF_ROOT * (q.x + q.y))
     curvature = HALF_ROOT / radius
@@ -149,12 +152,12 @@ def _points_stay(radius: float, depth: float) -> str | None:
 )
 @func
 def blobby_cross(p: vec2, radius: float = 0.6, depth: float = 0.15) -> float:
-    """Four points on the axes, joined by parabolas that are drawn in toward the middle.
+    """Star with four points on the axes, joined by concave parabolas.
 
     Args:
         p: Point.
-        radius: From the middle to a point.
-        depth: How far a side is drawn in from the straight line between two points.
+        radius: Distance from the middle to a point.
+        depth: How far a side is moved inwards from the straight line between two points.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/); the cubic by Newton's method.
@@ -165,7 +168,7 @@ def blobby_cross(p: vec2, radius: float = 0.6, depth: float = 0.15) -> float:
         blobby_cross((0.75, 0.75), 2.0, 0.35355339059327373) = 0.0
     """
     q = abs(p)
-    # Across the diagonal, and inwards from where the parabola is drawn in deepest.
+    # Coordinates across the diagonal, and along it inwards from the parabola's vertex.
     half = HALF_ROOT * radius
     seen = vec2(HALF_ROOT * abs(q.x - q.y), depth - half + HALF_ROOT * (q.x + q.y))
     curvature = depth / (half * half)
@@ -177,16 +180,17 @@ def blobby_cross(p: vec2, radius: float = 0.6, depth: float = 0.15) -> float:
 
 @func
 def ellipse_bounds(radii: vec2) -> Bounds2:
-    """The rectangle around it."""
+    """Return the rectangle around the ellipse."""
     return centred_bounds(radii)
 
 
 @func
 def ellipse_start(scaled: vec2, gap: float) -> float:
-    """A number below the root u of (scaled.x / (u + gap))^2 + (scaled.y / u)^2 = 1, close to it.
+    """Return a number slightly below the root u of an equation.
 
-    From 1 / (1 + x)^2 >= 1 - 2 x the root is above that of u^2 (A + B u) = 1; it matters beside
-    the evolute's points on the long axis, where other bounds are far too low.
+    The equation is (scaled.x / (u + gap))^2 + (scaled.y / u)^2 = 1. Because 1 / (1 + x)^2 >= 1 - 2
+    x, the root is above that of u^2 (A + B u) = 1. This bound is needed next to the evolute's
+    points on the long axis, where other bounds are far too low.
     """
     squares = scaled * scaled
     rest = max(gap * gap - squares.x, TINY * TINY)
@@ -202,7 +206,7 @@ def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
 
     Args:
         p: Point.
-        radii: Half of the width and of the height.
+        radii: Half of the width and half of the height.
 
     Source: David Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid"
     (https://www.geometrictools.com/Documentation/DistancePointEllipseEllipsoid.pdf), for the
@@ -217,8 +221,8 @@ def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
     wide = radii.x > radii.y
     r = select(wide, radii, radii.yx)
     q = max(abs(select(wide, p, p.yx)), TINY * r.y)
-    # The nearest point is r^2 q / (t + r^2); u = t + r.y^2 counts from the pole, where it is
-    # found to its last digit however close to the long axis the point lies.
+    # The nearest point is r^2 q / (t + r^2). u = t + r.y^2 is measured from the pole, so that it is
+    # accurate to the last digit even if the point is close to the long axis.
     scaled = r * q
     gap = r.x * r.x - r.y * r.y
     offset = vec2(gap, 0.0)
@@ -237,12 +241,12 @@ def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
 @primitive("Hyperbola", EXACT, limits={"steepness": Limit.POSITIVE})
 @func
 def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
-    """All that lies beyond the two branches of a hyperbola, to the left and to the right.
+    """Region outside of the two branches of a hyperbola, on the left and on the right.
 
     Args:
         p: Point.
-        radius: From the middle to each branch, along x.
-        steepness: How far the lines that the branches approach rise for each step along x.
+        radius: Distance from the middle to each branch, along x.
+        steepness: Slope of the asymptotes.
 
     Source: the nearest point as the root of an equation that rises and is concave, from below, by
     Newton's method.

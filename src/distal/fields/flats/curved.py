@@ -1,4 +1,4 @@
-"""Flat shapes with sides of circles: lenses, moons, hearts, eggs and capsules.
+"""Flat shapes with sides made of circular arcs: lenses, moons, hearts, eggs and capsules.
 
 Input: a point and the numbers of a shape. Output: the distance, negative inside.
 """
@@ -13,7 +13,7 @@ from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, nearer, turne
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, dot, func, length, max, min, select, sqrt, vec2, vec3
 
-# The heart of a square of diagonal 1 is this high: half of it, and half a disc on each upper side.
+# Height of the heart whose square has diagonal 1: the square, with half a disc on each upper side.
 HEART_HEIGHT: Final = 1.1035533905932737  # 3/4 + sqrt(1/8)
 HEART_REACH: Final = 0.6035533905932737  # 1/4 + sqrt(1/8)
 HEART_LOBE: Final = 0.3535533905932738  # sqrt(1/8)
@@ -56,19 +56,19 @@ def _bars_are_thin(span: float, thickness: float) -> str | None:
 
 @func
 def lens_bounds(width: float, height: float) -> Bounds2:
-    """As wide and high as it is."""
+    """Return the rectangle of this width and height."""
     return centred_bounds(0.5 * vec2(width, height))
 
 
 @primitive("Vesica", EXACT, bounds=lens_bounds, requires=_is_upright)
 @func
 def vesica(p: vec2, width: float = 0.6, height: float = 1.0) -> float:
-    """What two equal discs have in common: a lens with its tips on the y axis.
+    """Lens: the intersection of two equal discs, with its tips on the y axis.
 
     Args:
         p: Point.
-        width: Of the lens, at most the height.
-        height: From tip to tip.
+        width: Width of the lens, at most the height.
+        height: Distance between the tips.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -79,7 +79,7 @@ def vesica(p: vec2, width: float = 0.6, height: float = 1.0) -> float:
         vesica((3.0, 0.0), 2.0, 4.0) = 2.0
     """
     half = 0.5 * vec2(width, height)
-    # The right side's circle has its centre this far left of the y axis.
+    # Distance of the centre of the right side's circle to the left of the y axis.
     offset = (half.y * half.y - half.x * half.x) / (2.0 * half.x)
     q = abs(p)
     beyond_tip = (q.y - half.y) * offset > half.y * q.x
@@ -89,7 +89,7 @@ def vesica(p: vec2, width: float = 0.6, height: float = 1.0) -> float:
 
 @func
 def oriented_vesica_bounds(start: vec2, end: vec2, width: float) -> Bounds2:
-    """Around the tips and the middle's sides, by the disc that holds it all."""
+    """Return the rectangle around the disc that contains the tips and the sides."""
     middle = 0.5 * (start + end)
     reach = 0.5 * length(end - start)
     wide = 0.5 * width
@@ -101,13 +101,13 @@ def oriented_vesica_bounds(start: vec2, end: vec2, width: float) -> Bounds2:
 @primitive("OrientedVesica", EXACT, bounds=oriented_vesica_bounds, requires=_lens_is_long)
 @func
 def oriented_vesica(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, width: float = 0.5) -> float:
-    """A lens between two points.
+    """Lens with its tips at two given points.
 
     Args:
         p: Point.
-        start: One tip.
-        end: The other.
-        width: Full width in the middle, at most the way between the tips.
+        start: First tip.
+        end: Second tip.
+        width: Full width in the middle, at most the distance between the tips.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -126,7 +126,7 @@ def oriented_vesica(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, width: float
 
 @func
 def moon_bounds(radius: float, cut_radius: float, offset: float) -> Bounds2:
-    """The disc's left side, and its right as far as the corners when they lie left of the top."""
+    """Return the rectangle around the left side and as far right as the shape extends."""
     across = (radius * radius - cut_radius * cut_radius + offset * offset) / (2.0 * offset)
     corner = sqrt(max(radius * radius - across * across, 0.0))
     high = select(across > 0.0, radius, corner)
@@ -142,13 +142,13 @@ def moon_bounds(radius: float, cut_radius: float, offset: float) -> Bounds2:
 )
 @func
 def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 0.4) -> float:
-    """A disc around the origin less a second disc to its right.
+    """Moon: a disc around the origin minus a second disc to its right.
 
     Args:
         p: Point.
-        radius: Of the disc.
-        cut_radius: Of the disc that is taken away.
-        offset: How far to the right the second centre lies; the circles must cross.
+        radius: Radius of the disc.
+        cut_radius: Radius of the disc that is subtracted.
+        offset: Distance of the second centre to the right; the circles must intersect.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -174,12 +174,12 @@ def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 
 @primitive("CircleCross", EXACT, bounds=lens_bounds, requires=_is_flat)
 @func
 def circle_cross(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
-    """A star of four points with sides of circles, hollow between the points.
+    """Star with four points and concave sides made of circular arcs.
 
     Args:
         p: Point.
-        width: From the left point, where the sides are level, to the right one.
-        height: From the lower to the upper point, at most the width.
+        width: Distance from the left to the right point, where the sides are horizontal.
+        height: Distance from the lower to the upper point, at most the width.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -190,7 +190,7 @@ def circle_cross(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
         circle_cross((4.0, 4.0), 2.0, 2.0) = 5.0
     """
     half = 0.5 * vec2(width, height)
-    # The circle touches the x axis at the point and goes through the upper one.
+    # The circle is tangent to the x axis at the right point and passes through the upper one.
     radius = dot(half, half) / (2.0 * half.y)
     q = abs(p)
     before = q.x < half.x and (q.y - half.y) * half.x < q.x * (radius - half.y)
@@ -200,18 +200,18 @@ def circle_cross(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
 
 @func
 def heart_bounds(height: float) -> Bounds2:
-    """As high as it is, and as wide."""
+    """Return the rectangle around the heart."""
     return centred_bounds(height * vec2(HEART_REACH / HEART_HEIGHT, 0.5))
 
 
 @primitive("Heart", EXACT, bounds=heart_bounds)
 @func
 def heart(p: vec2, height: float = 1.0) -> float:
-    """A square on its corner with half a disc on each upper side.
+    """Heart: a square standing on its corner, with half a disc on each upper side.
 
     Args:
         p: Point.
-        height: From the tip to the top; the middle of it is at the origin.
+        height: Distance from the tip to the top; the middle between them is the origin.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -222,7 +222,7 @@ def heart(p: vec2, height: float = 1.0) -> float:
         heart((0.0, 0.44822330470336313), 1.1035533905932737) = 0.0
     """
     scale = height / HEART_HEIGHT
-    # In units of the square's diagonal, from its lowest corner.
+    # Coordinates in units of the square's diagonal, from its lowest corner.
     q = vec2(abs(p.x), p.y + 0.5 * height) / scale
     past_lobe = length(q - vec2(0.25, 0.75)) - HEART_LOBE
     from_side = q - vec2(0.5 * max(q.x + q.y, 0.0))
@@ -233,7 +233,7 @@ def heart(p: vec2, height: float = 1.0) -> float:
 
 @func
 def uneven_capsule_bounds(bottom: float, top: float, height: float) -> Bounds2:
-    """Around both circles."""
+    """Return the rectangle around both circles."""
     reach = max(bottom, top)
     return Bounds2(vec2(-reach, -bottom), vec2(reach, height + top))
 
@@ -247,13 +247,13 @@ def uneven_capsule_bounds(bottom: float, top: float, height: float) -> Bounds2:
 )
 @func
 def uneven_capsule(p: vec2, bottom: float = 0.4, top: float = 0.2, height: float = 0.6) -> float:
-    """Two discs, one above the other, and all between their common tangents.
+    """Two discs, one above the other, and the region between their common tangents.
 
     Args:
         p: Point.
         bottom: Radius of the lower disc, around the origin.
         top: Radius of the upper disc.
-        height: From centre to centre, more than the difference of the radii.
+        height: Distance between the centres, more than the difference of the radii.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -276,7 +276,7 @@ def uneven_capsule(p: vec2, bottom: float = 0.4, top: float = 0.2, height: float
 
 @func
 def egg_side(bottom: float, top: float, height: float, bulge: float) -> vec3:
-    """Centre (x, y) and radius (z) of the circle that makes the right side."""
+    """Return centre (x, y) and radius (z) of the circle of the right side."""
     radius = 0.5 * (height + bottom + top) / bulge
     to_bottom = radius - bottom
     to_top = radius - top
@@ -286,7 +286,7 @@ def egg_side(bottom: float, top: float, height: float, bulge: float) -> vec3:
 
 @func
 def egg_bounds(bottom: float, top: float, height: float, bulge: float) -> Bounds2:
-    """Around both circles and what the sides reach."""
+    """Return the rectangle around both circles and the sides."""
     side = egg_side(bottom, top, height, bulge)
     reach = select(side.y > 0.0 and side.y < height, side.x + side.z, max(bottom, top))
     return Bounds2(vec2(-reach, -bottom), vec2(reach, height + top))
@@ -303,14 +303,15 @@ def egg_bounds(bottom: float, top: float, height: float, bulge: float) -> Bounds
 def egg(
     p: vec2, bottom: float = 0.4, top: float = 0.2, height: float = 0.4, bulge: float = 0.6
 ) -> float:
-    """Two discs, one above the other, and bulging sides that go smoothly over into both.
+    """Egg: two discs, one above the other, with convex sides tangent to both.
 
     Args:
         p: Point.
         bottom: Radius of the lower disc, around the origin.
         top: Radius of the upper disc.
-        height: From centre to centre, more than the difference of the radii.
-        bulge: 1 for sides as round as the whole egg is high, toward 0 for straight ones.
+        height: Distance between the centres, more than the difference of the radii.
+        bulge: From 0 (exclusive) for nearly straight sides to 1 for sides with the radius of half
+            the egg's height.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -322,7 +323,7 @@ def egg(
     """
     side = egg_side(bottom, top, height, bulge)
     q = vec2(abs(p.x), p.y)
-    # Which circle is met: the lines from the side's centre through both discs' centres tell.
+    # The lines from the side's centre through the discs' centres separate the three circles.
     below = turned_from(side.xy, q) > 0.0
     upper = vec2(0.0, height)
     above = turned_from(side.xy - upper, q - upper) < 0.0
@@ -333,7 +334,7 @@ def egg(
 
 @func
 def rounded_x_bounds(span: float, thickness: float) -> Bounds2:
-    """Around the discs at the four ends."""
+    """Return the square around the discs at the four ends."""
     reach = HALF_ROOT * 0.5 * (span - thickness) + 0.5 * thickness
     return centred_bounds(vec2(reach))
 
@@ -347,11 +348,11 @@ def rounded_x_bounds(span: float, thickness: float) -> Bounds2:
 )
 @func
 def rounded_x(p: vec2, span: float = 1.2, thickness: float = 0.25) -> float:
-    """Two bars with round ends along the diagonals.
+    """X of two bars with round ends along the diagonals.
 
     Args:
         p: Point.
-        span: Length of each bar with its ends.
+        span: Length of each bar, including its ends.
         thickness: Full width of each bar, at most half of its length.
 
     Source: its edge and its end in one eighth of the plane.

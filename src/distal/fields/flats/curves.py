@@ -1,7 +1,7 @@
-"""Lines with a width along curves: Bézier curves, splines, waves, spirals.
+"""Lines with a width along Bézier curves and splines.
 
-Input: a point, and the numbers or points of a curve. Output: the distance to what a
-disc covers that is drawn along it.
+Input: a point, and the numbers or points of a curve. Output: the distance to the region that a disc
+covers as it moves along the curve.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ UPPER_RIGHT: Final = vec2(0.5, 0.3)
 TOP: Final = vec2(0.0, 0.7)
 UPWARDS: Final = vec2(-0.3, 0.7)
 FROM_BELOW: Final = vec2(0.3, -0.7)
-# Steps from each end of a parabola: beside its evolute, where they converge slowest, the distance
-# is then right to 3e-7 of the curve's size. Newton's method needs 12 for that (both measured).
+# Steps from each end of a parabola. Next to its evolute, where convergence is slowest, the error of
+# the distance is then 3e-7 of the curve's size. Newton's method needs 12 steps (both measured).
 BEZIER_STEPS: Final = 7
 CUBIC_PIECES: Final = 4
 
@@ -33,7 +33,7 @@ def _ends_differ(start: tuple[float, ...], end: tuple[float, ...]) -> str | None
 
 @func
 def segment_bounds(start: vec2, end: vec2, radius: float) -> Bounds2:
-    """Around both ends."""
+    """Return the rectangle around both ends."""
     return Bounds2(min(start, end) - radius, max(start, end) + radius)
 
 
@@ -44,8 +44,8 @@ def segment(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, radius: float = 0.05
 
     Args:
         p: Point.
-        start: One end.
-        end: The other.
+        start: First point.
+        end: Last point.
         radius: Half of the line's width.
 
     Source: the point's projection on the line, held between the ends.
@@ -60,24 +60,27 @@ def segment(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, radius: float = 0.05
 
 @func
 def bezier_step(t: float, third: float, second: float, first: float, zeroth: float) -> float:
-    """One of Halley's steps toward a root of a cubic, at most two of Newton's, held in 0 to 1."""
+    """Return the next value of Halley's iteration for a root of a cubic.
+
+    The step is at most twice that of Newton's method, and the result is clamped to 0 to 1.
+    """
     value = ((third * t + second) * t + first) * t + zeroth
     slope = (3.0 * third * t + 2.0 * second) * t + first
     bend = 3.0 * third * t + second  # half of the second derivative
     square = slope * slope
     step = value * slope / max(square - value * bend, 0.5 * square, TINY * TINY)
-    # Where the cubic does not rise, on to the end that it points to.
+    # If the cubic does not increase, move to the end in the direction of the root.
     return clamp(t - select(slope > 0.0, step, value / TINY), 0.0, 1.0)
 
 
 @func
 def from_bezier(p: Vectors, start: Vectors, control: Vectors, end: Vectors) -> Vectors:
-    """The vector from the nearest point of a quadratic Bézier curve.
+    """Return the vector from the nearest point of a quadratic Bézier curve to p.
 
-    Along the curve the square of the distance has at most two lows, at the outer roots of a cubic.
-    One search climbs to each from its own end of the curve; where the cubic has one root, that lies
-    on the proper side of its inflection for one of the two. No coefficient is divided by, so a
-    straight curve is no special case.
+    Along the curve the squared distance has at most two minima, at the outer roots of a cubic. One
+    search for each starts at its own end of the curve; if the cubic has only one root, this root is
+    on the proper side of its inflection for one of the searches. No coefficient is used as a
+    divisor, so a straight curve is not a special case.
     """
     velocity = control - start
     bend = end - control - velocity
@@ -99,7 +102,7 @@ def from_bezier(p: Vectors, start: Vectors, control: Vectors, end: Vectors) -> V
 
 @func
 def quadratic_bezier_bounds(start: vec2, control: vec2, end: vec2, radius: float) -> Bounds2:
-    """Around the ends, and where the curve turns back along an axis."""
+    """Return the rectangle around the ends and the curve's extreme points along each axis."""
     velocity = control - start
     bend = end - control - velocity
     away = select(abs(bend.x) > TINY, bend.x, TINY)
@@ -118,13 +121,13 @@ def quadratic_bezier(
     end: vec2 = LOWER_RIGHT,
     radius: float = 0.05,
 ) -> float:
-    """A line along a quadratic Bézier curve.
+    """Line along a quadratic Bézier curve.
 
     Args:
         p: Point.
-        start: Where it starts.
-        control: Where it heads at first, and comes from at last.
-        end: Where it ends.
+        start: First point.
+        control: Control point: the tangents at both ends point to it.
+        end: Last point.
         radius: Half of the line's width.
 
     Source: Inigo Quilez, "2D distance functions"
@@ -141,10 +144,10 @@ def quadratic_bezier(
 
 @func
 def from_arc_pair(p: vec2, start: vec2, leaving: vec2, end: vec2, arriving: vec2) -> vec2:
-    """The vector from the nearest point of two parabolas that join two points smoothly.
+    """Return the vector from the nearest point of two parabolas that join two points smoothly.
 
-    They leave ``start`` and arrive at ``end`` as a cubic with these velocities (over a unit of
-    time) would, and meet in its middle's place for equal speeds.
+    The parabolas leave ``start`` and arrive at ``end`` with the velocities of a cubic curve (over a
+    unit of time). They meet where the cubic with these velocities is at half of the time.
     """
     first = start + 0.25 * leaving
     second = end - 0.25 * arriving
@@ -156,7 +159,10 @@ def from_arc_pair(p: vec2, start: vec2, leaving: vec2, end: vec2, arriving: vec2
 def cubic_bezier_bounds(
     start: vec2, leaving: vec2, arriving: vec2, end: vec2, radius: float
 ) -> Bounds2:
-    """Around the ends and the control points, and the parabolas' own, which lie beside them."""
+    """Return the rectangle around the ends and all control points.
+
+    This includes the control points of the parabolas.
+    """
     low = min(start, leaving, arriving, end) - radius
     high = max(start, leaving, arriving, end) + radius
     return Bounds2(low, high)
@@ -173,19 +179,20 @@ def cubic_bezier(
     radius: float = 0.05,
     pieces: int = CUBIC_PIECES,
 ) -> float:
-    """A line along a cubic Bézier curve, followed by pairs of parabolas.
+    """Line along a cubic Bézier curve, approximated by pairs of parabolas.
 
-    The distance is exact for the parabolas. They agree with the cubic in place and direction at the
-    ends of each piece; with 4 pieces they stay within 2e-3 of the curve's size (measured).
+    The distance is exact for the parabolas. They have the positions and directions of the cubic at
+    the ends of each piece; with 4 pieces the deviation is below 2e-3 of the curve's size
+    (measured).
 
     Args:
         p: Point.
-        start: Where it starts.
-        leaving: Where it heads at first.
-        arriving: Where it comes from at last.
-        end: Where it ends.
+        start: First point.
+        leaving: First control point: the direction in which the curve starts.
+        arriving: Second control point: the direction from which the curve ends.
+        end: Last point.
         radius: Half of the line's width.
-        pieces: How many pairs of parabolas.
+        pieces: Number of pairs of parabolas.
 
     Source: each piece in Hermite's form, its two parabolas by halving.
 
@@ -214,7 +221,7 @@ def cubic_bezier(
 
 @func
 def spline_velocity(points: Buffer[vec2], index: int, closed: bool) -> vec2:
-    """Catmull and Rom's velocity at a point: half of the way between its neighbours."""
+    """Return the Catmull-Rom velocity at a point: half of the vector between its neighbours."""
     count = size(points)
     before = index - 1
     after = index + 1
@@ -223,14 +230,17 @@ def spline_velocity(points: Buffer[vec2], index: int, closed: bool) -> vec2:
         after = (index + 1) % count
     before = max(before, 0)
     after = min(after, count - 1)
-    # At the ends of an open curve the only neighbour's way counts whole.
+    # At the ends of an open curve, it is the whole vector to the only neighbour.
     whole = 1.0 if after - before == 1 and not closed else 0.5
     return whole * (points[after] - points[before])
 
 
 @func
 def spline_bounds(points: Buffer[vec2], radius: float, closed: bool) -> Bounds2:
-    """Around the points and the parabolas' control points, which lie on each point's tangent."""
+    """Return the rectangle around the points and the control points of the parabolas.
+
+    These lie on the tangents at the points.
+    """
     low = points[0]
     high = points[0]
     for i in range(size(points)):
@@ -243,16 +253,16 @@ def spline_bounds(points: Buffer[vec2], radius: float, closed: bool) -> Bounds2:
 @primitive("SplinePath", EXACT_OUTSIDE, bounds=spline_bounds)
 @func
 def spline_path(p: vec2, points: Buffer[vec2], radius: float = 0.05, closed: bool = False) -> float:
-    """A smooth line through points, made of two parabolas between each two.
+    """Smooth line through points, made of two parabolas between each two points.
 
-    The distance is exact for the parabolas, which pass each point in the direction of a Catmull-Rom
-    spline.
+    The distance is exact for the parabolas, which pass through each point in the direction of a
+    Catmull-Rom spline.
 
     Args:
         p: Point.
         points: The points in order, 2 or more.
         radius: Half of the line's width.
-        closed: Whether the last point is joined to the first.
+        closed: Whether the last point is connected to the first.
 
     Source: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines" (1974), for the
     velocities.

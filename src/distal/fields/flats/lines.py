@@ -1,7 +1,7 @@
-"""Lines with a width along waves and spirals, and the S that everybody drew at school.
+"""Lines with a width along waves and spirals, and the "cool S".
 
-Input: a point and the numbers of a curve. Output: the distance to what a disc
-covers that is drawn along it.
+Input: a point and the numbers of a curve. Output: the distance to the region that a disc covers as
+it moves along the curve.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from distal.lang import (
     vec2,
 )
 
-# A spiral is drawn in this many pieces a turn, each of two parabolas.
+# Number of pieces per turn of a spiral; each piece is two parabolas.
 SPIRAL_PIECES: Final = 12
 STEEPEST_WAVE: Final = 5.0 / 6.0 * math.pi
-# Of the S, half as high as 1: its lines stand this far apart, and the straight ones end here.
+# Of the S with half height 1: the distance of its vertical lines, and the height of their ends.
 COOL_S_STEP: Final = 0.4
 COOL_S_LOW: Final = 0.2
 COOL_S_HIGH: Final = 0.6
@@ -55,7 +55,7 @@ def _turns_once(inner: float, outer: float, turns: int) -> str | None:
 
 @func
 def circle_wave_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
-    """As high as its arcs; without end to the left and right."""
+    """Return the bounds of the arcs' height; infinite to the left and right."""
     high = radius * (1.0 - cos(angle)) + 0.5 * thickness
     return Bounds2(vec2(-UNBOUNDED, -high), vec2(UNBOUNDED, high))
 
@@ -65,13 +65,13 @@ def circle_wave_bounds(radius: float, angle: float, thickness: float) -> Bounds2
 def circle_wave(
     p: vec2, radius: float = 0.25, angle: float = 1.8, thickness: float = 0.05
 ) -> float:
-    """A wave of arcs along the x axis without end, a crest at x = 0.
+    """Infinite wave of circular arcs along the x axis, with a crest at x = 0.
 
     Args:
         p: Point.
-        radius: Of the arcs' middle line.
-        angle: From a crest to the next crossing of the axis, as seen from the arc's centre; at most
-            5/6 pi, where neighbouring arcs touch.
+        radius: Radius of the arcs' middle line.
+        angle: Angle, at the arc's centre, from a crest to the next crossing of the axis, in
+            radians; at most 5/6 pi, where adjacent arcs touch.
         thickness: Full width of the line.
 
     Source: Inigo Quilez, "2D distance functions"
@@ -84,7 +84,7 @@ def circle_wave(
     """
     quarter = radius * sin(angle)
     depth = radius * cos(angle)
-    # Mirrored to between one crest's centre and the next trough's; seen from each of the two.
+    # Mirror the point to between a crest's centre and the next trough's; measure from both centres.
     x = abs(mod(p.x + 2.0 * quarter, 4.0 * quarter) - 2.0 * quarter)
     crest = from_arc(vec2(x, p.y + depth), radius, angle)
     trough = from_arc(vec2(2.0 * quarter - x, depth - p.y), radius, angle)
@@ -93,18 +93,18 @@ def circle_wave(
 
 @func
 def cool_s_bounds(height: float, thickness: float) -> Bounds2:
-    """Around its hull."""
+    """Return the rectangle around the S."""
     return centred_bounds(0.5 * vec2(height * COOL_S_STEP, height) + 0.5 * thickness)
 
 
 @primitive("CoolS", EXACT_OUTSIDE, bounds=cool_s_bounds)
 @func
 def cool_s(p: vec2, height: float = 1.0, thickness: float = 0.03) -> float:
-    """The S of 14 straight lines.
+    """The "cool S", a figure of 14 straight lines that pupils draw.
 
     Args:
         p: Point.
-        height: From the lower to the upper tip, in the lines' middle.
+        height: Distance from the lower to the upper tip, along the middle of the lines.
         thickness: Full width of the lines.
 
     Source: Inigo Quilez, "2D distance functions"
@@ -121,7 +121,7 @@ def cool_s(p: vec2, height: float = 1.0, thickness: float = 0.03) -> float:
     column = q.x - COOL_S_STEP * clamp(round(q.x / COOL_S_STEP), -1.0, 1.0)
     nearest = vec2(column, q.y - clamp(q.y, COOL_S_LOW, COOL_S_HIGH))
     roof = from_segment(vec2(abs(q.x), q.y), vec2(0.0, 1.0), vec2(COOL_S_STEP, COOL_S_HIGH))
-    # Two lines go down to the right through both halves, a third ends behind the second.
+    # Two lines go down to the right through both halves; a third ends at the second.
     left = from_segment(q, vec2(-COOL_S_STEP, COOL_S_LOW), vec2(0.0, -COOL_S_LOW))
     right = from_segment(q, vec2(0.0, COOL_S_LOW), vec2(COOL_S_STEP, -COOL_S_LOW))
     hidden = from_segment(q, vec2(COOL_S_STEP, COOL_S_LOW), vec2(0.5 * COOL_S_STEP, 0.0))
@@ -131,18 +131,20 @@ def cool_s(p: vec2, height: float = 1.0, thickness: float = 0.03) -> float:
 
 @func
 def spiral_bounds(outer: float, radius: float) -> Bounds2:
-    """The square around the last turn."""
+    """Return the square around the last turn."""
     return disc_bounds(outer + radius)
 
 
 @func
 def from_spiral(p: vec2, turns: int, radius_at: Callable[[float], vec2]) -> vec2:
-    """The vector from the nearest point of a spiral, counterclockwise from the x axis.
+    """Return the vector from the nearest point of a counterclockwise spiral to p.
+
+    The spiral starts on the x axis.
 
     Args:
         p: Point.
-        turns: How many whole turns.
-        radius_at: Distance from the middle at an angle, and how fast it grows there.
+        turns: Number of whole turns.
+        radius_at: Distance from the middle as a function of the angle, and its derivative.
     """
     step = 2.0 * PI / float(SPIRAL_PIECES)
     start = vec2(radius_at(0.0).x, 0.0)
@@ -155,7 +157,7 @@ def from_spiral(p: vec2, turns: int, radius_at: Callable[[float], vec2]) -> vec2
         r = radius_at(angle)
         end = r.x * out
         arriving = step * (r.y * out + r.x * vec2(-out.y, out.x))
-        # A piece lies within the disc about its middle that holds its ends and control points.
+        # A piece lies within the disc around its middle that contains its ends and control points.
         middle = 0.5 * (start + end)
         first = length(start + 0.25 * leaving - middle)
         second = length(end - 0.25 * arriving - middle)
@@ -179,16 +181,16 @@ def from_spiral(p: vec2, turns: int, radius_at: Callable[[float], vec2]) -> vec2
 def archimedean_spiral(
     p: vec2, inner: float = 0.1, outer: float = 1.0, turns: int = 3, radius: float = 0.04
 ) -> float:
-    """A line that winds outwards by the same amount each turn, counterclockwise from the x axis.
+    """Spiral line with a constant distance between turns, counterclockwise from the x axis.
 
-    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its
-    outer radius (measured).
+    The distance is exact for the approximation by 24 parabolas per turn, whose deviation is below
+    1e-3 of the outer radius (measured).
 
     Args:
         p: Point.
         inner: Distance from the middle at the start.
         outer: Distance from the middle at the end, more than at the start.
-        turns: How many whole turns.
+        turns: Number of whole turns.
         radius: Half of the line's width.
 
     Source: Archimedes, "On Spirals".
@@ -215,16 +217,16 @@ def archimedean_spiral(
 def logarithmic_spiral(
     p: vec2, inner: float = 0.05, outer: float = 1.0, turns: int = 3, radius: float = 0.02
 ) -> float:
-    """A line that winds outwards by the same factor each turn, counterclockwise from the x axis.
+    """Spiral line whose radius grows by a constant factor per turn.
 
-    The distance is exact for the parabolas, 24 a turn, that follow the spiral within 1e-3 of its
-    outer radius (measured).
+    It turns counterclockwise from the x axis. The distance is exact for the approximation by 24
+    parabolas per turn, whose deviation is below 1e-3 of the outer radius (measured).
 
     Args:
         p: Point.
         inner: Distance from the middle at the start.
         outer: Distance from the middle at the end, more than at the start.
-        turns: How many whole turns.
+        turns: Number of whole turns.
         radius: Half of the line's width.
 
     Source: Jacob Bernoulli, "Spira mirabilis" (1692).

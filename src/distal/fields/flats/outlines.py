@@ -1,10 +1,10 @@
-"""Outlines of letters and drawings: closed chains of lines and of quadratic Bézier curves.
+"""Outlines of letters and drawings: closed chains of lines and quadratic Bézier curves.
 
-Input: a point, and the edges as data. Curves must rise or fall all the way, so that each
-crosses a level once; whoever makes the data splits them (``scene.outlines``). Output: the
-distance to the nearest edge, negative where the chains go around.
+Input: a point, and the edges as data. Curves must be monotonic in y, so that each crosses a
+horizontal line once; the code that makes the data splits them (``scene.objects.outlines``). Output:
+the distance to the nearest edge, negative where the chains wind around the point.
 
-No class is made of this primitive: only ``scene.objects.outlines`` writes its data.
+No class is made from this primitive: only ``scene.objects.outlines`` makes its data.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ SMALLEST: Final = 1e-30
 
 @func
 def line_winding(p: vec2, start: vec2, end: vec2) -> int:
-    """1 or -1 where the line crosses the level of ``p`` to its right, upward or downward."""
+    """Return 1 or -1 if the line crosses the horizontal through ``p`` to its right.
+
+    It is 1 upwards and -1 downwards; 0 if there is no crossing.
+    """
     below = start.y <= p.y
     crosses = below != (end.y <= p.y)
     left = turned_from(end - start, p - start) > 0.0
@@ -30,9 +33,9 @@ def line_winding(p: vec2, start: vec2, end: vec2) -> int:
 
 @func
 def curve_winding(p: vec2, start: vec2, control: vec2, end: vec2) -> int:
-    """As ``line_winding``, for a curve that rises or falls all the way.
+    """Return the same as ``line_winding`` for a curve that is monotonic in y.
 
-    The place of crossing is the root of a quadratic, in the form that divides by no difference.
+    The crossing is the root of a quadratic, in the form that is not divided by a difference.
     """
     below = start.y <= p.y
     crosses = below != (end.y <= p.y)
@@ -48,7 +51,7 @@ def curve_winding(p: vec2, start: vec2, control: vec2, end: vec2) -> int:
 
 @func
 def outline_bounds(lines: Buffer[vec4], curves: Buffer[vec2]) -> Bounds2:
-    """The rectangle around all edges' ends and control points."""
+    """Return the rectangle around the ends and control points of all edges."""
     low = curves[0]
     high = curves[0]
     for i in range(1, size(curves)):
@@ -62,18 +65,18 @@ def outline_bounds(lines: Buffer[vec4], curves: Buffer[vec2]) -> Bounds2:
 
 @func
 def outline(p: vec2, lines: Buffer[vec4], curves: Buffer[vec2], even_odd: bool = False) -> float:
-    """What closed chains of lines and quadratic curves go around.
+    """Area enclosed by closed chains of lines and quadratic curves.
 
-    Outside the distance is exact; inside too where no two chains overlap. Where they do, edges that
-    lie inside count as well.
+    Outside, the distance is exact; inside too if no two chains overlap. Where chains overlap, edges
+    inside the area also count as surface.
 
     Args:
         p: Point.
         lines: Start and end of each line.
-        curves: Start, control point and end of each curve, one after the other; each rises or falls
-            all the way.
-        even_odd: Whether what is gone around twice is a hole; else it is solid, unless it is gone
-            around as often the other way.
+        curves: Start, control point and end of each curve, one after the other; each curve is
+            monotonic in y.
+        even_odd: Whether to use the even-odd rule, in which an area enclosed twice is a hole;
+            otherwise the nonzero rule.
 
     Source: the nearest edge, and the winding number by the edges that cross the level of ``p`` to
     its right.
@@ -89,7 +92,7 @@ def outline(p: vec2, lines: Buffer[vec4], curves: Buffer[vec2], even_odd: bool =
         control = curves[3 * i + 1]
         end = curves[3 * i + 2]
         winding += curve_winding(p, start, control, end)
-        # A curve lies in the box of its three points: most are too far away to be asked.
+        # A curve lies in the box of its three points; most are too far away to be evaluated.
         beyond = max(max(min(start, control, end) - p, p - max(start, control, end)), vec2(0.0))
         if dot(beyond, beyond) < dot(nearest, nearest):
             nearest = nearer(nearest, from_bezier(p, start, control, end))

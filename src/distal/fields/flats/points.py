@@ -12,7 +12,7 @@ from distal.lang import Buffer, func, length, select, size, vec2
 
 @func
 def from_polygon(p: vec2, points: Buffer[vec2]) -> float:
-    """Distance to a closed chain of edges, negative where it is gone around an odd number of times.
+    """Return the distance to a closed chain of edges, negative inside by the even-odd rule.
 
     Source: the even-odd rule, each edge counted where it crosses the level of ``p`` to the right.
     """
@@ -34,18 +34,18 @@ def from_polygon(p: vec2, points: Buffer[vec2]) -> float:
 
 @func
 def polygon_bounds(points: Buffer[vec2]) -> Bounds2:
-    """The rectangle around the corners."""
+    """Return the rectangle around the corners."""
     return points_bounds(points, 0.0)
 
 
 @primitive("Polygon", EXACT, bounds=polygon_bounds)
 @func
 def polygon(p: vec2, points: Buffer[vec2]) -> float:
-    """Any polygon; where it crosses itself, inside is what it goes around an odd number of times.
+    """Polygon through any points; if it crosses itself, the even-odd rule applies.
 
     Args:
         p: Point.
-        points: The corners in order, 3 or more; the last is joined to the first.
+        points: The corners in order, 3 or more; the last is connected to the first.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -61,12 +61,12 @@ def polygon(p: vec2, points: Buffer[vec2]) -> float:
 @primitive("RoundedPolygon", EXACT_OUTSIDE, bounds=points_bounds)
 @func
 def rounded_polygon(p: vec2, points: Buffer[vec2], radius: float = 0.1) -> float:
-    """A polygon grown by a radius, so that its outer corners are round.
+    """Polygon enlarged by a radius, so that its outer corners are round.
 
     Args:
         p: Point.
         points: The centres of the round corners in order, 3 or more.
-        radius: Of the corners; the sides lie this far outside the points.
+        radius: Radius of the corners; the sides lie this far outside the points.
 
     Source: a polygon, its distance less the radius.
 
@@ -81,13 +81,13 @@ def rounded_polygon(p: vec2, points: Buffer[vec2], radius: float = 0.1) -> float
 @primitive("Polyline", EXACT_OUTSIDE, bounds=points_bounds)
 @func
 def polyline(p: vec2, points: Buffer[vec2], radius: float = 0.05, closed: bool = False) -> float:
-    """A line through points, as wide as a disc drawn along it.
+    """Line with a width through points, with round ends and joints.
 
     Args:
         p: Point.
         points: The corners in order.
         radius: Half of the line's width.
-        closed: Whether the last point is joined to the first.
+        closed: Whether the last point is connected to the first.
 
     Source: the nearest of the segments.
 

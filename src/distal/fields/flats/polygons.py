@@ -1,7 +1,7 @@
 """Triangles, regular polygons and stars.
 
-Input: a point and the numbers of a shape. Output: the distance, negative inside.
-Regular shapes have a corner straight up, at ``radius``; mirrors bring all their edges onto one.
+Input: a point and the numbers of a shape. Output: the distance, negative inside. Regular shapes
+have a corner at the top, at distance ``radius``; mirror symmetry maps all their edges onto one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from distal.lang import abs, cos, func, length, max, min, select, sin, vec2
 LEFT_CORNER: Final = vec2(-0.5, -0.4)
 RIGHT_CORNER: Final = vec2(0.5, -0.3)
 TOP_CORNER: Final = vec2(0.1, 0.5)
-# Where the edges of a five-pointed star cross, as a share of its radius: (3 - sqrt(5)) / 2.
+# Distance of the crossings of a pentagram's edges, as a fraction of its radius: (3 - sqrt(5)) / 2.
 PENTAGRAM_INNER: Final = 0.3819660112501051
 
 
@@ -49,12 +49,14 @@ def _is_a_star(radius: float, inner: float, count: int) -> str | None:
 
 @func
 def past_corner(q: vec2, radius: float, angle: float) -> float:
-    """Distance to the edge that leaves the corner (0, radius), for points folded beside it.
+    """Return the distance to the edge that starts at the corner (0, radius).
+
+    The point must be folded to beside this edge.
 
     Args:
-        q: Point, folded to between the y axis and ``angle`` clockwise.
-        radius: Where the corner is.
-        angle: To the middle of the edge.
+        q: Point, folded to between the y axis and ``angle`` clockwise from it.
+        radius: Distance of the corner from the origin.
+        angle: Angle from the corner to the middle of the edge, in radians.
     """
     c = cos(angle)
     s = sin(angle)
@@ -65,7 +67,7 @@ def past_corner(q: vec2, radius: float, angle: float) -> float:
 
 @func
 def triangle_bounds(size: float) -> Bounds2:
-    """From the base to the tip."""
+    """Return the rectangle from the base to the tip."""
     return Bounds2(
         vec2(-0.5 * size, -size / (2.0 * ROOT_THREE)), vec2(0.5 * size, size / ROOT_THREE)
     )
@@ -74,7 +76,7 @@ def triangle_bounds(size: float) -> Bounds2:
 @primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds)
 @func
 def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
-    """Triangle with equal sides, a corner up, its middle at the origin.
+    """Equilateral triangle with a corner at the top, centred at the origin.
 
     Args:
         p: Point.
@@ -93,19 +95,19 @@ def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
 
 @func
 def isosceles_triangle_bounds(width: float, height: float) -> Bounds2:
-    """From the base to the tip."""
+    """Return the rectangle from the base to the tip."""
     return trapezoid_bounds(width, 0.0, height)
 
 
 @primitive("IsoscelesTriangle", EXACT, bounds=isosceles_triangle_bounds)
 @func
 def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> float:
-    """Triangle with its tip up, halfway up at y = 0.
+    """Isosceles triangle with its tip at the top; y = 0 is at half of its height.
 
     Args:
         p: Point.
         width: Length of the base.
-        height: From the base to the tip.
+        height: Distance from the base to the tip.
 
     Source: a trapezoid without an upper side.
 
@@ -119,7 +121,7 @@ def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> floa
 
 @func
 def triangle2_bounds(first: vec2, second: vec2, third: vec2) -> Bounds2:
-    """The rectangle around the corners."""
+    """Return the rectangle around the corners."""
     return Bounds2(min(first, second, third), max(first, second, third))
 
 
@@ -131,13 +133,13 @@ def triangle2(
     second: vec2 = RIGHT_CORNER,
     third: vec2 = TOP_CORNER,
 ) -> float:
-    """Triangle between three points of the plane.
+    """Triangle with three given corners.
 
     Args:
         p: Point.
-        first: A corner.
-        second: The next.
-        third: The last.
+        first: First corner.
+        second: Second corner.
+        third: Third corner.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -162,11 +164,11 @@ def triangle2(
 @primitive("Pentagon", EXACT, bounds=disc_bounds)
 @func
 def pentagon(p: vec2, radius: float = 0.5) -> float:
-    """Regular polygon with five corners, one of them up.
+    """Regular pentagon with a corner at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a corner.
+        radius: Distance from the middle to a corner.
 
     Source: mirrored to the edge beside the upper corner.
 
@@ -182,11 +184,11 @@ def pentagon(p: vec2, radius: float = 0.5) -> float:
 @primitive("Hexagon", EXACT, bounds=disc_bounds)
 @func
 def hexagon(p: vec2, radius: float = 0.5) -> float:
-    """Regular polygon with six corners, one of them up.
+    """Regular hexagon with a corner at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a corner.
+        radius: Distance from the middle to a corner.
 
     Source: mirrored to the edge beside the upper corner.
 
@@ -202,11 +204,11 @@ def hexagon(p: vec2, radius: float = 0.5) -> float:
 @primitive("Octagon", EXACT, bounds=disc_bounds)
 @func
 def octagon(p: vec2, radius: float = 0.5) -> float:
-    """Regular polygon with eight corners, one of them up.
+    """Regular octagon with a corner at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a corner.
+        radius: Distance from the middle to a corner.
 
     Source: mirrored to the edge beside the upper corner.
 
@@ -222,12 +224,12 @@ def octagon(p: vec2, radius: float = 0.5) -> float:
 @primitive("RegularPolygon", EXACT, bounds=disc_bounds, requires=_three_corners)
 @func
 def regular_polygon(p: vec2, radius: float = 0.5, count: int = 7) -> float:
-    """Polygon with equal sides and angles, a corner up.
+    """Regular polygon with a corner at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a corner.
-        count: How many corners, 3 or more.
+        radius: Distance from the middle to a corner.
+        count: Number of corners, 3 or more.
 
     Source: turned to the sector of the nearest corner, mirrored to the edge beside it.
 
@@ -241,7 +243,10 @@ def regular_polygon(p: vec2, radius: float = 0.5, count: int = 7) -> float:
 
 @func
 def past_point_of_star(q: vec2, radius: float, inner: float, angle: float) -> float:
-    """Distance to the edge from (0, radius) to the inner corner, for points folded beside it."""
+    """Return the distance to the edge from (0, radius) to the inner corner.
+
+    The point must be folded to beside this edge.
+    """
     point = vec2(0.0, radius)
     notch = inner * vec2(sin(angle), cos(angle))
     d = length(from_segment(q, point, notch))
@@ -251,11 +256,11 @@ def past_point_of_star(q: vec2, radius: float, inner: float, angle: float) -> fl
 @primitive("Hexagram", EXACT, bounds=disc_bounds)
 @func
 def hexagram(p: vec2, radius: float = 0.5) -> float:
-    """Star of two triangles, six points, one of them up.
+    """Star with six points made of two triangles; one point is at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a point.
+        radius: Distance from the middle to a point of the star.
 
     Source: mirrored to the edge beside the upper point.
 
@@ -271,11 +276,11 @@ def hexagram(p: vec2, radius: float = 0.5) -> float:
 @primitive("Pentagram", EXACT, bounds=disc_bounds)
 @func
 def pentagram(p: vec2, radius: float = 0.5) -> float:
-    """Star drawn by the diagonals of a pentagon, five points, one of them up.
+    """Star with five points made of the diagonals of a pentagon; one point is at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a point.
+        radius: Distance from the middle to a point of the star.
 
     Source: mirrored to the edge beside the upper point.
 
@@ -293,13 +298,13 @@ def pentagram(p: vec2, radius: float = 0.5) -> float:
 )
 @func
 def regular_star(p: vec2, radius: float = 0.5, inner: float = 0.25, count: int = 7) -> float:
-    """Star with equal points, one of them up.
+    """Star with equal points, one of them at the top.
 
     Args:
         p: Point.
-        radius: From the middle to a point.
-        inner: From the middle to a corner between two points, less than the radius.
-        count: How many points, 2 or more.
+        radius: Distance from the middle to a point of the star.
+        inner: Distance from the middle to a corner between two points, less than the radius.
+        count: Number of points, 2 or more.
 
     Source: turned to the sector of the nearest point, mirrored to the edge beside it.
 

@@ -1,7 +1,6 @@
 """Profiles of machine parts, and distances stored in an image.
 
-Input: a point, and the numbers or the image of a shape. Output: the distance,
-negative inside.
+Input: a point, and the numbers or the image of a shape. Output: the distance, negative inside.
 """
 
 from __future__ import annotations
@@ -38,10 +37,10 @@ from distal.lang import (
 )
 from distal.lang import size as size_of
 
-# How far teeth stand out of the pitch circle, and go below it, in modules (ISO 53).
+# Height of teeth above the pitch circle, and depth below it, in modules (ISO 53).
 ADDENDUM: Final = 1.0
 DEDENDUM: Final = 1.25
-# Bilinear interpolation between texels that differ by at most their distance.
+# Slope of bilinear interpolation between texels that differ by at most their distance.
 IMAGE_SLOPE: Final = 1.4142135623730951
 
 
@@ -74,7 +73,7 @@ def _arc_nose_stands_out(base: float, nose: float, lift: float, bulge: float) ->
 
 @func
 def gear_bounds(radius: float, count: int) -> Bounds2:
-    """The square around the teeth's tips."""
+    """Return the square around the tips of the teeth."""
     return disc_bounds(radius * (1.0 + 2.0 * ADDENDUM / float(count)))
 
 
@@ -89,17 +88,18 @@ def gear_bounds(radius: float, count: int) -> Bounds2:
 def gear_profile(
     p: vec2, radius: float = 0.5, pressure_angle: float = 0.3490658503988659, count: int = 12
 ) -> float:
-    """A gear with involute teeth, one of them up; gears of one tooth size mesh.
+    """Gear with involute teeth, one of them at the top; gears with equal teeth mesh.
 
-    Two gears mesh when radius / count and the pressure angle agree; their centres are then as far
-    apart as both radii together. Below the circle that the involutes start from, flanks go straight
-    to the middle; the corners at their feet are sharp.
+    Two gears mesh if radius / count and the pressure angle are equal; the distance of their centres
+    is then the sum of their radii. Below the base circle of the involutes, the flanks are straight
+    lines to the middle; the corners at their feet are sharp.
 
     Args:
         p: Point.
-        radius: Of the pitch circle, where the gears roll on each other.
-        pressure_angle: Between the flanks' normals and the direction of motion there.
-        count: How many teeth.
+        radius: Radius of the pitch circle, on which gears roll on each other.
+        pressure_angle: Angle between the normal of a flank and the direction of motion on the pitch
+            circle, in radians.
+        count: Number of teeth.
 
     Source: an involute's normals touch its base circle, so that involutes of one circle are
     parallel curves (Leonhard Euler, 1765); proportions of ISO 53.
@@ -113,7 +113,7 @@ def gear_profile(
     tip = radius + ADDENDUM * module
     root = radius - DEDENDUM * module
     base = radius * cos(pressure_angle)
-    # Angles from the tooth's middle: where its involute leaves the base circle, and at its ends.
+    # Angles from the tooth's middle to the start of its involute on the base circle, and its ends.
     middle = 0.5 * PI / float(count) + tan(pressure_angle) - pressure_angle
     roll_tip = sqrt(max(tip * tip - base * base, 0.0)) / base
     roll_foot = sqrt(max(root * root - base * base, 0.0)) / base
@@ -124,7 +124,7 @@ def gear_profile(
     q = fold_sectors(p, count)
     from_middle = length(q)
     angle = atan2(q.x, q.y)
-    # The tangent to the base circle through q meets the flank at a right angle.
+    # The tangent to the base circle through q is perpendicular to the flank.
     roll = sqrt(max(from_middle * from_middle - base * base, 0.0)) / base
     turned = angle + roll - atan(roll) - middle
     met = roll - turned
@@ -140,7 +140,7 @@ def gear_profile(
 
 @func
 def tangent_cam_bounds(base: float, nose: float, lift: float) -> Bounds2:
-    """Around both circles."""
+    """Return the rectangle around both circles."""
     return uneven_capsule_bounds(base, nose, base + lift - nose)
 
 
@@ -153,13 +153,13 @@ def tangent_cam_bounds(base: float, nose: float, lift: float) -> Bounds2:
 )
 @func
 def tangent_cam(p: vec2, base: float = 0.4, nose: float = 0.15, lift: float = 0.3) -> float:
-    """A cam with straight flanks that turns about the origin, its nose up.
+    """Cam with straight flanks that rotates about the origin, its nose at the top.
 
     Args:
         p: Point.
         base: Radius of the base circle.
         nose: Radius of the nose.
-        lift: How far the nose stands out of the base circle.
+        lift: Height of the nose above the base circle.
 
     Source: two circles and their common tangents.
 
@@ -173,7 +173,7 @@ def tangent_cam(p: vec2, base: float = 0.4, nose: float = 0.15, lift: float = 0.
 
 @func
 def arc_cam_bounds(base: float, nose: float, lift: float, bulge: float) -> Bounds2:
-    """Around both circles and the flanks."""
+    """Return the rectangle around both circles and the flanks."""
     return egg_bounds(base, nose, base + lift - nose, bulge)
 
 
@@ -193,14 +193,15 @@ def arc_cam_bounds(base: float, nose: float, lift: float, bulge: float) -> Bound
 def arc_cam(
     p: vec2, base: float = 0.4, nose: float = 0.15, lift: float = 0.3, bulge: float = 0.4
 ) -> float:
-    """A cam with round flanks that turns about the origin, its nose up.
+    """Cam with convex flanks that rotates about the origin, its nose at the top.
 
     Args:
         p: Point.
         base: Radius of the base circle.
         nose: Radius of the nose.
-        lift: How far the nose stands out of the base circle.
-        bulge: 1 for flanks as round as the whole cam is high, toward 0 for straight ones.
+        lift: Height of the nose above the base circle.
+        bulge: From 0 (exclusive) for nearly straight flanks to 1 for flanks with the radius of half
+            the cam's height.
 
     Source: the egg of two circles.
 
@@ -214,11 +215,11 @@ def arc_cam(
 
 @func
 def interpolated(image: Texture2D, place: vec2) -> float:
-    """The first channel between texels, bilinearly; unlike ``sample`` it has a gradient.
+    """Interpolate the first channel between texels bilinearly; unlike ``sample``, differentiable.
 
     Args:
-        image: What is looked up.
-        place: Counted in texels from the middle of the lower left one.
+        image: The image.
+        place: Position in texels from the centre of the lower left one.
     """
     corner = floor(place)
     share = place - corner
@@ -231,16 +232,16 @@ def interpolated(image: Texture2D, place: vec2) -> float:
 @primitive("ImageField", NOTHING, slope=IMAGE_SLOPE, bounds=rectangle_bounds, growth=1.0)
 @func
 def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: float = 1.0) -> float:
-    """A shape whose distances are the texels of an image, in their first channel.
+    """Shape from distances stored in the first channel of an image.
 
-    Neighbouring texels must differ by at most the distance between their middles, and the outermost
-    be outside the shape, as the texels of any image of distances do.
+    Neighbouring texels must differ by at most the distance between their centres, and the outermost
+    texels must be outside the shape, as in any image of distances.
 
     Args:
         p: Point.
         image: The distances, negative inside.
-        size: Width and height that the image covers, its middle at the origin.
-        scale: The distance that a texel of value 1 represents.
+        size: Width and height of the image, which is centred at the origin.
+        scale: Distance of a texel of value 1.
 
     Source: bilinear interpolation; outside the image the way to it is added.
 
@@ -250,7 +251,7 @@ def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: floa
         image_field((0.0, 0.5), Texture2D([[1.0, 1.0], [0.0, 0.0]]), (2.0, 2.0), 3.0) = 3.0
     """
     texels = vec2(size_of(image))
-    # The middles of the outermost texels bound what is interpolated.
+    # The centres of the outermost texels bound the interpolated region.
     reach = 0.5 * size * (1.0 - 1.0 / texels)
     inside = clamp(p, -reach, reach)
     return scale * interpolated(image, (inside / size + 0.5) * texels - 0.5) + length(p - inside)

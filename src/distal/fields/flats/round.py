@@ -1,7 +1,7 @@
 """Discs, rings and their parts.
 
-Input: a point and the numbers of a shape. Output: the distance, negative inside. An
-``angle`` is measured from the y axis to either side.
+Input: a point and the numbers of a shape. Output: the distance, negative inside. An ``angle`` is
+measured from the y axis to either side, in radians.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def _cuts_the_disc(radius: float, height: float) -> str | None:
 @primitive("Circle", EXACT, bounds=disc_bounds)
 @func
 def circle(p: vec2, radius: float = 1.0) -> float:
-    """Disc around the origin.
+    """Disc, centred at the origin.
 
     Args:
         p: Point.
@@ -66,19 +66,19 @@ def circle(p: vec2, radius: float = 1.0) -> float:
 
 @func
 def annulus_bounds(radius: float, thickness: float) -> Bounds2:
-    """The square around the outer circle."""
+    """Return the square around the outer circle."""
     return disc_bounds(radius + 0.5 * thickness)
 
 
 @primitive("Annulus", EXACT, bounds=annulus_bounds, requires=_hole_is_left)
 @func
 def annulus(p: vec2, radius: float = 0.75, thickness: float = 0.25) -> float:
-    """Ring all around.
+    """Full ring, centred at the origin.
 
     Args:
         p: Point.
         radius: Radius of the middle line.
-        thickness: From the inner to the outer circle.
+        thickness: Distance from the inner to the outer circle.
 
     Source: two circles about one centre.
 
@@ -92,7 +92,7 @@ def annulus(p: vec2, radius: float = 0.75, thickness: float = 0.25) -> float:
 
 @func
 def pie_bounds(radius: float, angle: float) -> Bounds2:
-    """The origin, the two ends of the arc, its top, and its sides where it reaches them."""
+    """Return the rectangle around the origin, the ends of the arc and its extreme points."""
     end = radius * vec2(sin(angle), cos(angle))
     reach = select(angle > 0.5 * PI, radius, end.x)
     return Bounds2(vec2(-reach, min(end.y, 0.0)), vec2(reach, radius))
@@ -101,12 +101,12 @@ def pie_bounds(radius: float, angle: float) -> Bounds2:
 @primitive("Pie", EXACT, bounds=pie_bounds, requires=_less_than_a_turn)
 @func
 def pie(p: vec2, radius: float = 1.0, angle: float = 0.7) -> float:
-    """Sector of a disc around the y axis.
+    """Sector of a disc, symmetric about the y axis.
 
     Args:
         p: Point.
         radius: Radius of the disc.
-        angle: From the y axis to either side, below pi.
+        angle: Angle from the y axis to either side in radians, below pi.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -125,7 +125,7 @@ def pie(p: vec2, radius: float = 1.0, angle: float = 0.7) -> float:
 
 @func
 def cut_disk_bounds(radius: float, height: float) -> Bounds2:
-    """From the cut to the top."""
+    """Return the rectangle from the cut to the top."""
     reach = select(height > 0.0, sqrt(max(radius * radius - height * height, 0.0)), radius)
     return Bounds2(vec2(-reach, height), vec2(reach, radius))
 
@@ -135,12 +135,12 @@ def cut_disk_bounds(radius: float, height: float) -> Bounds2:
 )
 @func
 def cut_disk(p: vec2, radius: float = 1.0, height: float = -0.3) -> float:
-    """What a level line leaves of a disc, above it.
+    """Disc cut by a horizontal line; the part above the line.
 
     Args:
         p: Point.
         radius: Radius of the disc.
-        height: Height of the cut, from -radius to radius.
+        height: Height of the line, from -radius to radius.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -162,7 +162,7 @@ def cut_disk(p: vec2, radius: float = 1.0, height: float = -0.3) -> float:
 
 @func
 def from_arc(q: vec2, radius: float, angle: float) -> float:
-    """Distance to the line of an arc around the y axis, for q.x >= 0."""
+    """Return the distance to an arc without thickness around the y axis, for q.x >= 0."""
     side = vec2(sin(angle), cos(angle))
     from_end = length(q - radius * side)
     return select(turned_from(q, side) > 0.0, from_end, abs(length(q) - radius))
@@ -170,7 +170,7 @@ def from_arc(q: vec2, radius: float, angle: float) -> float:
 
 @func
 def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
-    """Around the middle line, wider by half of the thickness."""
+    """Return the rectangle around the middle line, enlarged by half of the thickness."""
     reach = select(angle > 0.5 * PI, radius, radius * sin(angle))
     wide = 0.5 * thickness
     low = radius * cos(angle)
@@ -182,13 +182,13 @@ def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
 )
 @func
 def arc(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.2) -> float:
-    """Part of a ring with round ends, around the y axis.
+    """Arc of a ring with round ends, symmetric about the y axis.
 
     Args:
         p: Point.
         radius: Radius of the middle line.
-        angle: From the y axis to the middle of either end.
-        thickness: From the inner to the outer side.
+        angle: Angle from the y axis to the middle of either end, in radians.
+        thickness: Distance from the inner to the outer side.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -203,7 +203,7 @@ def arc(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.
 
 @func
 def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
-    """Around both ends and the outer circle between them."""
+    """Return the rectangle around both ends and the outer circle between them."""
     outer = radius + 0.5 * thickness
     inner = radius - 0.5 * thickness
     reach = select(angle > 0.5 * PI, outer, outer * sin(angle))
@@ -214,13 +214,13 @@ def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
 @primitive("Ring", EXACT, bounds=ring_bounds, requires=_ring_is_open)
 @func
 def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.25) -> float:
-    """Part of a ring with straight ends, around the y axis.
+    """Arc of a ring with straight ends, symmetric about the y axis.
 
     Args:
         p: Point.
         radius: Radius of the middle line.
-        angle: From the y axis to either side, below pi.
-        thickness: From the inner to the outer side.
+        angle: Angle from the y axis to either side in radians, below pi.
+        thickness: Distance from the inner to the outer side.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -241,7 +241,7 @@ def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0
 
 @func
 def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float) -> Bounds2:
-    """Around the ring and the corners of the legs' ends."""
+    """Return the rectangle around the ring and the ends of the legs."""
     side = vec2(sin(angle), cos(angle))
     ahead = legs * vec2(side.y, -side.x)
     box = ring_bounds(radius, angle, thickness)
@@ -263,14 +263,14 @@ def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float)
 def horseshoe(
     p: vec2, radius: float = 0.5, angle: float = 1.9, legs: float = 0.4, thickness: float = 0.25
 ) -> float:
-    """Part of a ring around the y axis, prolonged straight at both ends.
+    """Arc of a ring, symmetric about the y axis, with a straight leg at each end.
 
     Args:
         p: Point.
         radius: Radius of the ring's middle line.
-        angle: From the y axis to either end of the ring.
+        angle: Angle from the y axis to either end of the ring, in radians.
         legs: Length of the straight parts.
-        thickness: From the inner to the outer side.
+        thickness: Distance from the inner to the outer side.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -282,7 +282,7 @@ def horseshoe(
     """
     side = vec2(sin(angle), cos(angle))
     q = vec2(abs(p.x), p.y)
-    # Seen from the ring's end: how far ahead along the leg, and how far from the ring's centre.
+    # Coordinates at the ring's end: along the leg, and the distance from the ring's centre.
     ahead = -turned_from(side, q)
     from_centre = select(ahead < 0.0, length(q), dot(q, side))
     past_side = abs(from_centre - radius) - 0.5 * thickness

@@ -1,7 +1,7 @@
 """Four-sided flat shapes with slanted sides.
 
-Input: a point and the numbers of a shape. Output: the distance, negative inside.
-Sizes are full sizes, from side to side.
+Input: a point and the numbers of a shape. Output: the distance, negative inside. Sizes are full
+sizes, from side to side.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def rhombus2(p: vec2, size: vec2 = DIAGONALS) -> float:
 
     Args:
         p: Point.
-        size: Full diagonals along x and y.
+        size: Full length of the diagonals along x and y.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -45,7 +45,7 @@ def rhombus2(p: vec2, size: vec2 = DIAGONALS) -> float:
 
 @func
 def trapezoid_bounds(bottom: float, top: float, height: float) -> Bounds2:
-    """The rectangle as wide as the wider side."""
+    """Return the rectangle as wide as the wider side."""
     return centred_bounds(0.5 * vec2(max(bottom, top), height))
 
 
@@ -60,13 +60,13 @@ def trapezoid_bounds(bottom: float, top: float, height: float) -> Bounds2:
 def isosceles_trapezoid(
     p: vec2, bottom: float = 1.0, top: float = 0.6, height: float = 0.7
 ) -> float:
-    """Trapezoid whose slanted sides mirror each other; halfway up at y = 0.
+    """Isosceles trapezoid; y = 0 is at half of its height.
 
     Args:
         p: Point.
         bottom: Full width of the lower side.
         top: Full width of the upper side.
-        height: From the lower to the upper side.
+        height: Distance from the lower to the upper side.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -88,20 +88,20 @@ def isosceles_trapezoid(
 
 @func
 def parallelogram_bounds(width: float, height: float, skew: float) -> Bounds2:
-    """The rectangle as wide as both sides together reach."""
+    """Return the rectangle around both horizontal sides."""
     return centred_bounds(0.5 * vec2(width + abs(skew), height))
 
 
 @primitive("Parallelogram", EXACT, bounds=parallelogram_bounds)
 @func
 def parallelogram(p: vec2, width: float = 0.8, height: float = 0.6, skew: float = 0.3) -> float:
-    """Parallelogram with two sides along x.
+    """Parallelogram with two horizontal sides, centred at the origin.
 
     Args:
         p: Point.
         width: Length of the lower and the upper side.
-        height: From the lower to the upper side.
-        skew: How far the upper side is shifted along x against the lower one.
+        height: Distance from the lower to the upper side.
+        skew: How far the upper side is shifted along x relative to the lower one.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -113,8 +113,8 @@ def parallelogram(p: vec2, width: float = 0.8, height: float = 0.6, skew: float 
     """
     half = 0.5 * width
     slant = vec2(0.5 * skew, 0.5 * height)
-    # Turned by half a turn about the middle it is the same: first to the nearer level side, then
-    # to the nearer slanted one.
+    # The shape is symmetric under half a turn: rotate the point first to the nearer horizontal
+    # side, then to the nearer slanted one.
     up = select(p.y < 0.0, -p, p)
     level = up - slant
     from_level = vec2(level.x - clamp(level.x, -half, half), level.y)

@@ -1,7 +1,7 @@
-"""What noise is made of: hashed lattices of space and plane, ramps, octaves.
+"""Parts of noise functions: hashes of lattice cells, corner contributions, octaves.
 
-Input: cells of a lattice, places in them, a seed. Output: random bits and what
-each corner of a cell adds to noise. ``noise`` and ``noise_flat`` blend these.
+Input: cells of a lattice, points in them, a seed. Output: random bits, and the contribution of each
+corner of a cell to the noise. ``space`` and ``plane`` combine these.
 """
 
 from __future__ import annotations
@@ -10,67 +10,69 @@ from typing import Final
 
 from distal.lang import dot, func, ivec2, ivec3, mat2, mat3, max, pcg, select, uint, vec2, vec3
 
-# Lattices of neighbouring seeds lie this far apart: 2^32 over the golden ratio.
+# Offset of the hash between consecutive seeds: 2^32 divided by the golden ratio.
 SEED_STEP: Final = 2654435769
 FROM_24_BITS: Final = 5.9604644775390625e-08
 
-# Where the kernels of a simplex's corners end: half the square of the lattice's smallest distance.
+# Squared radius of a simplex corner's kernel: half of the lattice's smallest squared distance.
 SIMPLEX_REACH: Final = 0.5
 
-# A direction between an axis and a diagonal, so that none of the eight favours either.
+# Components of a direction halfway between an axis and a diagonal, so that the eight directions
+# favour neither.
 COSINE: Final = 0.9238795325112867
 SINE: Final = 0.3826834323650898
 
-# Octaves turn by a sixth around the space's diagonal, and move, so that no lattices coincide.
+# Each octave is rotated by a sixth of a turn around the diagonal of space and translated, so that
+# no lattices coincide.
 THIRD: Final = 1.0 / 3.0
 
 
 @func
 def lattice_hash(cell: ivec3, seed: int) -> uint:
-    """32 random bits of a cell of space."""
+    """Return 32 random bits of a cell of space."""
     plane = pcg(uint(cell.z) + uint(seed) * uint(SEED_STEP))
     return pcg(uint(cell.x) + pcg(uint(cell.y) + plane))
 
 
 @func
 def lattice_hash_2(cell: ivec2, seed: int) -> uint:
-    """32 random bits of a cell of the plane."""
+    """Return 32 random bits of a cell of the plane."""
     return pcg(uint(cell.x) + pcg(uint(cell.y) + uint(seed) * uint(SEED_STEP)))
 
 
 @func
 def fraction(bits: uint) -> float:
-    """From 0 up to 1, by the upper 24 of 32 bits."""
+    """Convert the upper 24 of 32 bits to a number from 0 up to, but not including, 1."""
     return float(bits >> uint(8)) * FROM_24_BITS
 
 
 @func
 def faded(x: vec3) -> vec3:
-    """Perlin's quintic from 0 to 1, level and without curvature at both ends."""
+    """Return Perlin's quintic from 0 to 1: first and second derivatives are 0 at both ends."""
     return x * x * x * (x * (x * 6.0 - 15.0) + 10.0)
 
 
 @func
 def faded_2(x: vec2) -> vec2:
-    """In the plane."""
+    """Return the same as ``faded``, in the plane."""
     return x * x * x * (x * (x * 6.0 - 15.0) + 10.0)
 
 
 @func
 def corner_value(cell: ivec3, seed: int) -> float:
-    """A random number from -1 to 1."""
+    """Return a random number from -1 to 1."""
     return 2.0 * fraction(lattice_hash(cell, seed)) - 1.0
 
 
 @func
 def corner_value_2(cell: ivec2, seed: int) -> float:
-    """In the plane."""
+    """Return the same as ``corner_value``, in the plane."""
     return 2.0 * fraction(lattice_hash_2(cell, seed)) - 1.0
 
 
 @func
 def ramp(bits: uint, d: vec3) -> float:
-    """How far ``d`` reaches along one of the 12 directions to the middles of a cube's edges."""
+    """Return the dot product of ``d`` and one of the 12 directions to a cube's edges."""
     left_out = ((bits >> uint(16)) * uint(3)) >> uint(16)
     a = select(left_out == uint(0), d.y, d.x)
     b = select(left_out == uint(2), d.y, d.z)
@@ -80,7 +82,7 @@ def ramp(bits: uint, d: vec3) -> float:
 
 @func
 def ramp_2(bits: uint, d: vec2) -> float:
-    """How far ``d`` reaches along one of eight unit directions."""
+    """Return the dot product of ``d`` and one of eight unit directions."""
     steep = (bits & uint(65536)) == uint(0)
     a = COSINE * select(steep, d.y, d.x)
     b = SINE * select(steep, d.x, d.y)
@@ -90,19 +92,19 @@ def ramp_2(bits: uint, d: vec2) -> float:
 
 @func
 def corner_ramp(cell: ivec3, offset: ivec3, inside: vec3, seed: int) -> float:
-    """The plane through 0 at one of a cell's corners."""
+    """Return the value of the linear function that is 0 at one corner of a cell."""
     return ramp(lattice_hash(cell + offset, seed), inside - vec3(offset))
 
 
 @func
 def corner_ramp_2(cell: ivec2, offset: ivec2, inside: vec2, seed: int) -> float:
-    """In the plane."""
+    """Return the same as ``corner_ramp``, in the plane."""
     return ramp_2(lattice_hash_2(cell + offset, seed), inside - vec2(offset))
 
 
 @func
 def simplex_part(cell: ivec3, d: vec3, seed: int) -> float:
-    """What one corner of a simplex adds at ``d`` from it."""
+    """Return the contribution of one corner of a simplex at the offset ``d`` from it."""
     weight = max(SIMPLEX_REACH - dot(d, d), 0.0)
     weight *= weight
     return weight * weight * ramp(lattice_hash(cell, seed), d)
@@ -110,7 +112,7 @@ def simplex_part(cell: ivec3, d: vec3, seed: int) -> float:
 
 @func
 def simplex_part_2(cell: ivec2, d: vec2, seed: int) -> float:
-    """In the plane."""
+    """Return the same as ``simplex_part``, in the plane."""
     weight = max(SIMPLEX_REACH - dot(d, d), 0.0)
     weight *= weight
     return weight * weight * ramp_2(lattice_hash_2(cell, seed), d)
@@ -118,7 +120,7 @@ def simplex_part_2(cell: ivec2, d: vec2, seed: int) -> float:
 
 @func
 def next_octave(p: vec3) -> vec3:
-    """Turned and moved, lengths kept."""
+    """Rotate and translate a point; lengths do not change."""
     turn = mat3(
         vec3(2.0 * THIRD, 2.0 * THIRD, -THIRD),
         vec3(-THIRD, 2.0 * THIRD, 2.0 * THIRD),
@@ -129,5 +131,5 @@ def next_octave(p: vec3) -> vec3:
 
 @func
 def next_octave_2(p: vec2) -> vec2:
-    """In the plane."""
+    """Return the same as ``next_octave``, in the plane."""
     return mat2(vec2(0.8, 0.6), vec2(-0.6, 0.8)) @ p + vec2(0.37, 0.71)

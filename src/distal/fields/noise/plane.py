@@ -1,7 +1,7 @@
-"""Noise in the plane; ``noise`` gives it by the names of the noise of space.
+"""Noise in the plane; ``space`` exports it under the names of noise in space.
 
-Input: a point of the plane and a seed. Output: a number in an exactly known range,
-and the bound on its gradient.
+Input: a point of the plane and a seed. Output: a number in an exactly known range, and the bound on
+its gradient.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ VALUE_SLOPE_2: Final = 3.75
 GRADIENT_SLOPE_2: Final = 3.1282
 SIMPLEX_SLOPE_2: Final = 7.3541
 
-# What makes the ranges -1 to 1.
+# Scale factors to the range -1 to 1.
 GRADIENT_SCALE_2: Final = 1.5132794
 SIMPLEX_SCALE_2: Final = 100.0401
 SIMPLEX_UNSKEW_2: Final = 0.21132486540518713  # (3 - sqrt(3)) / 6
@@ -31,7 +31,7 @@ SIMPLEX_SKEW_2: Final = 0.36602540378443865  # (sqrt(3) - 1) / 2
 
 @func
 def value_noise_2(p: vec2, seed: int = 0) -> float:
-    """In the plane: from -1 to 1, slope up to 3.75."""
+    """Return value noise in the plane: from -1 to 1, slope up to 3.75."""
     corner = floor(p)
     t = faded_2(p - corner)
     cell = ivec2(corner)
@@ -44,7 +44,7 @@ def value_noise_2(p: vec2, seed: int = 0) -> float:
 
 @func
 def gradient_noise_2(p: vec2, seed: int = 0) -> float:
-    """In the plane: from -1 to 1, slope up to 3.1282."""
+    """Return gradient noise in the plane: from -1 to 1, slope up to 3.1282."""
     corner = floor(p)
     d = p - corner
     t = faded_2(d)
@@ -60,7 +60,7 @@ def gradient_noise_2(p: vec2, seed: int = 0) -> float:
 
 @func
 def simplex_noise_2(p: vec2, seed: int = 0) -> float:
-    """In the plane, on triangles: from -1 to 1, slope up to 7.3541."""
+    """Return simplex noise in the plane (on triangles): from -1 to 1, slope up to 7.3541."""
     corner = floor(p + (p.x + p.y) * SIMPLEX_SKEW_2)
     cell = ivec2(corner)
     d = p - corner + (corner.x + corner.y) * SIMPLEX_UNSKEW_2
@@ -76,7 +76,7 @@ def simplex_noise_2(p: vec2, seed: int = 0) -> float:
 def fbm_2(
     p: vec2, octaves: int = 5, lacunarity: float = 2.0, gain: float = 0.5, seed: int = 0
 ) -> float:
-    """In the plane."""
+    """Return ``fbm`` in the plane."""
     total = 0.0
     weight = 1.0
     weights = 0.0
@@ -92,7 +92,7 @@ def fbm_2(
 def turbulence_2(
     p: vec2, octaves: int = 5, lacunarity: float = 2.0, gain: float = 0.5, seed: int = 0
 ) -> float:
-    """In the plane."""
+    """Return ``turbulence`` in the plane."""
     total = 0.0
     weight = 1.0
     weights = 0.0

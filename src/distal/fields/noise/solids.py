@@ -1,10 +1,10 @@
-"""Noise as shapes without end: inside is where the noise is above a level.
+"""Noise as infinite shapes: the inside is where the noise is above a level.
 
-Input: a point, the size of the noise's cells, a level. Output: the noise's height
-over its typical gradient, so that it is about the distance near the surface (offsets and shells
-then have about their nominal size), and the bound on its slope.
+Input: a point, the size of the noise's cells, a level. Output: the value of the noise divided by
+its typical gradient, which is about the distance near the surface (so offsets and shells have about
+their nominal size), and the bound on its slope.
 
-The typical gradients are means over surfaces of level 0 (measured at 200,000 places).
+The typical gradients are means over surfaces of level 0 (measured at 200,000 points).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ VALUE_TYPICAL: Final = 1.25
 GRADIENT_TYPICAL: Final = 1.13
 SIMPLEX_TYPICAL: Final = 2.45
 
-# Beyond half of the range hardly anything is left of noise, and of fractal noise sooner.
+# Above half of the range, almost nothing of the noise is solid; of fractal noise even earlier.
 HIGHEST_LEVEL: Final = 0.5
 HIGHEST_FBM_LEVEL: Final = 0.25
 
@@ -51,13 +51,13 @@ def _octaves_are_met(level: float, octaves: int) -> str | None:
 )
 @func
 def value_noise_solid(p: vec3, cell_size: float = 0.5, level: float = 0.0, seed: int = 0) -> float:
-    """Lumps of value noise, in line with the axes.
+    """Infinite lumps of value noise, aligned with the axes.
 
     Args:
         p: Point.
-        cell_size: Of the noise's cells.
-        level: Above which noise, from -0.5 to 0.5, it is solid.
-        seed: Which of many.
+        cell_size: Size of the noise's cells.
+        level: The noise above this level is solid; from -0.5 to 0.5.
+        seed: Selects one of many noise functions.
 
     Source: ``value_noise`` of the field library.
 
@@ -80,13 +80,13 @@ def value_noise_solid(p: vec3, cell_size: float = 0.5, level: float = 0.0, seed:
 def gradient_noise_solid(
     p: vec3, cell_size: float = 0.5, level: float = 0.0, seed: int = 0
 ) -> float:
-    """Lumps of Perlin's noise.
+    """Infinite lumps of gradient noise (Perlin noise).
 
     Args:
         p: Point.
-        cell_size: Of the noise's cells.
-        level: Above which noise, from -0.5 to 0.5, it is solid.
-        seed: Which of many.
+        cell_size: Size of the noise's cells.
+        level: The noise above this level is solid; from -0.5 to 0.5.
+        seed: Selects one of many noise functions.
 
     Source: Ken Perlin, "Improving Noise" (2002).
 
@@ -109,13 +109,13 @@ def gradient_noise_solid(
 def simplex_noise_solid(
     p: vec3, cell_size: float = 0.5, level: float = 0.0, seed: int = 0
 ) -> float:
-    """Lumps of simplex noise, rounder and smaller than those of Perlin's.
+    """Infinite lumps of simplex noise, rounder and smaller than those of gradient noise.
 
     Args:
         p: Point.
-        cell_size: Of the noise's cells.
-        level: Above which noise, from -0.5 to 0.5, it is solid.
-        seed: Which of many.
+        cell_size: Size of the noise's cells.
+        level: The noise above this level is solid; from -0.5 to 0.5.
+        seed: Selects one of many noise functions.
 
     Source: Ken Perlin, "Noise Hardware" (2001).
 
@@ -129,7 +129,7 @@ def simplex_noise_solid(
 
 @func
 def fbm_typical(octaves: int, lacunarity: float, gain: float) -> float:
-    """The typical gradient of fractal noise: of octaves that know nothing of each other."""
+    """Return the typical gradient of fractal noise, with octaves independent of each other."""
     total = 0.0
     weights = 0.0
     weight = 1.0
@@ -144,7 +144,7 @@ def fbm_typical(octaves: int, lacunarity: float, gain: float) -> float:
 
 @func
 def fbm_solid_slope(octaves: int, lacunarity: float, gain: float) -> float:
-    """The steepest that all octaves can be together, over the typical gradient."""
+    """Return the largest gradient of all octaves together, divided by the typical one."""
     return fbm_slope(octaves, lacunarity, gain) / fbm_typical(octaves, lacunarity, gain)
 
 
@@ -166,16 +166,16 @@ def fbm_solid(
     gain: float = 0.5,
     seed: int = 0,
 ) -> float:
-    """Rugged lumps: noise at several scales.
+    """Infinite rugged lumps of fractal noise (fBm): noise at several scales.
 
     Args:
         p: Point.
-        cell_size: Of the coarsest noise's cells.
-        level: Above which noise, from -0.25 to 0.25, it is solid.
-        octaves: How many scales.
-        lacunarity: How much finer each octave is than the one before.
-        gain: How much weaker.
-        seed: Which of many.
+        cell_size: Size of the cells of the coarsest octave.
+        level: The noise above this level is solid; from -0.25 to 0.25.
+        octaves: Number of scales.
+        lacunarity: Ratio of the frequencies of consecutive octaves.
+        gain: Ratio of the amplitudes of consecutive octaves.
+        seed: Selects one of many noise functions.
 
     Source: F. Kenton Musgrave in "Texturing and Modeling" (1994).
 

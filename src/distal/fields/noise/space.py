@@ -1,14 +1,14 @@
-"""Noise: smooth random functions of a place, the same on every target.
+"""Noise: smooth random functions of a point, equal on every target.
 
-Input: a point of space or of the plane, and a seed that picks one of many such functions.
-Output: a number in an exactly known range, and beside each function the bound on its
-gradient. Random numbers are integer hashes of lattice cells. Knows no shapes: patterns call these
-as they are, ``noise_solids`` makes shapes of them.
+Input: a point of space or of the plane, and a seed that selects one of many such functions. Output:
+a number in an exactly known range; each function states the bound on its gradient. Random numbers
+are integer hashes of lattice cells. Does not depend on shapes: patterns call these functions
+directly, and ``noise.solids`` makes shapes of them.
 
-The named ranges and slopes are the largest that any choice of lattice values can give. That of
-value noise follows from Poincaré's inequality on the cell's corners; the others are the maxima,
-over a cell, of a sum of support functions of the gradients (``tests/fields/test_tiers_noise.py``
-finds them again).
+The stated ranges and slopes are the largest that any choice of lattice values can produce. The
+slope of value noise follows from Poincaré's inequality on the cell's corners; the others are the
+maxima, over a cell, of a sum of support functions of the gradients
+(``tests/fields/test_tiers_noise.py`` computes them again).
 """
 
 from __future__ import annotations
@@ -37,18 +37,18 @@ VALUE_SLOPE: Final = 3.75
 GRADIENT_SLOPE: Final = 3.6185
 SIMPLEX_SLOPE: Final = 6.967
 
-# What makes the ranges -1 to 1.
+# Scale factors to the range -1 to 1.
 GRADIENT_SCALE: Final = 0.9649214
 SIMPLEX_SCALE: Final = 76.8807
 
 
 @func
 def value_noise(p: vec3, seed: int = 0) -> float:
-    """Random values at whole coordinates, blended between: from -1 to 1, slope up to 3.75.
+    """Value noise: random values at integer points, interpolated; -1 to 1, slope up to 3.75.
 
     Args:
         p: Point; one unit is one cell.
-        seed: Which of many.
+        seed: Selects one of many noise functions.
 
     Source: Ken Perlin, "Improving Noise" (2002), for the blend.
     """
@@ -70,17 +70,17 @@ def value_noise(p: vec3, seed: int = 0) -> float:
 
 @value_noise.overload
 def value_noise_in_plane(p: vec2, seed: int = 0) -> float:
-    """In the plane."""
+    """Return value noise in the plane."""
     return value_noise_2(p, seed)
 
 
 @func
 def gradient_noise(p: vec3, seed: int = 0) -> float:
-    """Random slopes at whole coordinates, where it is 0: from -1 to 1, slope up to 3.6185.
+    """Gradient noise (Perlin noise), 0 at integer points; -1 to 1, slope up to 3.6185.
 
     Args:
         p: Point; one unit is one cell.
-        seed: Which of many.
+        seed: Selects one of many noise functions.
 
     Source: Ken Perlin, "Improving Noise" (2002).
     """
@@ -106,17 +106,17 @@ def gradient_noise(p: vec3, seed: int = 0) -> float:
 
 @gradient_noise.overload
 def gradient_noise_in_plane(p: vec2, seed: int = 0) -> float:
-    """In the plane."""
+    """Return gradient noise in the plane."""
     return gradient_noise_2(p, seed)
 
 
 @func
 def simplex_noise(p: vec3, seed: int = 0) -> float:
-    """Gradient noise on tetrahedra, four corners instead of eight: from -1 to 1, slope up to 6.967.
+    """Simplex noise: gradient noise on tetrahedra; from -1 to 1, slope up to 6.967.
 
     Args:
         p: Point.
-        seed: Which of many.
+        seed: Selects one of many noise functions.
 
     Source: Ken Perlin, "Noise Hardware" (2001), for the lattice; Stefan Gustavson, "Simplex noise
     demystified" (2005).
@@ -124,7 +124,7 @@ def simplex_noise(p: vec3, seed: int = 0) -> float:
     corner = floor(p + (p.x + p.y + p.z) * THIRD)
     cell = ivec3(corner)
     d = p - corner + (corner.x + corner.y + corner.z) * (0.5 * THIRD)
-    # The way from the cell's lower to its upper corner goes along the longest part first.
+    # The path from the cell's lower to its upper corner starts along the largest component.
     x_first = d.x >= d.y
     y_first = d.y >= d.z
     x_before_z = d.x >= d.z
@@ -147,7 +147,7 @@ def simplex_noise(p: vec3, seed: int = 0) -> float:
 
 @simplex_noise.overload
 def simplex_noise_in_plane(p: vec2, seed: int = 0) -> float:
-    """In the plane."""
+    """Return simplex noise in the plane."""
     return simplex_noise_2(p, seed)
 
 
@@ -155,14 +155,14 @@ def simplex_noise_in_plane(p: vec2, seed: int = 0) -> float:
 def fbm(
     p: vec3, octaves: int = 5, lacunarity: float = 2.0, gain: float = 0.5, seed: int = 0
 ) -> float:
-    """Fractal noise: gradient noise at ever finer scales, from -1 to 1; ``fbm_slope`` bounds it.
+    """Fractal noise (fBm): octaves of gradient noise; -1 to 1, slope up to ``fbm_slope``.
 
     Args:
         p: Point; one unit is one cell of the coarsest octave.
-        octaves: How many scales.
-        lacunarity: How much finer each octave is than the one before.
-        gain: How much weaker.
-        seed: Which of many.
+        octaves: Number of scales.
+        lacunarity: Ratio of the frequencies of consecutive octaves.
+        gain: Ratio of the amplitudes of consecutive octaves.
+        seed: Selects one of many noise functions.
 
     Source: Benoit Mandelbrot's fractional Brownian motion; F. Kenton Musgrave in "Texturing and
     Modeling" (1994).
@@ -182,13 +182,13 @@ def fbm(
 def fbm_in_plane(
     p: vec2, octaves: int = 5, lacunarity: float = 2.0, gain: float = 0.5, seed: int = 0
 ) -> float:
-    """In the plane."""
+    """Return ``fbm`` in the plane."""
     return fbm_2(p, octaves, lacunarity, gain, seed)
 
 
 @func
 def fbm_slope(octaves: int, lacunarity: float, gain: float) -> float:
-    """Bound on the gradient of ``fbm`` and ``turbulence``: each octave at its steepest."""
+    """Return a bound on the gradient of ``fbm`` and ``turbulence``: the sum over all octaves."""
     total = 0.0
     weight = 1.0
     weights = 0.0
@@ -205,14 +205,14 @@ def fbm_slope(octaves: int, lacunarity: float, gain: float) -> float:
 def turbulence(
     p: vec3, octaves: int = 5, lacunarity: float = 2.0, gain: float = 0.5, seed: int = 0
 ) -> float:
-    """Billows: as ``fbm`` of the magnitude of noise, from 0 to 1, with sharp valleys at 0.
+    """Turbulence: like ``fbm`` of the noise's absolute value; from 0 to 1, sharp valleys at 0.
 
     Args:
         p: Point; one unit is one cell of the coarsest octave.
-        octaves: How many scales.
-        lacunarity: How much finer each octave is than the one before.
-        gain: How much weaker.
-        seed: Which of many.
+        octaves: Number of scales.
+        lacunarity: Ratio of the frequencies of consecutive octaves.
+        gain: Ratio of the amplitudes of consecutive octaves.
+        seed: Selects one of many noise functions.
 
     Source: Ken Perlin, "An Image Synthesizer" (1985).
     """
@@ -231,5 +231,5 @@ def turbulence(
 def turbulence_in_plane(
     p: vec2, octaves: int = 5, lacunarity: float = 2.0, gain: float = 0.5, seed: int = 0
 ) -> float:
-    """In the plane."""
+    """Return ``turbulence`` in the plane."""
     return turbulence_2(p, octaves, lacunarity, gain, seed)

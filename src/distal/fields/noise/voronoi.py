@@ -1,11 +1,11 @@
-"""Cells around scattered points: cellular noise, and the walls between the cells as shapes.
+"""Cellular noise: cells around scattered points, and the walls between the cells as shapes.
 
-Input: a point, how irregular the cells are, a seed. Output: distances to the
-scattered points and to the borders of their cells.
+Input: a point, the irregularity of the cells, a seed. Output: distances to the scattered points and
+to the borders of their cells.
 
-There is one point in each cell of a lattice, and the 27 cells (in the plane 9) around are looked
-at. Points further out are at least ``reach`` away, so distances are held below what such points
-could make of them: no result jumps, and none is too large.
+There is one point in each cell of a lattice, and the 27 surrounding cells (in the plane 9) are
+evaluated. Points farther out are at least ``reach`` away, so distances are limited to what such
+points could cause: no result jumps, and none is too large.
 
 Source: Steven Worley, "A Cellular Texture Basis Function" (1996); the borders after Inigo Quilez,
 "Voronoi borders" (https://iquilezles.org/articles/voronoilines/).
@@ -38,17 +38,17 @@ from distal.lang import (
 
 FROM_10_BITS: Final = 0.0009765625
 FROM_16_BITS: Final = 1.52587890625e-05
-# No two points are nearer than this when their border is sought.
+# Lower limit of the squared distance of two points, for the computation of their border.
 SMALLEST_SQUARE: Final = 1e-12
 
 
 @struct
 class Cellular:
-    """What cellular noise knows at a place.
+    """The values of cellular noise at a point.
 
     Attributes:
-        nearest: Distance to the nearest point; at most ``reach``, 1 or more.
-        second: Distance to the second nearest; at most ``reach`` too.
+        nearest: Distance to the nearest scattered point; at most ``reach``, which is 1 or more.
+        second: Distance to the second nearest point; at most ``reach``.
         identity: A random number from 0 to 1 that belongs to the nearest point.
     """
 
@@ -59,13 +59,13 @@ class Cellular:
 
 @func
 def reach(jitter: float) -> float:
-    """No point that was not looked at is nearer."""
+    """Return a lower bound of the distance to points that are not evaluated."""
     return 1.5 - 0.5 * clamp(jitter, 0.0, 1.0)
 
 
 @func
 def scattered(bits: uint, jitter: float) -> vec3:
-    """Where a cell's point lies, from the cell's lower corner."""
+    """Return the position of a cell's point, relative to the cell's lower corner."""
     spread = vec3(
         float(bits & uint(1023)),
         float((bits >> uint(10)) & uint(1023)),
@@ -76,19 +76,19 @@ def scattered(bits: uint, jitter: float) -> vec3:
 
 @func
 def scattered_2(bits: uint, jitter: float) -> vec2:
-    """In the plane."""
+    """Return the same as ``scattered``, in the plane."""
     spread = vec2(float(bits & uint(65535)), float(bits >> uint(16)))
     return 0.5 + clamp(jitter, 0.0, 1.0) * (spread * FROM_16_BITS - 0.5)
 
 
 @func
 def cellular(p: vec3, jitter: float = 0.8, seed: int = 0) -> Cellular:
-    """Distances to the nearest two of the scattered points.
+    """Return the distances to the two nearest of the scattered points.
 
     Args:
         p: Point; one unit is one cell.
-        jitter: 0: the points are a lattice; 1: they lie anywhere in their cells.
-        seed: Which of many.
+        jitter: From 0 for points on a lattice to 1 for points anywhere in their cells.
+        seed: Selects one of many sets of points.
     """
     corner = floor(p)
     inside = p - corner
@@ -113,7 +113,7 @@ def cellular(p: vec3, jitter: float = 0.8, seed: int = 0) -> Cellular:
 
 @func
 def cellular_2(p: vec2, jitter: float = 0.8, seed: int = 0) -> Cellular:
-    """In the plane."""
+    """Return the same as ``cellular``, in the plane."""
     corner = floor(p)
     inside = p - corner
     cell = ivec2(corner)
@@ -135,7 +135,7 @@ def cellular_2(p: vec2, jitter: float = 0.8, seed: int = 0) -> Cellular:
 
 @cellular.overload
 def cellular_in_plane(p: vec2, jitter: float = 0.8, seed: int = 0) -> Cellular:
-    """In the plane."""
+    """Return the same as ``cellular``, in the plane."""
     return cellular_2(p, jitter, seed)
 
 
@@ -145,27 +145,27 @@ def worley(p: vec3, jitter: float = 0.8, seed: int = 0) -> float:
 
     Args:
         p: Point; one unit is one cell.
-        jitter: 0: the points are a lattice; 1: they lie anywhere in their cells.
-        seed: Which of many.
+        jitter: From 0 for points on a lattice to 1 for points anywhere in their cells.
+        seed: Selects one of many sets of points.
     """
     return cellular(p, jitter, seed).nearest
 
 
 @worley.overload
 def worley_in_plane(p: vec2, jitter: float = 0.8, seed: int = 0) -> float:
-    """In the plane, with the same range and slope."""
+    """Return ``worley`` in the plane, with the same range and slope."""
     return cellular_2(p, jitter, seed).nearest
 
 
 @func
 def voronoi_border(p: vec3, jitter: float = 0.8, seed: int = 0) -> float:
-    """Distance to the border of the nearest point's cell: from 0, slope up to 1.
+    """Distance to the border of the nearest point's cell: 0 or more, slope up to 1.
 
     Args:
         p: Point; one unit is one cell.
-        jitter: 0: the points are a lattice; 1: they lie anywhere in their cells. Far above 0.8
-            there may be, now and then, a place too far from all points; the border goes around it.
-        seed: Which of many.
+        jitter: From 0 for points on a lattice to 1 for points anywhere in their cells. Far above
+            0.8, a few places may be too far from all points; the border then passes around them.
+        seed: Selects one of many sets of points.
     """
     corner = floor(p)
     inside = p - corner
@@ -181,7 +181,7 @@ def voronoi_border(p: vec3, jitter: float = 0.8, seed: int = 0) -> float:
                 square = dot(d, d)
                 nearest = select(square < least, d, nearest)
                 least = min(least, square)
-    # A point out of sight is at least ``reach`` away, and its border half of what that is more.
+    # A point that is not evaluated is at least ``reach`` away, its border half of the difference.
     border = max(0.5 * (reach(jitter) - sqrt(least)), 0.0)
     for k in range(-1, 2):
         plane = pcg(uint(cell.z + k) + uint(seed) * uint(SEED_STEP))
@@ -200,7 +200,7 @@ def voronoi_border(p: vec3, jitter: float = 0.8, seed: int = 0) -> float:
 
 @func
 def voronoi_border_2(p: vec2, jitter: float = 0.8, seed: int = 0) -> float:
-    """In the plane."""
+    """Return the same as ``voronoi_border``, in the plane."""
     corner = floor(p)
     inside = p - corner
     cell = ivec2(corner)
@@ -227,7 +227,7 @@ def voronoi_border_2(p: vec2, jitter: float = 0.8, seed: int = 0) -> float:
 
 @voronoi_border.overload
 def voronoi_border_in_plane(p: vec2, jitter: float = 0.8, seed: int = 0) -> float:
-    """In the plane."""
+    """Return the same as ``voronoi_border``, in the plane."""
     return voronoi_border_2(p, jitter, seed)
 
 
@@ -248,14 +248,14 @@ def _balls_leave_room(cell_size: float, radius: float) -> str | None:
 def voronoi_walls(
     p: vec3, cell_size: float = 0.5, thickness: float = 0.08, jitter: float = 0.8, seed: int = 0
 ) -> float:
-    """The walls between the cells of scattered points: a closed foam, without end.
+    """Infinite foam: the walls between the Voronoi cells of scattered points.
 
     Args:
         p: Point.
-        cell_size: How far the points are apart on average.
-        thickness: Of the walls, at most half of ``cell_size``.
-        jitter: 0: the cells are cubes; 1: as irregular as can be.
-        seed: Which of many.
+        cell_size: Mean distance of the points.
+        thickness: Thickness of the walls, at most half of ``cell_size``.
+        jitter: From 0 for cubes to 1 for the most irregular cells.
+        seed: Selects one of many sets of points.
 
     Source: Inigo Quilez, "Voronoi borders" (https://iquilezles.org/articles/voronoilines/).
 
@@ -274,14 +274,14 @@ def voronoi_walls(
 def voronoi_cells(
     p: vec3, cell_size: float = 0.5, gap: float = 0.08, jitter: float = 0.8, seed: int = 0
 ) -> float:
-    """The cells of scattered points, a gap between them: rubble, packed grains, without end.
+    """Infinite rubble: the Voronoi cells of scattered points, with a gap between them.
 
     Args:
         p: Point.
-        cell_size: How far the points are apart on average.
-        gap: Between two cells, at most half of ``cell_size``.
-        jitter: 0: the cells are cubes; 1: as irregular as can be.
-        seed: Which of many.
+        cell_size: Mean distance of the points.
+        gap: Width of the gap between two cells, at most half of ``cell_size``.
+        jitter: From 0 for cubes to 1 for the most irregular cells.
+        seed: Selects one of many sets of points.
 
     Source: Inigo Quilez, "Voronoi borders" (https://iquilezles.org/articles/voronoilines/).
 
@@ -298,14 +298,14 @@ def voronoi_cells(
 def voronoi_lines(
     p: vec2, cell_size: float = 0.5, thickness: float = 0.08, jitter: float = 0.8, seed: int = 0
 ) -> float:
-    """The borders between the cells of points scattered in the plane, without end.
+    """Infinite net: the borders between the Voronoi cells of points in the plane.
 
     Args:
         p: Point.
-        cell_size: How far the points are apart on average.
-        thickness: Of the borders, at most half of ``cell_size``.
-        jitter: 0: the cells are squares; 1: as irregular as can be.
-        seed: Which of many.
+        cell_size: Mean distance of the points.
+        thickness: Thickness of the borders, at most half of ``cell_size``.
+        jitter: From 0 for squares to 1 for the most irregular cells.
+        seed: Selects one of many sets of points.
 
     Source: Inigo Quilez, "Voronoi borders" (https://iquilezles.org/articles/voronoilines/).
 
@@ -327,14 +327,14 @@ def scattered_balls(
     seed: int = 0,
     holes: bool = False,
 ) -> float:
-    """Balls around scattered points, or all that is not in them: gravel, a sponge, without end.
+    """Infinite set of balls around scattered points (gravel), or their complement (sponge).
 
     Args:
         p: Point.
-        cell_size: How far the points are apart on average.
-        radius: Of the balls, at most 0.7 ``cell_size``.
-        jitter: 0: the balls stand in rows; 1: as irregular as can be.
-        seed: Which of many.
+        cell_size: Mean distance of the points.
+        radius: Radius of the balls, at most 0.7 ``cell_size``.
+        jitter: From 0 for balls on a lattice to 1 for the most irregular positions.
+        seed: Selects one of many sets of points.
         holes: Whether the balls are holes.
 
     Source: Steven Worley, "A Cellular Texture Basis Function" (1996).

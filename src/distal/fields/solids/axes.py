@@ -1,7 +1,7 @@
-"""Parts that several solids are made of: an axis, and boxes along it.
+"""Coordinates relative to an axis, and boxes of shapes along an axis.
 
-Input: a point and the numbers of a shape. Output: the point as seen from the axis,
-or the box of what lies along it. Declares no shapes.
+Input: a point and the numbers of a shape. Output: the point in coordinates of the axis, or a box.
+Declares no shapes.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ HIGH_END: Final = vec3(0.0, 0.5, 0.0)
 
 @func
 def around_y(p: vec3) -> vec2:
-    """How far from the y axis, and how high."""
+    """Return the distance from the y axis, and the height."""
     return vec2(length(p.xz), p.y)
 
 
 @func
 def axis_direction(start: vec3, end: vec3) -> vec3:
-    """From start to end, of length 1; zero where they meet."""
+    """Return the unit vector from start to end; zero if they coincide."""
     axis = end - start
     return axis / max(length(axis), TINY)
 
 
 @func
 def around_axis(p: vec3, start: vec3, end: vec3) -> vec2:
-    """How far from the axis, and how far along it from the middle."""
+    """Return the distance from the axis, and the position along it from its middle."""
     direction = axis_direction(start, end)
     offset = p - 0.5 * (start + end)
     along = dot(offset, direction)
@@ -43,22 +43,22 @@ def around_axis(p: vec3, start: vec3, end: vec3) -> vec2:
 
 @func
 def upright_bounds(radius: float, low: float, high: float) -> Bounds:
-    """The box of what stands around the y axis."""
+    """Return the box of a shape around the y axis."""
     return Bounds(vec3(-radius, low, -radius), vec3(radius, high, radius))
 
 
 @func
 def sphere_bounds(radius: float) -> Bounds:
-    """The cube around the ball."""
+    """Return the cube around a ball."""
     return Bounds(vec3(-radius), vec3(radius))
 
 
 def cube_of_radius(name: str, reach: float) -> Func:
-    """The function, of this name, that gives the cube of a shape from its radius.
+    """Return a function of a shape's radius that returns the cube around the shape.
 
     Args:
-        name: The function's.
-        reach: How far the shape reaches along an axis, for a radius of 1.
+        name: Name of the function.
+        reach: Extent of the shape along an axis, for a radius of 1.
     """
 
     def cube_around(radius: float) -> Bounds:
@@ -69,7 +69,7 @@ def cube_of_radius(name: str, reach: float) -> Func:
 
 @func
 def balls_bounds(start: vec3, end: vec3, start_radius: float, end_radius: float) -> Bounds:
-    """The box around two balls."""
+    """Return the box around two balls."""
     return Bounds(
         min(start - start_radius, end - end_radius), max(start + start_radius, end + end_radius)
     )
@@ -77,9 +77,9 @@ def balls_bounds(start: vec3, end: vec3, start_radius: float, end_radius: float)
 
 @func
 def discs_bounds(start: vec3, end: vec3, start_radius: float, end_radius: float) -> Bounds:
-    """The box around two discs that face each other.
+    """Return the box around two discs perpendicular to the line between them.
 
-    A disc reaches along each axis by its radius times the sine to the disc's own axis.
+    A disc extends along each axis by its radius times the sine of the angle to its own axis.
 
     Source: Inigo Quilez, "Bounding boxes" (https://iquilezles.org/articles/diskbbox/).
     """
@@ -92,12 +92,12 @@ def discs_bounds(start: vec3, end: vec3, start_radius: float, end_radius: float)
 
 
 def apart(start: vec3, end: vec3) -> str | None:
-    """Refuses an axis without length."""
+    """Return why an axis is invalid if it has no length."""
     if tuple(start) == tuple(end):
         return "start and end must be two different points"
     return None
 
 
 def below_pi(angle: float) -> str | None:
-    """A cone opens by less than half a turn on either side."""
+    """Return why an angle is invalid if it is not below pi."""
     return None if angle < math.pi else "angle must be below pi"

@@ -1,7 +1,7 @@
-"""Solids with right angles: boxes, their frames, and corners of space.
+"""Solids with right angles: boxes, frames of boxes, and an octant of space.
 
-Input: a point and the numbers of a shape. Output: the distance. Sizes are full
-sizes, from side to side.
+Input: a point and the numbers of a shape. Output: the distance. Sizes are full sizes, from side to
+side.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ UNIT_CUBE: Final = vec3(1.0)
 @primitive("Corner", EXACT)
 @func
 def corner(p: vec3) -> float:
-    """The eighth of space where x, y and z are all negative.
+    """The octant of space where x, y and z are negative.
 
     Args:
         p: Point.
@@ -42,14 +42,14 @@ def corner(p: vec3) -> float:
 
 @func
 def box_bounds(size: vec3) -> Bounds:
-    """The box itself."""
+    """Return the box itself."""
     return Bounds(-0.5 * size, 0.5 * size)
 
 
 @primitive("Box", EXACT, bounds=box_bounds)
 @func
 def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
-    """Box.
+    """Box with sides along the axes, centred at the origin.
 
     Args:
         p: Point.
@@ -68,9 +68,9 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
 @primitive("BoxCheap", INSIDE_AND_BOUND, bounds=box_bounds, growth=ROOT_THREE, side_growth=1.0)
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
-    """Box without a square root; outside, off the faces, the value is less than the distance.
+    """Box without a square root; outside, next to edges and corners, a lower bound.
 
-    Grown by an offset it keeps its sharp edges.
+    An offset keeps its edges sharp.
 
     Args:
         p: Point.
@@ -94,14 +94,14 @@ def _fits_every_side(what: str, reach: float, size: vec3) -> str | None:
 
 
 def round_box_requires(size: vec3, rounding: float) -> str | None:
-    """Opposite edges must leave each other room."""
+    """Return why the rounding is too large, or None."""
     return _fits_every_side("rounding", rounding, size)
 
 
 @primitive("RoundBox", EXACT, bounds=box_bounds, requires=round_box_requires)
 @func
 def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
-    """Box whose edges are rounded inward: the full size stays.
+    """Box with rounded edges; the full size does not change.
 
     Args:
         p: Point.
@@ -119,7 +119,7 @@ def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
 
 
 def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
-    """Opposite edges must leave each other room."""
+    """Return why the chamfer is too large, or None."""
     return _fits_every_side("chamfer", chamfer, size)
 
 
@@ -128,12 +128,12 @@ def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
 )
 @func
 def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
-    """Box with every edge cut off at 45 degrees; outside a lower bound.
+    """Box with edges chamfered at 45 degrees; outside a lower bound.
 
     Args:
         p: Point.
         size: Full size along x, y and z.
-        chamfer: How much of each face is cut away, at most half of the smallest size.
+        chamfer: Width that is cut off each face, at most half of the smallest size.
 
     Source: the box and twelve planes; Inigo Quilez, "Distance functions"
         (https://iquilezles.org/articles/distfunctions/), for the box.
@@ -149,19 +149,19 @@ def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
 
 
 def box_frame_requires(size: vec3, thickness: float) -> str | None:
-    """The beams of one face must not meet."""
+    """Return why the beams are too thick, or None."""
     return _fits_every_side("thickness", thickness, size)
 
 
 @primitive("BoxFrame", EXACT, bounds=box_bounds, requires=box_frame_requires)
 @func
 def box_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
-    """The twelve edges of a box as square beams.
+    """The twelve edges of a box as beams with a square cross-section.
 
     Args:
         p: Point.
         size: Full size along x, y and z.
-        thickness: Of a beam, at most half of the smallest size.
+        thickness: Width of a beam, at most half of the smallest size.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
         made exact inside.
@@ -173,21 +173,21 @@ def box_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
     """
     q = abs(p) - 0.5 * size
     hollow = q + thickness
-    # Squares of how far p is beyond a beam's outer and inner sides, along each axis.
+    # Squares of the distances of p beyond the outer and inner sides of a beam, along each axis.
     beyond_ends = max(q, 0.0) * max(q, 0.0)
     beyond_sides = max(q, max(-hollow, 0.0)) * max(q, max(-hollow, 0.0))
     along_x = beyond_ends.x + beyond_sides.y + beyond_sides.z
     along_y = beyond_sides.x + beyond_ends.y + beyond_sides.z
     along_z = beyond_sides.x + beyond_sides.y + beyond_ends.z
     outside = sqrt(min(along_x, along_y, along_z))
-    # Inside, the nearest of the outer faces and of the inner edges of three windows.
+    # Inside, the nearest of the outer faces and of the inner edges of the three openings.
     inward = max(hollow, 0.0) * max(hollow, 0.0)
     window = min(inward.x + inward.y, inward.y + inward.z, inward.z + inward.x)
     return outside + min(max(q.x, q.y, q.z, -sqrt(window)), 0.0)
 
 
 def round_frame_requires(size: vec3, thickness: float) -> str | None:
-    """A tube lies inside the box."""
+    """Return why the bars are too thick, or None."""
     return _fits_every_side("thickness", thickness, size)
 
 
@@ -202,12 +202,12 @@ def round_frame_requires(size: vec3, thickness: float) -> str | None:
 def round_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
     """The twelve edges of a box as round bars with balls at the corners.
 
-    Inside, near a corner, the surface is farther away than the value says.
+    Inside, near a corner, the distance to the surface is more than the value.
 
     Args:
         p: Point.
-        size: Full size along x, y and z, bars included.
-        thickness: Of a bar, at most half of the smallest size.
+        size: Full size along x, y and z, including the bars.
+        thickness: Diameter of a bar, at most half of the smallest size.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/),
         the box frame with beams of no thickness, grown.

@@ -1,4 +1,4 @@
-"""Tubes that wind around the y axis: a helix without end, and a spring.
+"""Tubes that wind around the y axis: an infinite helix and a spring.
 
 Input: a point and the numbers of a coil. Output: a lower bound of the distance.
 """
@@ -12,11 +12,11 @@ from distal.lang import abs, atan2, func, length, max, round, sqrt, vec2, vec3
 
 @func
 def coil_steepest(major: float, pitch: float) -> float:
-    """How much faster than the way ``coil`` may rise at most.
+    """Return a bound on the gradient of ``coil`` before the division by this bound.
 
-    Across the coil and along it the two parts of the distance are true lengths, but the second also
-    changes outward, by at most ``shear``, where the first is so small that it counts: beyond
-    ``start`` from the axis.
+    Across the coil and along it the two parts of the distance are true lengths. The second part
+    also changes with the distance from the axis, by at most ``shear`` where this matters: beyond
+    the distance ``start`` from the axis, where the first part is small.
     """
     rise = pitch / TAU
     start = max(major - 0.17 * PI * PI * rise, 0.0)
@@ -27,9 +27,10 @@ def coil_steepest(major: float, pitch: float) -> float:
 
 @func
 def coil(p: vec3, major: float, minor: float, pitch: float) -> float:
-    """The way to the nearest turn, by how far from the axis and how high, over its steepest.
+    """Return a lower bound of the distance to the nearest turn.
 
-    The height is seen across a helix as far out as the point, and shortened by that one's slope.
+    It is computed from the distance from the axis and the height over a helix at the point's own
+    radius, shortened by this helix's slope, and divided by ``coil_steepest``.
     """
     rise = pitch / TAU
     out = length(p.xz)
@@ -41,13 +42,13 @@ def coil(p: vec3, major: float, minor: float, pitch: float) -> float:
 @primitive("Helix", LOWER_BOUND, tier=2)
 @func
 def helix(p: vec3, major: float = 0.5, minor: float = 0.1, pitch: float = 0.4) -> float:
-    """A tube that winds around the y axis without end, through the x axis, rising toward z.
+    """Infinite tube that winds around the y axis and crosses the x axis, rising towards z.
 
     Args:
         p: Point.
-        major: From the axis to the tube's middle.
+        major: Distance from the axis to the tube's centre line.
         minor: Radius of the tube.
-        pitch: How much higher each turn is than the one before.
+        pitch: Rise in one turn.
 
     Source: the distance in the half plane through the axis, its height shortened.
 
@@ -61,20 +62,20 @@ def helix(p: vec3, major: float = 0.5, minor: float = 0.1, pitch: float = 0.4) -
 
 @func
 def spring_bounds(major: float, minor: float, height: float) -> Bounds:
-    """Around the coil, between its ends."""
+    """Return the box around the coil, between its ends."""
     reach = vec3(major + minor, 0.5 * height, major + minor)
     return Bounds(-reach, reach)
 
 
 @func
 def spring_side_growth(major: float, pitch: float) -> float:
-    """The coil's value is the way to it over its steepest."""
+    """Return the growth of the sides: the factor by which ``coil`` is divided."""
     return coil_steepest(major, pitch)
 
 
 @func
 def spring_growth(major: float, pitch: float) -> float:
-    """Outward as for a side, and past an end at once."""
+    """Return the growth: that of a side, and that past an end at the same time."""
     return length(vec2(coil_steepest(major, pitch), 1.0))
 
 
@@ -90,14 +91,14 @@ def spring_growth(major: float, pitch: float) -> float:
 def spring(
     p: vec3, major: float = 0.4, minor: float = 0.07, pitch: float = 0.25, height: float = 1.0
 ) -> float:
-    """A coil spring around the y axis, its ends ground flat.
+    """Coil spring around the y axis with flat ends.
 
     Args:
         p: Point.
-        major: From the axis to the wire's middle.
+        major: Distance from the axis to the wire's centre line.
         minor: Radius of the wire.
-        pitch: How much higher each turn is than the one before.
-        height: From end to end.
+        pitch: Rise in one turn.
+        height: Full height.
 
     Source: ``helix``, cut by two planes.
 

@@ -1,7 +1,7 @@
-"""Cones: pointed, cut, rounded, without end; upright or between two points.
+"""Cones: with a tip, truncated, rounded, infinite; upright or between two points.
 
-Input: a point and the numbers of a shape. Output: the distance. Each is a profile,
-looked at as how far from the axis and how high above the middle.
+Input: a point and the numbers of a shape. Output: the distance. Each cone is computed from its
+profile, in coordinates of the distance from the axis and the height above the middle.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, si
 
 @func
 def opening(q: vec2, angle: float) -> float:
-    """Distance to what lies within ``angle`` of the downward axis, for q.x not negative."""
+    """Return the distance to the region within ``angle`` of the downward axis, for q.x >= 0."""
     s = sin(angle)
     c = cos(angle)
     beside = q.x * c + q.y * s
-    # Where the side is not nearest, its tip is.
+    # If the side is not nearest, the tip is.
     tip = length(q)
     return select(q.x * s > q.y * c, beside, select(beside > 0.0, tip, -tip))
 
@@ -36,11 +36,11 @@ def opening(q: vec2, angle: float) -> float:
 @primitive("InfiniteCone", EXACT, requires=below_pi)
 @func
 def infinite_cone(p: vec3, angle: float = 0.5) -> float:
-    """Cone without end, downward from its tip at the origin.
+    """Infinite cone that opens downwards from its tip at the origin.
 
     Args:
         p: Point.
-        angle: From the axis to the side, below pi.
+        angle: Angle between the axis and the side in radians, below pi.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -54,7 +54,10 @@ def infinite_cone(p: vec3, angle: float = 0.5) -> float:
 
 @func
 def capped_cone_profile(q: vec2, bottom: float, top: float, height: float) -> float:
-    """Distance to a cut cone from how far from its axis, and how high above its middle."""
+    """Return the distance to a truncated cone.
+
+    ``q`` is the distance from the axis and the height above the middle.
+    """
     half = 0.5 * height
     slant = vec2(top - bottom, height)
     offset = vec2(q.x - bottom, q.y + half)
@@ -68,12 +71,12 @@ def capped_cone_profile(q: vec2, bottom: float, top: float, height: float) -> fl
 
 @func
 def capped_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
-    """The box of an upright one."""
+    """Return the box of an upright truncated cone."""
     return upright_bounds(max(bottom, top), -0.5 * height, 0.5 * height)
 
 
 def capped_cone_requires(bottom: float, top: float) -> str | None:
-    """Some inside must be left."""
+    """Return why both radii cannot be 0, or None."""
     return None if bottom > 0.0 or top > 0.0 else "bottom or top must be above 0"
 
 
@@ -86,7 +89,7 @@ def capped_cone_requires(bottom: float, top: float) -> str | None:
 )
 @func
 def capped_cone(p: vec3, bottom: float = 0.6, top: float = 0.3, height: float = 1.0) -> float:
-    """Upright cone with its tip cut off.
+    """Upright truncated cone (frustum), centred at the origin.
 
     Args:
         p: Point.
@@ -108,14 +111,14 @@ def capped_cone(p: vec3, bottom: float = 0.6, top: float = 0.3, height: float = 
 def capped_cone_between_bounds(
     start: vec3, end: vec3, start_radius: float, end_radius: float
 ) -> Bounds:
-    """The box around the two ends."""
+    """Return the box around the two ends."""
     return discs_bounds(start, end, start_radius, end_radius)
 
 
 def capped_cone_between_requires(
     start: vec3, end: vec3, start_radius: float, end_radius: float
 ) -> str | None:
-    """Some inside must be left."""
+    """Return why both radii cannot be 0, or None."""
     if start_radius > 0.0 or end_radius > 0.0:
         return apart(start, end)
     return "start_radius or end_radius must be above 0"
@@ -136,7 +139,7 @@ def capped_cone_between(
     start_radius: float = 0.6,
     end_radius: float = 0.3,
 ) -> float:
-    """Cut cone whose ends are centred at two points.
+    """Truncated cone (frustum) whose ends are centred at two points.
 
     Args:
         p: Point.
@@ -159,19 +162,19 @@ def capped_cone_between(
 
 @func
 def cone_bounds(radius: float, height: float) -> Bounds:
-    """The box of an upright cone."""
+    """Return the box of an upright cone."""
     return upright_bounds(radius, -0.5 * height, 0.5 * height)
 
 
 @primitive("Cone", EXACT, bounds=cone_bounds)
 @func
 def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
-    """Upright cone, its tip on top.
+    """Upright cone with its tip at the top.
 
     Args:
         p: Point.
-        radius: Of the base; ``height * tan(angle)`` for an angle between axis and side.
-        height: Full height; the origin is half way up.
+        radius: Radius of the base; ``height * tan(angle)`` for an angle between axis and side.
+        height: Full height; the origin is at half of it.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -185,7 +188,7 @@ def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
 
 @func
 def cone_cheap_growth(radius: float, height: float) -> float:
-    """Side and base moved out by 1: how far that moves the tip, or the rim out and down."""
+    """Return the growth: how far the tip or the rim moves if side and base move by 1."""
     side = length(vec2(height, radius))
     return max(side / radius, length(vec2((side + radius) / height, 1.0)))
 
@@ -193,12 +196,12 @@ def cone_cheap_growth(radius: float, height: float) -> float:
 @primitive("ConeCheap", INSIDE_AND_BOUND, bounds=cone_bounds, growth=cone_cheap_growth)
 @func
 def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
-    """Upright cone by its side and its base alone; beyond tip and rim less than the distance.
+    """Upright cone as the maximum of side and base; a lower bound beyond tip and rim.
 
     Args:
         p: Point.
-        radius: Of the base.
-        height: Full height; the origin is half way up.
+        radius: Radius of the base.
+        height: Full height; the origin is at half of it.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -208,14 +211,14 @@ def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
         cone_cheap((0.0, -0.75, 0.0), 1.0, 2.0) = -0.25
     """
     half = 0.5 * height
-    # Across the side, from the tip: the normal is (height, radius) over its length.
+    # Distance to the side, from the tip: its normal is (height, radius), normalised.
     beside = (length(p.xz) * height + (p.y - half) * radius) / length(vec2(height, radius))
     return max(beside, -half - p.y)
 
 
 @func
 def cone_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
-    """The box around the base and the tip."""
+    """Return the box around the base and the tip."""
     return discs_bounds(start, end, radius, 0.0)
 
 
@@ -224,13 +227,13 @@ def cone_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
 def cone_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5
 ) -> float:
-    """Cone from the centre of its base to its tip.
+    """Cone given by the centre of its base and its tip.
 
     Args:
         p: Point.
         start: Centre of the base.
         end: Tip.
-        radius: Of the base.
+        radius: Radius of the base.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -246,12 +249,13 @@ def cone_between(
 
 @func
 def round_cone_profile(q: vec2, bottom: float, top: float, height: float) -> float:
-    """Distance to two balls and the cone that touches both, from q as above.
+    """Return the distance to two balls and the cone tangent to both.
 
-    The cone's side stands at right angles to (cosine, sine); the planes through the balls' centres
-    along that direction part what is nearest to either ball from what is nearest to the side.
+    ``q`` is the distance from the axis and the height. The normal of the cone's side is (cosine,
+    sine); planes through the balls' centres along this normal separate the points nearest to a ball
+    from those nearest to the side.
     """
-    # Beyond -1 or 1 one ball holds the other and is all there is.
+    # Beyond -1 or 1, one ball contains the other and is the whole shape.
     sine = clamp((bottom - top) / max(height, TINY), -1.0, 1.0)
     cosine = sqrt(1.0 - sine * sine)
     low = q.y + 0.5 * height
@@ -266,7 +270,7 @@ def round_cone_profile(q: vec2, bottom: float, top: float, height: float) -> flo
 
 @func
 def round_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
-    """The box around two balls, one above the other."""
+    """Return the box around two balls, one above the other."""
     half = 0.5 * height
     return upright_bounds(
         max(bottom, top), min(-half - bottom, half - top), max(half + top, bottom - half)
@@ -281,13 +285,13 @@ def round_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
 )
 @func
 def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, height: float = 1.0) -> float:
-    """Two balls, one above the other, and the cone that touches both.
+    """Cone with rounded ends: two balls, one above the other, and the cone tangent to both.
 
     Args:
         p: Point.
         bottom: Radius of the lower ball.
         top: Radius of the upper ball.
-        height: Between the balls' centres.
+        height: Distance between the balls' centres.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -303,7 +307,7 @@ def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, height: float = 
 def round_cone_between_bounds(
     start: vec3, end: vec3, start_radius: float, end_radius: float
 ) -> Bounds:
-    """The box around the two balls."""
+    """Return the box around the two balls."""
     return balls_bounds(start, end, start_radius, end_radius)
 
 
@@ -321,7 +325,7 @@ def round_cone_between(
     start_radius: float = 0.5,
     end_radius: float = 0.25,
 ) -> float:
-    """Two balls around two points, and the cone that touches both.
+    """Cone with rounded ends: balls around two points, and the cone tangent to both.
 
     Args:
         p: Point.

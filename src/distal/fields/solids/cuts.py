@@ -1,7 +1,7 @@
-"""What planes, cones and balls leave of a ball, and the body of two arcs.
+"""Parts of a ball cut by planes, cones and balls, and the solid between two arcs (vesica).
 
-Input: a point and the numbers of a shape. Output: the distance. All are round
-about the y axis: the point is looked at as how far from the axis, and how high.
+Input: a point and the numbers of a shape. Output: the distance. All shapes are rotationally
+symmetric about the y axis and are computed from the distance from the axis and the height.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, si
 
 @func
 def rim_radius(radius: float, height: float) -> float:
-    """Radius of the circle that a plane at ``height`` cuts out of a ball."""
+    """Return the radius of the circle in which a plane at ``height`` cuts a ball."""
     return sqrt(max(radius * radius - height * height, 0.0))
 
 
@@ -36,7 +36,7 @@ def _plane_cuts_ball(radius: float, height: float) -> str | None:
 
 @func
 def cut_sphere_bounds(radius: float, height: float) -> Bounds:
-    """The box of the upper part."""
+    """Return the box of the upper part."""
     return upright_bounds(select(height > 0.0, rim_radius(radius, height), radius), height, radius)
 
 
@@ -49,12 +49,12 @@ def cut_sphere_bounds(radius: float, height: float) -> Bounds:
 )
 @func
 def cut_sphere(p: vec3, radius: float = 1.0, height: float = 0.25) -> float:
-    """What a level plane leaves of a ball: the part above.
+    """Ball cut by a horizontal plane; the part above the plane.
 
     Args:
         p: Point.
-        radius: Of the ball, which is centred at the origin.
-        height: Of the plane, between -radius and radius.
+        radius: Radius of the ball, which is centred at the origin.
+        height: Height of the plane, between -radius and radius.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -65,21 +65,21 @@ def cut_sphere(p: vec3, radius: float = 1.0, height: float = 0.25) -> float:
     """
     q = around_y(p)
     rim = vec2(rim_radius(radius, height), height)
-    # Above the cone through the rim, and under the disc, a face is nearest; elsewhere the rim.
+    # Above the cone through the rim, and below the disc, a face is nearest; elsewhere the rim.
     facing = rim.x * q.y > rim.y * q.x or q.x < rim.x
     return select(facing, max(length(q) - radius, height - q.y), length(q - rim))
 
 
 @func
 def cut_hollow_sphere_bounds(radius: float, height: float, thickness: float) -> Bounds:
-    """The box of the lower part of the wall."""
+    """Return the box of the lower part of the wall."""
     rim = select(height < 0.0, rim_radius(radius, height), radius)
     half = 0.5 * thickness
     return upright_bounds(rim + half, -radius - half, height + half)
 
 
 def cut_hollow_sphere_requires(radius: float, height: float, thickness: float) -> str | None:
-    """The wall must not run into itself."""
+    """Return why the wall is too thick, or None."""
     if thickness > 2.0 * radius:
         return "thickness must be at most twice the radius"
     if 0.0 < height < radius and thickness > 2.0 * math.sqrt(radius**2 - height**2):
@@ -98,13 +98,13 @@ def cut_hollow_sphere_requires(radius: float, height: float, thickness: float) -
 def cut_hollow_sphere(
     p: vec3, radius: float = 0.9, height: float = 0.25, thickness: float = 0.1
 ) -> float:
-    """Bowl: what lies below a level plane of a ball's wall, with a round rim.
+    """Bowl: the wall of a ball below a horizontal plane, with a round rim.
 
     Args:
         p: Point.
-        radius: Of the wall's middle.
-        height: Where the wall's middle ends, between -radius and radius.
-        thickness: Of the wall.
+        radius: Radius of the middle of the wall.
+        height: Height at which the middle of the wall ends, between -radius and radius.
+        thickness: Thickness of the wall.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -120,7 +120,7 @@ def cut_hollow_sphere(
 
 
 def death_star_requires(radius: float, cut_radius: float, distance: float) -> str | None:
-    """The two balls must cross."""
+    """Return why the two balls do not intersect, or None."""
     if math.fabs(radius - cut_radius) < distance < radius + cut_radius:
         return None
     return "the balls must cross: distance between |radius - cut_radius| and radius + cut_radius"
@@ -137,13 +137,13 @@ def death_star_requires(radius: float, cut_radius: float, distance: float) -> st
 def death_star(
     p: vec3, radius: float = 1.0, cut_radius: float = 0.75, distance: float = 1.25
 ) -> float:
-    """Ball with a hollow that another ball above it leaves.
+    """Ball with a hollow cut by another ball above it.
 
     Args:
         p: Point.
-        radius: Of the ball, which is centred at the origin.
-        cut_radius: Of the ball that is taken away.
-        distance: Between the centres, along y.
+        radius: Radius of the ball, which is centred at the origin.
+        cut_radius: Radius of the ball that is subtracted.
+        distance: Distance between the centres, along y.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -155,7 +155,7 @@ def death_star(
     q = around_y(p)
     height = 0.5 * (radius * radius - cut_radius * cut_radius + distance * distance) / distance
     rim = vec2(rim_radius(radius, height), height)
-    # The rim is nearest to what lies past it as seen from both centres.
+    # The rim is nearest to points that lie past it as seen from both centres.
     past_wall = q.y * rim.x - q.x * rim.y
     past_hollow = (q.y - distance) * rim.x - q.x * (rim.y - distance)
     hollow = cut_radius - length(vec2(q.x, q.y - distance))
@@ -165,7 +165,7 @@ def death_star(
 
 @func
 def solid_angle_bounds(angle: float, radius: float) -> Bounds:
-    """The box of a cone with a round base above it."""
+    """Return the box of a cone with a spherical base above it."""
     return upright_bounds(
         radius * select(angle > 0.5 * PI, 1.0, sin(angle)), min(radius * cos(angle), 0.0), radius
     )
@@ -174,12 +174,12 @@ def solid_angle_bounds(angle: float, radius: float) -> Bounds:
 @primitive("SolidAngle", EXACT, bounds=solid_angle_bounds, requires=below_pi)
 @func
 def solid_angle(p: vec3, angle: float = 0.6, radius: float = 1.0) -> float:
-    """The part of a ball that lies within an angle of the y axis, its tip at the origin.
+    """Sector of a ball: the part within an angle of the y axis, its tip at the origin.
 
     Args:
         p: Point.
-        angle: From the y axis to the side, below pi.
-        radius: Of the ball.
+        angle: Angle between the y axis and the side in radians, below pi.
+        radius: Radius of the ball.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -197,10 +197,13 @@ def solid_angle(p: vec3, angle: float = 0.6, radius: float = 1.0) -> float:
 
 @func
 def two_arcs(q: vec2, height: float, width: float) -> float:
-    """Distance to the body between two arcs that meet on the axis, at half of ``height``."""
+    """Return the distance to the solid between two arcs that meet on the axis.
+
+    They meet at half of ``height`` above and below the middle.
+    """
     tip = 0.5 * height
     bulge = 0.5 * width
-    # The arc's centre lies beyond the axis.
+    # The arc's centre lies on the other side of the axis.
     centre = 0.5 * (tip * tip - bulge * bulge) / bulge
     high = abs(q.y)
     past_tip = tip * q.x < centre * (high - tip)
@@ -211,24 +214,24 @@ def two_arcs(q: vec2, height: float, width: float) -> float:
 
 @func
 def vesica_solid_bounds(height: float, width: float) -> Bounds:
-    """The box of an upright one."""
+    """Return the box of an upright vesica."""
     return upright_bounds(0.5 * width, -0.5 * height, 0.5 * height)
 
 
 def vesica_solid_requires(height: float, width: float) -> str | None:
-    """Else the arcs would be more than half circles."""
+    """Return why the width is too large (the arcs would exceed half circles), or None."""
     return "width must be at most height" if width > height else None
 
 
 @primitive("VesicaSolid", EXACT, bounds=vesica_solid_bounds, requires=vesica_solid_requires)
 @func
 def vesica_solid(p: vec3, height: float = 1.5, width: float = 0.75) -> float:
-    """Upright body between two arcs, with a tip at either end, like a grain of rice.
+    """Upright solid of an arc rotated about its chord, with two tips, like a grain of rice.
 
     Args:
         p: Point.
-        height: From tip to tip.
-        width: In the middle, at most ``height``.
+        height: Distance between the tips.
+        width: Width in the middle, at most ``height``.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -242,12 +245,12 @@ def vesica_solid(p: vec3, height: float = 1.5, width: float = 0.75) -> float:
 
 @func
 def vesica_between_bounds(start: vec3, end: vec3, width: float) -> Bounds:
-    """The box of a cylinder around it."""
+    """Return the box of a cylinder around the shape."""
     return discs_bounds(start, end, 0.5 * width, 0.5 * width)
 
 
 def vesica_between_requires(start: vec3, end: vec3, width: float) -> str | None:
-    """Else the arcs would be more than half circles."""
+    """Return why the width is too large, or None."""
     if width > math.dist(tuple(start), tuple(end)):
         return "width must be at most the distance from start to end"
     return apart(start, end)
@@ -258,13 +261,13 @@ def vesica_between_requires(start: vec3, end: vec3, width: float) -> str | None:
 def vesica_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, width: float = 0.5
 ) -> float:
-    """Body between two arcs that meet in two given points.
+    """Solid of an arc rotated about its chord between two given points.
 
     Args:
         p: Point.
-        start: One tip.
-        end: The other tip.
-        width: In the middle, at most the distance between the tips.
+        start: The first tip.
+        end: The second tip.
+        width: Width in the middle, at most the distance between the tips.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 

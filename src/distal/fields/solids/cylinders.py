@@ -1,4 +1,4 @@
-"""Round bars: cylinders and capsules, upright or between two points.
+"""Cylinders and capsules, upright or between two points.
 
 Input: a point and the numbers of a shape. Output: the distance.
 """
@@ -24,7 +24,7 @@ from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
 @primitive("InfiniteCylinder", EXACT)
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
-    """Round bar along the y axis, without end.
+    """Infinite cylinder around the y axis.
 
     Args:
         p: Point.
@@ -42,20 +42,23 @@ def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
 
 @func
 def cylinder_profile(q: vec2, radius: float, height: float) -> float:
-    """Distance to a cylinder from how far from its axis, and how high."""
+    """Return the distance to a cylinder.
+
+    ``q`` is the distance from the axis and the height above the middle.
+    """
     return inside_both(q.x - radius, abs(q.y) - 0.5 * height)
 
 
 @func
 def cylinder_bounds(radius: float, height: float) -> Bounds:
-    """The box of an upright cylinder."""
+    """Return the box of an upright cylinder."""
     return upright_bounds(radius, -0.5 * height, 0.5 * height)
 
 
 @primitive("Cylinder", EXACT, bounds=cylinder_bounds)
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
-    """Upright cylinder.
+    """Upright cylinder, centred at the origin.
 
     Args:
         p: Point.
@@ -74,7 +77,7 @@ def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
 
 @func
 def cylinder_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
-    """The box around the two ends."""
+    """Return the box around the two ends."""
     return discs_bounds(start, end, radius, radius)
 
 
@@ -102,7 +105,7 @@ def cylinder_between(
 
 
 def rounded_cylinder_requires(radius: float, height: float, rounding: float) -> str | None:
-    """Opposite edges must leave each other room."""
+    """Return why the rounding is too large, or None."""
     if rounding > radius or 2.0 * rounding > height:
         return "rounding must be at most the radius and half of the height"
     return None
@@ -110,7 +113,7 @@ def rounded_cylinder_requires(radius: float, height: float, rounding: float) -> 
 
 @func
 def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bounds:
-    """The box of an upright cylinder."""
+    """Return the box of an upright cylinder."""
     return cylinder_bounds(radius, height)
 
 
@@ -121,7 +124,7 @@ def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bo
 def rounded_cylinder(
     p: vec3, radius: float = 0.5, height: float = 1.0, rounding: float = 0.1
 ) -> float:
-    """Upright cylinder whose edges are rounded inward: the full size stays.
+    """Upright cylinder with rounded edges; the full size does not change.
 
     Args:
         p: Point.
@@ -141,19 +144,19 @@ def rounded_cylinder(
 
 @func
 def capsule_bounds(radius: float, height: float) -> Bounds:
-    """The box of an upright capsule."""
+    """Return the box of an upright capsule."""
     return upright_bounds(radius, -0.5 * height - radius, 0.5 * height + radius)
 
 
 @primitive("Capsule", EXACT, bounds=capsule_bounds, limits={"height": Limit.NOT_NEGATIVE})
 @func
 def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
-    """Upright round bar with half balls at its ends.
+    """Upright capsule: a cylinder with half balls at its ends.
 
     Args:
         p: Point.
         radius: Radius.
-        height: Of the straight part: between the centres of the half balls.
+        height: Height of the straight part: the distance between the centres of the half balls.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -168,7 +171,7 @@ def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
 
 @func
 def to_segment(p: vec3, start: vec3, end: vec3) -> vec3:
-    """From the nearest point of a straight line between two points to p.
+    """Return the vector from the nearest point of a line segment to p.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
     """
@@ -179,7 +182,7 @@ def to_segment(p: vec3, start: vec3, end: vec3) -> vec3:
 
 @func
 def capsule_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
-    """The box around the two balls."""
+    """Return the box around the two balls."""
     return balls_bounds(start, end, radius, radius)
 
 
@@ -188,12 +191,12 @@ def capsule_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
 def capsule_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4
 ) -> float:
-    """Round bar between two points, with half balls at its ends.
+    """Capsule: a cylinder between two points, with half balls at its ends.
 
     Args:
         p: Point.
         start: Centre of one half ball.
-        end: Centre of the other; where it is ``start``, the shape is a ball.
+        end: Centre of the other half ball; if it equals ``start``, the shape is a ball.
         radius: Radius.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).

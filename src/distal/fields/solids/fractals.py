@@ -1,10 +1,10 @@
-"""Fractals: a sponge with a true bound, and sets whose distance is estimated.
+"""Fractals: a sponge with an exact bound, and sets whose distance is estimated.
 
-Input: a point, how often the map is repeated, its numbers. Output: a lower bound
-for the sponge; for the others an estimate from how fast the map spreads neighbouring points. Beyond
-the ball or box that holds a set, the way there and the estimate at its edge are joined at a right
-angle, so that the estimate never has to serve far away. Divided by the slope that is named, fewer
-than 1 in 10,000 steps of a marcher enter the set (tested).
+Input: a point, the number of iterations of the map, its numbers. Output: a lower bound for the
+sponge; for the others an estimate from how fast the map separates neighbouring points. Outside the
+ball or cube that contains a set, the distance to it and the estimate at its border are combined at
+a right angle, so that the estimate is not used far away. When values are divided by the declared
+slope, fewer than 1 in 10,000 steps of a marcher enter the set (tested).
 """
 
 from __future__ import annotations
@@ -37,19 +37,19 @@ from distal.lang import (
 )
 
 NEAR_AXIS: Final = 1e-10
-# Beyond this the orbit is gone; large, because the estimate is the better the farther it went.
+# Escape radius of the orbit; large, because the estimate improves with the distance.
 ESCAPED: Final = 256.0
-# Neighbours spread further than this differ by less than 32 bits tell; going on would overflow.
+# Limit of the derivative: beyond it, 32 bits resolve no detail, and iteration would overflow.
 FINEST: Final = 1e12
 FINEST_BULB: Final = 16
-# How long an orbit is followed to tell whether it stays.
+# Number of iterations to decide whether an orbit stays bounded.
 ORBIT: Final = 200
 JULIA: Final = vec4(-0.2, 0.8, 0.0, 0.0)
 
 
 @func
 def cube_bounds(size: float) -> Bounds:
-    """The cube around the origin."""
+    """Return the cube around the origin."""
     return Bounds(vec3(-0.5 * size), vec3(0.5 * size))
 
 
@@ -64,12 +64,12 @@ def _repeats_are_few(iterations: int) -> str | None:
 )
 @func
 def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:
-    """Menger's sponge: a cube without its middle cross, and so on for the 20 cubes that are left.
+    """Menger sponge: a cube without its middle cross; the same is repeated in 20 smaller cubes.
 
     Args:
         p: Point.
-        size: Edge of the cube.
-        iterations: How many sizes of holes.
+        size: Edge length of the cube.
+        iterations: Number of sizes of holes.
 
     Source: Inigo Quilez, "Menger fractal" (https://iquilezles.org/articles/menger/).
 
@@ -83,7 +83,7 @@ def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:
     d = length(max(q, 0.0)) + min(max(max(q.x, q.y), q.z), 0.0)
     third = size / 3.0
     for _ in range(iterations):
-        # The nearest cross of this size, one in the middle of each cube three times as wide.
+        # The nearest cross of this size; each cube three times as wide has one in its middle.
         edge = 3.0 * third
         s = abs(p - edge * floor(p / edge + 0.5))
         bars = max(s, s.yzx)
@@ -95,25 +95,25 @@ def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:
 
 @func
 def beyond_ball(p: vec3, radius: float) -> float:
-    """How far outside a ball around the origin."""
+    """Return the distance outside a ball around the origin; 0 inside."""
     return max(length(p) - radius, 0.0)
 
 
 @func
 def held_in_ball(p: vec3, radius: float) -> vec3:
-    """The nearest point of a ball around the origin."""
+    """Return the nearest point of a ball around the origin."""
     return p * min(radius / max(length(p), TINY), 1.0)
 
 
 @func
 def escape_distance(size: float, spread: float, radius: float) -> float:
-    """The distance to the points whose orbit is still in the ball that none returns to.
+    """Return the estimated distance to the points whose orbit stays in the ball.
 
     Source: the Hubbard-Douady potential; John Hart, Daniel Sandin and Louis Kauffman, "Ray Tracing
     Deterministic 3-D Fractals" (1989).
     """
     r = max(size, TINY)
-    # Inside, orbits come together and would make it endless.
+    # Inside, orbits converge, and the estimate would be infinite.
     return 0.5 * r * log(r / radius) / max(spread, select(r < radius, 1.0, TINY))
 
 
@@ -127,26 +127,29 @@ def _power_is_more(power: int, iterations: int) -> str | None:
 
 @func
 def mandelbulb_radius(power: int) -> float:
-    """Orbits that ever go beyond it, leave: there the power is more than twice the radius."""
+    """Return the escape radius: beyond it, the power is more than twice the radius."""
     return pow(2.0, 1.0 / float(power - 1))
 
 
 @func
 def mandelbulb_bounds(power: int) -> Bounds:
-    """The cube around the ball that holds the set."""
+    """Return the cube around the ball that contains the set."""
     radius = mandelbulb_radius(power)
     return Bounds(vec3(-radius), vec3(radius))
 
 
 @func
 def mandelbulb_escaped(power: int) -> float:
-    """Beyond this an orbit is gone; its next power times any derivative is still a number."""
+    """Return the radius at which iteration stops without overflow of the next power."""
     return min(ESCAPED, exp2(24.0 / float(power)))
 
 
 @func
 def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
-    """From the orbit of z -> z^power + c: lengths to the power, both angles times the power."""
+    """Return the estimate from the orbit of z -> z^power + c in spherical coordinates.
+
+    The power multiplies both angles and raises the length.
+    """
     z = c
     r = length(z)
     spread = 1.0
@@ -157,16 +160,16 @@ def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
         if r > escaped or spread > FINEST:
             break
         stretch = pow(r, times - 1.0)
-        # Angles from the nearer pole: there 32 bits tell the sine of many turns no more.
+        # Angles from the nearer pole: near the other one, 32 bits do not resolve the sine below.
         off_axis = length(z.xz)
         polar = times * atan2(off_axis, abs(z.y))
         turned = select(z.y < 0.0, odd_sign, 1.0)
         across = sin(polar) * select(z.y < 0.0, -turned, 1.0)
-        # On the axis there is no azimuth, and close to it 32 bits lose the square of the way.
+        # On the axis the azimuth is undefined, and close to it 32 bits lose the squared distance.
         aside = off_axis > NEAR_AXIS
         azimuth = times * atan2(select(aside, z.z, 0.0), select(aside, z.x, 1.0))
-        # Near the axis the map spreads points more around it; a spread that followed would blur
-        # the normals, which are those of the estimate.
+        # Near the axis the map separates points more around it; including that would blur the
+        # normals, which are those of the estimate.
         spread = times * stretch * spread + 1.0
         direction = vec3(across * cos(azimuth), turned * cos(polar), across * sin(azimuth))
         z = stretch * r * direction + c
@@ -186,12 +189,12 @@ def mandelbulb_estimate(c: vec3, power: int, iterations: int) -> float:
 )
 @func
 def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
-    """The Mandelbulb, around the y axis: points whose powers stay, in polar coordinates.
+    """Mandelbulb around the y axis: points whose powers in spherical coordinates stay bounded.
 
     Args:
         p: Point.
-        power: Of the map, from 2 to 32.
-        iterations: How long orbits are followed, at most 16; more show finer detail.
+        power: Exponent of the map, from 2 to 32.
+        iterations: Number of iterations, at most 16; more show finer detail.
 
     Source: Daniel White and Paul Nylander (2009); Inigo Quilez, "Mandelbulb"
     (https://iquilezles.org/articles/mandelbulb/).
@@ -208,7 +211,10 @@ def mandelbulb(p: vec3, power: int = 8, iterations: int = 8) -> float:
 
 
 def _set_is_connected(c: tuple[float, ...], iterations: int) -> str | None:
-    """A square's orbit stays in the plane of c, where Mandelbrot's set tells."""
+    """Return why the Julia set of c is not connected, or None.
+
+    The orbit of a square stays in the plane of c, so the Mandelbrot set decides it.
+    """
     within = complex(c[0], math.hypot(*c[1:]))
     z = 0j
     for _ in range(ORBIT):
@@ -220,19 +226,19 @@ def _set_is_connected(c: tuple[float, ...], iterations: int) -> str | None:
 
 @func
 def julia_radius(c: vec4) -> float:
-    """Orbits that ever go beyond it, leave: there the square is more than the radius and c."""
+    """Return the escape radius: beyond it, the square is more than the radius plus |c|."""
     return 0.5 + sqrt(0.25 + length(c))
 
 
 @func
 def julia_bounds(c: vec4) -> Bounds:
-    """The cube around the ball that holds the set."""
+    """Return the cube around the ball that contains the set."""
     return Bounds(vec3(-julia_radius(c)), vec3(julia_radius(c)))
 
 
 @func
 def julia_estimate(start: vec4, c: vec4, iterations: int) -> float:
-    """From the orbit of z -> z^2 + c in quaternions."""
+    """Return the estimate from the orbit of z -> z^2 + c in quaternions."""
     z = start
     r = length(z)
     spread = 1.0
@@ -257,13 +263,14 @@ def julia_estimate(start: vec4, c: vec4, iterations: int) -> float:
 )
 @func
 def quaternion_julia(p: vec3, c: vec4 = JULIA, iterations: int = 10) -> float:
-    """A Julia set of quaternions, where their last part is 0.
+    """Julia set of quaternions: the slice where the last component is 0.
 
     Args:
         p: Point.
-        c: What is added to the square: real part, then i, j, k. The real part and the length of the
-            rest must be a point of the Mandelbrot set, else the Julia set is dust.
-        iterations: How long orbits are followed; more show finer detail.
+        c: Constant that is added to the square: real part, then i, j, k. The real part and the
+            length of the rest must be a point of the Mandelbrot set, otherwise the Julia set is not
+            connected.
+        iterations: Number of iterations; more show finer detail.
 
     Source: John Hart, Daniel Sandin and Louis Kauffman, "Ray Tracing Deterministic 3-D Fractals"
     (1989).
@@ -281,20 +288,20 @@ def quaternion_julia(p: vec3, c: vec4 = JULIA, iterations: int = 10) -> float:
 
 @func
 def mandelbox_reach(scale: float) -> float:
-    """Half of the edge of the cube that holds the set."""
+    """Return half of the edge length of the cube that contains the set."""
     return select(scale > 0.0, 2.0 * (scale + 1.0) / max(scale - 1.0, TINY), 2.0)
 
 
 @func
 def mandelbox_estimate(c: vec3, scale: float, iterations: int) -> float:
-    """From the orbit of folding at a cube and at two balls, scaling and moving by c."""
+    """Return the estimate from the orbit of box fold, ball fold, scaling and adding c."""
     reach = mandelbox_reach(scale)
     z = c
     spread = 1.0
     for _ in range(iterations):
         z = 2.0 * clamp(z, -1.0, 1.0) - z
         square = dot(z, z)
-        # Points near the middle are inverted at the ball of radius 1, but not beyond a factor of 4.
+        # Points near the middle are inverted in the ball of radius 1, by a factor of at most 4.
         grow = scale * clamp(1.0 / max(square, TINY), 1.0, 4.0)
         z = grow * z + c
         spread = abs(grow) * spread + 1.0
@@ -322,13 +329,13 @@ def _scale_folds(scale: float, iterations: int) -> str | None:
 )
 @func
 def mandelbox(p: vec3, size: float = 1.5, scale: float = 2.0, iterations: int = 8) -> float:
-    """The Mandelbox: points whose foldings at a cube and a ball stay.
+    """Mandelbox: points that stay bounded under folds at a cube and a ball.
 
     Args:
         p: Point.
-        size: Edge of the cube that holds it.
-        scale: Of the folded space, above 1 or below -1.
-        iterations: How often it is folded; more show finer detail.
+        size: Edge length of the cube that contains the set.
+        scale: Scale factor of the map, above 1 or below -1.
+        iterations: Number of iterations; more show finer detail.
 
     Source: Tom Lowe (2010); the folds' spread as a running derivative, after "Rrrola" on
     fractalforums.com.

@@ -1,8 +1,8 @@
-"""Terrain: the solid below a height that depends on the place in the plane.
+"""Terrain: the solid below a height that depends on x and z.
 
-Input: a point, and the height from an image or from a flat field (whose value is read as
-the height). Output: the vertical way to the surface, shortened by the steepest rise, so
-that it is never more than the distance. ``RELIEF`` makes terrain of any flat shape or function.
+Input: a point, and the height from an image or from a flat field (whose value is the height).
+Output: the vertical distance to the surface, divided so that it is never more than the true
+distance. ``RELIEF`` makes terrain from any flat shape or function.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ GROUND_SIZE: Final = vec2(4.0)
 
 @func
 def interpolated(image: Texture2D, place: vec2) -> float:
-    """Bilinear, the first channel; ``place`` counts texels from the first one's middle."""
+    """Interpolate the first channel bilinearly; ``place`` is in texels from the first centre."""
     last = size_of(image) - 1
     lower = clamp(ivec2(floor(place)), ivec2(0), max(last - 1, ivec2(0)))
     upper = min(lower + 1, last)
@@ -53,7 +53,7 @@ def interpolated(image: Texture2D, place: vec2) -> float:
 
 @func
 def above_height(y: float, height: float, steepness: float) -> float:
-    """The vertical way, shortened to the distance from a plane as steep as that."""
+    """Return the vertical distance, scaled to the distance from a plane of this steepness."""
     return (y - height) * inversesqrt(1.0 + steepness * steepness)
 
 
@@ -71,19 +71,18 @@ def heightfield(
     height: float = 1.0,
     steepness: float = 1.0,
 ) -> float:
-    """Terrain from an image of heights, in its first channel; its edges go on without end.
+    """Terrain from the first channel of an image; its border heights continue without end.
 
-    The bound holds if the ground rises nowhere by more than ``steepness``: take it from the data,
-    the largest difference of neighbouring texels times ``height`` over their distance, across and
-    along, squared, added, the root drawn.
+    The bound holds if the ground rises nowhere by more than ``steepness``. Compute this number from
+    the data: the largest difference of neighbouring texels times ``height``, divided by their
+    distance, along each of the two axes; then the root of the sum of both squares.
 
     Args:
         p: Point.
-        image: The heights; the image lies on the ground, its upper side away from the viewer (at
-            the smallest z).
-        size: Width and depth that the image covers, its middle at the origin.
-        height: The height that a texel of value 1 represents.
-        steepness: The most that the ground rises over a horizontal way of 1.
+        image: The heights. The image lies in the xz plane, its upper side at the smallest z.
+        size: Size of the image along x and z, centred at the origin.
+        height: Height of a texel of value 1.
+        steepness: Largest rise of the ground per unit of horizontal distance.
 
     Source: John C. Hart, "Sphere tracing" (1996), for the bound.
 
@@ -100,25 +99,25 @@ def heightfield(
 
 @func
 def on_the_ground(p: vec3) -> vec2:
-    """The place in the plane as seen from above, its upper side away from the viewer."""
+    """Return the point of the image plane above or below p; its upper side is at small z."""
     return vec2(p.x, -p.z)
 
 
 @func
 def relief_value(d: float, p: vec3, slope: float) -> float:
-    """The flat field's value is the ground's height."""
+    """Return the distance to the ground whose height is the flat field's value."""
     return above_height(p.y, d, slope)
 
 
 @func
 def relief_slope(slope: float) -> float:
-    """1, unless the child has no bound on its slope."""
+    """Return 1, or no bound if the child has none."""
     return UNBOUNDED if slope >= UNBOUNDED / 1000.0 else 1.0
 
 
 @func
 def relief_bounds(bounds: Bounds2) -> Bounds:
-    """The ground has no end."""
+    """Return an infinite box."""
     return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED))
 
 

@@ -1,8 +1,8 @@
-"""Strut lattices: round bars between the points of a crystal's lattice, without end.
+"""Infinite strut lattices: round bars between the points of a crystal lattice.
 
-Input: a point, the edge of the cell that repeats, the struts' radius. Output: the
-distance, exact outside. Each lattice is mirrored at the planes through its nodes and half way
-between them, so a point is folded into an eighth of a cell: what is nearest to it lies there too.
+Input: a point, the edge length of the repeated cell, the radius of the struts. Output: the
+distance, exact outside. Each lattice is symmetric about the planes through its nodes and halfway
+between them, so a point is folded into an eighth of a cell, which also contains its nearest strut.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ def _octet_gaps_stay(cell_size: float, radius: float) -> str | None:
 
 @func
 def folded(p: vec3, cell_size: float) -> vec3:
-    """The place in the eighth of a cell between a node at 0 and the cell's middle."""
+    """Return the point folded into the eighth of a cell between a node at 0 and the middle."""
     return abs(p - cell_size * round(p / cell_size))
 
 
 @func
 def descending(q: vec3) -> vec3:
-    """The components sorted, the largest first."""
+    """Return the components in descending order."""
     highest = max(max(q.x, q.y), q.z)
     lowest = min(min(q.x, q.y), q.z)
     middle = max(min(q.x, q.y), min(max(q.x, q.y), q.z))
@@ -47,12 +47,12 @@ def descending(q: vec3) -> vec3:
 @primitive("CubicLattice", EXACT_OUTSIDE, requires=_cubic_gaps_stay, tier=2)
 @func
 def cubic_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.06) -> float:
-    """Struts along the edges of cubes, a node at the origin.
+    """Infinite lattice of struts along the edges of cubes, with a node at the origin.
 
     Args:
         p: Point.
-        cell_size: Edge of the cubes.
-        radius: Of the struts, below half of ``cell_size``.
+        cell_size: Edge length of the cubes.
+        radius: Radius of the struts, below half of ``cell_size``.
 
     Source: the nearest of three perpendicular lines after folding.
 
@@ -66,7 +66,7 @@ def cubic_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.06) -> floa
 
 @func
 def from_face_diagonals(q: vec3) -> vec2:
-    """The way, in two parts, from the nearest line from 0 to the middle of a cube's face."""
+    """Return the offset, in two components, from the nearest face diagonal through 0."""
     s = descending(q)
     return vec2(ROOT_HALF * (s.x - s.y), s.z)
 
@@ -74,12 +74,12 @@ def from_face_diagonals(q: vec3) -> vec2:
 @primitive("BccLattice", EXACT_OUTSIDE, requires=_diagonal_gaps_stay, tier=2)
 @func
 def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
-    """Struts from the corners of cubes to their middles (body-centred cubic).
+    """Infinite lattice of struts from the corners of cubes to their middles (body-centred cubic).
 
     Args:
         p: Point.
-        cell_size: Edge of the cubes; a corner is at the origin.
-        radius: Of the struts, at most a quarter of ``cell_size``.
+        cell_size: Edge length of the cubes; a corner is at the origin.
+        radius: Radius of the struts, at most a quarter of ``cell_size``.
 
     Source: the nearest line after folding, which is the cube's diagonal.
 
@@ -95,12 +95,12 @@ def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
 @primitive("FccLattice", EXACT_OUTSIDE, requires=_diagonal_gaps_stay, tier=2)
 @func
 def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
-    """Struts from the corners of cubes to the middles of their faces (face-centred cubic).
+    """Infinite lattice of struts from cube corners to face middles (face-centred cubic).
 
     Args:
         p: Point.
-        cell_size: Edge of the cubes; a corner is at the origin.
-        radius: Of the struts, at most a quarter of ``cell_size``.
+        cell_size: Edge length of the cubes; a corner is at the origin.
+        radius: Radius of the struts, at most a quarter of ``cell_size``.
 
     Source: the nearest of three lines after folding.
 
@@ -115,12 +115,12 @@ def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
 @primitive("OctetLattice", EXACT_OUTSIDE, requires=_octet_gaps_stay, tier=2)
 @func
 def octet_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> float:
-    """The octet truss: the edges of octahedra and tetrahedra that fill space.
+    """Infinite octet truss: struts along the edges of octahedra and tetrahedra that fill space.
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats; a node is at the origin.
-        radius: Of the struts, at most 0.15 ``cell_size``.
+        cell_size: Edge length of the repeated cube; a node is at the origin.
+        radius: Radius of the struts, at most 0.15 ``cell_size``.
 
     Source: Buckminster Fuller's truss (US patent 2986241, 1961); the nearest of a tetrahedron's six
     edges after folding.
@@ -132,7 +132,7 @@ def octet_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> flo
     """
     half = 0.5 * cell_size
     q = folded(p, cell_size)
-    # The three edges that do not pass the node: one lies in each of the faces away from it.
+    # The three edges that do not pass through the node: one in each of the faces opposite to it.
     away = half - q
     along = ROOT_HALF * (q.x + q.y + q.z - half - q)
     nearest = nearer(vec2(away.x, along.x), vec2(away.y, along.y))

@@ -1,7 +1,7 @@
-"""Metaballs: balls that melt into each other where they are close.
+"""Metaballs: balls that blend into each other where they are close.
 
-Input: a point, the balls (centre and radius) as data, and how softly they blend. Output: a lower
-bound of the distance that never rises faster than the way.
+Input: a point, the balls (centre and radius) as data, and the softness of the blend. Output: a
+lower bound of the distance, with slope 1.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ SHARP: Final = 1e-12
 
 @func
 def metaballs_bounds(balls: Buffer[vec4], softness: float) -> Bounds:
-    """Around all balls, grown by the most that so many can move the surface out."""
+    """Return the box around all balls, enlarged by the most that the blend adds."""
     low = balls[0].xyz - balls[0].w
     high = balls[0].xyz + balls[0].w
     for i in range(1, size(balls)):
@@ -36,12 +36,13 @@ def metaballs_bounds(balls: Buffer[vec4], softness: float) -> Bounds:
 )
 @func
 def metaballs(p: vec3, balls: Buffer[vec4], softness: float = 0.1) -> float:
-    """Balls that melt into each other; their order does not matter.
+    """Balls that blend into each other; their order has no effect.
 
     Args:
         p: Point.
-        balls: The centre of each and, as fourth number, its radius.
-        softness: How far the surface moves out where two balls are equally near.
+        balls: Centre of each ball, with its radius as fourth number.
+        softness: How far the surface moves outwards where two balls are equally near, in scene
+            units.
 
     Source: James Blinn, "A Generalization of Algebraic Surface Drawing" (1982), with a density that
     falls off by the distance from each ball, so that its logarithm is a distance.
@@ -53,7 +54,7 @@ def metaballs(p: vec3, balls: Buffer[vec4], softness: float = 0.1) -> float:
     """
     sharpness = 1.0 / max(softness, SHARP)
     nearest = length(p - balls[0].xyz) - balls[0].w
-    # The sum of all densities, over that of the nearest ball so far.
+    # The sum of all densities, divided by that of the nearest ball so far.
     total = 1.0
     for i in range(1, size(balls)):
         d = length(p - balls[i].xyz) - balls[i].w

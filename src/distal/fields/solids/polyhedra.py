@@ -1,7 +1,7 @@
-"""Polyhedra with exact distance, and convex bodies from any planes.
+"""Polyhedra with exact distance, and convex solids bounded by any planes.
 
-Input: a point and the numbers of a shape. Output: the distance. Mirrors of the
-shape's symmetry move the point to where one face, with one of its edges, is the nearest.
+Input: a point and the numbers of a shape. Output: the distance. The symmetry of the shape is used
+to mirror the point to where one known face, with one known edge, is the nearest.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ CUT_CORNERS: Final = Buffer(
 
 @func
 def face_edge(height: float, past_edge: float, past_end: float) -> float:
-    """Distance to a convex body from above one face, near one edge of it.
+    """Return the distance to a convex solid near one face and one edge of this face.
 
     Args:
-        height: Above the face's plane.
-        past_edge: In that plane, how far past the edge.
-        past_end: Along the edge, how far past its end.
+        height: Distance above the face's plane.
+        past_edge: Distance beyond the edge, in the face's plane.
+        past_end: Distance beyond the edge's end, along the edge.
     """
     return select(past_edge > 0.0, length(vec3(height, past_edge, max(past_end, 0.0))), height)
 
@@ -56,11 +56,11 @@ def face_edge(height: float, past_edge: float, past_end: float) -> float:
 @primitive("Octahedron", EXACT, bounds=sphere_bounds)
 @func
 def octahedron(p: vec3, radius: float = 1.0) -> float:
-    """Regular octahedron.
+    """Regular octahedron with its vertices on the axes.
 
     Args:
         p: Point.
-        radius: From the centre to the vertices, which lie on the axes.
+        radius: Distance from the centre to the vertices.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
         by symmetry.
@@ -71,7 +71,7 @@ def octahedron(p: vec3, radius: float = 1.0) -> float:
         octahedron((0.0, 4.0, 0.0), 1.0) = 3.0
     """
     q = abs(p)
-    # The nearest edge is that of the two largest parts.
+    # The nearest edge belongs to the two largest components.
     smallest = min(q.x, q.y, q.z)
     largest = max(q.x, q.y, q.z)
     both = q.x + q.y + q.z - smallest
@@ -85,11 +85,11 @@ def octahedron(p: vec3, radius: float = 1.0) -> float:
 @primitive("Tetrahedron", EXACT, bounds=cube_of_radius("tetrahedron_bounds", DIAGONAL))
 @func
 def tetrahedron(p: vec3, radius: float = 1.0) -> float:
-    """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them.
+    """Regular tetrahedron on alternate corners of a cube, one of them along (1, 1, 1).
 
     Args:
         p: Point.
-        radius: From the centre to the vertices.
+        radius: Distance from the centre to the vertices.
 
     Source: derived from the symmetry: mirrors lead to x >= y >= |z|, where the face along
         (1, 1, -1) and its edge through (x, 0, 0) along (0, 1, 1) are nearest.
@@ -99,7 +99,7 @@ def tetrahedron(p: vec3, radius: float = 1.0) -> float:
         tetrahedron((2.0, 0.0, 0.0), 1.7320508075688772) = 1.0
         tetrahedron((3.0, 3.0, 3.0), 1.7320508075688772) = 3.4641016151377544
     """
-    # An even number of signs may change: the two larger parts become positive.
+    # An even number of signs may change: the two larger components become positive.
     q = abs(p)
     low = min(q.x, q.y, q.z)
     high = max(q.x, q.y, q.z)
@@ -115,7 +115,7 @@ def tetrahedron(p: vec3, radius: float = 1.0) -> float:
 
 @func
 def pyramid_bounds(size: float, height: float) -> Bounds:
-    """The box of base and tip."""
+    """Return the box of the base and the tip."""
     reach = vec3(0.5 * size, 0.5 * height, 0.5 * size)
     return Bounds(-reach, reach)
 
@@ -123,12 +123,12 @@ def pyramid_bounds(size: float, height: float) -> Bounds:
 @primitive("Pyramid", EXACT, bounds=pyramid_bounds)
 @func
 def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
-    """Upright pyramid over a square.
+    """Upright pyramid with a square base.
 
     Args:
         p: Point.
-        size: Side of the square base.
-        height: Full height; the origin is half way up.
+        size: Side length of the base.
+        height: Full height; the origin is at half of it.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
         worked out anew in the plane of a side.
@@ -139,15 +139,15 @@ def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
         pyramid((0.0, -0.75, 0.0), 2.0, 2.0) = -0.25
     """
     half = 0.5 * size
-    # The nearest side looks along x; z runs along its base.
+    # The nearest side faces +x; z runs along its base.
     x = max(abs(p.x), abs(p.z)) - half
     z = min(abs(p.x), abs(p.z))
     y = p.y + 0.5 * height
-    # In the plane of the side: up the slope, and above the plane.
+    # Coordinates up along the side's plane, and above the plane.
     slope_length = length(vec2(half, height))
     up = (y * height - x * half) / slope_length
     above = (x * height + y * half) / slope_length
-    # From the nearest point of the slanted edge, which runs from (half, 0) to the tip.
+    # The vector from the nearest point of the slanted edge, from (half, 0) to the tip.
     edge = vec2(-half, slope_length)
     beside = vec2(z - half, up)
     from_edge = beside - edge * clamp(dot(beside, edge) / dot(edge, edge), 0.0, 1.0)
@@ -159,7 +159,7 @@ def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
 
 
 def convex_polyhedron_requires(planes: Any) -> str | None:
-    """A longer normal would make the field too steep."""
+    """Return why a plane's normal is not of length 1, or None."""
     rows: Any = getattr(planes, "data", ()) if isinstance(planes, Buffer) else planes
     for x, y, z, _ in rows:
         if math.fabs(x * x + y * y + z * z - 1.0) > 1e-4:
@@ -177,13 +177,14 @@ def convex_polyhedron_requires(planes: Any) -> str | None:
 )
 @func
 def convex_polyhedron(p: vec3, planes: Buffer[vec4] = CUT_CORNERS, size: vec3 = UNIT_CUBE) -> float:
-    """What planes leave of a box; beyond edges less than the distance.
+    """Box cut by planes; a lower bound beyond edges.
 
     Args:
         p: Point.
-        planes: Each an outward normal of length 1, and how far along it the plane is from the
-            origin.
-        size: Full size of the box; large enough, it cuts nothing and only bounds the shape.
+        planes: For each plane the outward normal of length 1 and, as fourth number, the distance of
+            the plane from the origin along the normal.
+        size: Full size of the box. If the planes enclose a smaller solid, it only serves as the
+            bounding box.
 
     Source: the largest of the planes' distances; Akleman and Chen, "Generalized Distance
         Functions", 1999.

@@ -1,7 +1,7 @@
-"""Upright prisms over regular polygons and the rhombus.
+"""Upright prisms over regular polygons and rhombi.
 
-Input: a point and the numbers of a shape. Output: the distance. Symmetry turns the
-point until one side of the outline, square to the z axis, is the nearest.
+Input: a point and the numbers of a shape. Output: the distance. The symmetry of the outline is used
+to move the point to where one side, perpendicular to the z axis, is the nearest.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from distal.lang import abs, cos, dot, func, length, max, min, sin, vec2, vec3
 
 DIAGONALS: Final = vec2(1.0, 0.6)
 
-# Half of a side, and how far the corners are, for a side at distance 1 from the centre.
+# Half of the side length, and the distance of the corners, for a side at distance 1.
 TRIANGLE_HALF_SIDE: Final = math.sqrt(3.0)
 HEXAGON_HALF_SIDE: Final = math.tan(math.pi / 6.0)
 HEXAGON_REACH: Final = 1.0 / math.cos(math.pi / 6.0)
@@ -25,15 +25,15 @@ OCTAGON_HALF_SIDE: Final = math.tan(math.pi / 8.0)
 
 @func
 def prism_side(q: vec2, y: float, half_side: float, apothem: float, height: float) -> float:
-    """Distance to a prism, one of whose sides is nearest and looks along q's y axis."""
+    """Return the distance to a prism whose nearest side faces q's y axis."""
     beyond = vec3(abs(q.x) - half_side, q.y - apothem, abs(y) - 0.5 * height)
-    # Beside the outline's corner its edge is nearest; inside, q.x is always within the side.
+    # Past the outline's corner the upright edge is nearest; inside, q.x is always within the side.
     return length(max(beyond, 0.0)) + min(max(beyond.y, beyond.z), 0.0)
 
 
 @func
 def tri_prism_bounds(apothem: float, height: float) -> Bounds:
-    """The box of a triangle with a side square to z."""
+    """Return the box of a prism over a triangle with a side perpendicular to z."""
     half = TRIANGLE_HALF_SIDE * apothem
     return Bounds(vec3(-half, -0.5 * height, -2.0 * apothem), vec3(half, 0.5 * height, apothem))
 
@@ -41,11 +41,11 @@ def tri_prism_bounds(apothem: float, height: float) -> Bounds:
 @primitive("TriPrism", EXACT, bounds=tri_prism_bounds)
 @func
 def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
-    """Upright prism over an equilateral triangle; one side looks along z.
+    """Upright prism over an equilateral triangle; one side faces +z.
 
     Args:
         p: Point.
-        apothem: From the axis to the middle of a side: half of that to a corner.
+        apothem: Distance from the axis to the middle of a side; a corner is twice as far away.
         height: Full height.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
@@ -62,7 +62,7 @@ def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
 
 @func
 def hex_prism_bounds(apothem: float, height: float) -> Bounds:
-    """The box of a hexagon with two sides square to z."""
+    """Return the box of a prism over a hexagon with two sides perpendicular to z."""
     reach = vec3(HEXAGON_REACH * apothem, 0.5 * height, apothem)
     return Bounds(-reach, reach)
 
@@ -70,11 +70,11 @@ def hex_prism_bounds(apothem: float, height: float) -> Bounds:
 @primitive("HexPrism", EXACT, bounds=hex_prism_bounds)
 @func
 def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
-    """Upright prism over a regular hexagon; one side looks along z.
+    """Upright prism over a regular hexagon; two sides face along z.
 
     Args:
         p: Point.
-        apothem: From the axis to the middle of a side.
+        apothem: Distance from the axis to the middle of a side.
         height: Full height.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
@@ -90,7 +90,7 @@ def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
 
 @func
 def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
-    """The box of an octagon with sides square to x and z."""
+    """Return the box of a prism over an octagon with sides perpendicular to x and z."""
     reach = vec3(apothem, 0.5 * height, apothem)
     return Bounds(-reach, reach)
 
@@ -98,11 +98,11 @@ def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
 @primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds)
 @func
 def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
-    """Upright prism over a regular octagon; sides look along x and z.
+    """Upright prism over a regular octagon; sides face along x and z.
 
     Args:
         p: Point.
-        apothem: From the axis to the middle of a side.
+        apothem: Distance from the axis to the middle of a side.
         height: Full height.
 
     Source: Inigo Quilez, "2D distance functions"
@@ -120,25 +120,25 @@ def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
 
 @func
 def prism_bounds(count: int, apothem: float, height: float) -> Bounds:
-    """The box of the circle through the corners."""
+    """Return the box of the circle through the corners."""
     reach = apothem / cos(PI / float(count))
     return Bounds(vec3(-reach, -0.5 * height, -reach), vec3(reach, 0.5 * height, reach))
 
 
 def prism_requires(count: int) -> str | None:
-    """Fewer sides enclose nothing."""
+    """Return why the number of sides is invalid, or None."""
     return None if count >= 3 else "count must be 3 or more"
 
 
 @primitive("Prism", EXACT, bounds=prism_bounds, requires=prism_requires)
 @func
 def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:
-    """Upright prism over a regular polygon; one side looks along z.
+    """Upright prism over a regular polygon; one side faces +z.
 
     Args:
         p: Point.
-        count: How many sides, 3 or more.
-        apothem: From the axis to the middle of a side.
+        count: Number of sides, 3 or more.
+        apothem: Distance from the axis to the middle of a side.
         height: Full height.
 
     Source: the sector that the angle names, turned to z; Inigo Quilez, "2D distance functions"
@@ -155,7 +155,7 @@ def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) ->
 
 @func
 def rhombus_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
-    """The box of a rhombus, grown by its rounding."""
+    """Return the box of a rhombus, enlarged by its rounding."""
     reach = vec3(0.5 * diagonals.x + rounding, 0.5 * height, 0.5 * diagonals.y + rounding)
     return Bounds(-reach, reach)
 
@@ -165,13 +165,13 @@ def rhombus_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
 def rhombus(
     p: vec3, diagonals: vec2 = DIAGONALS, height: float = 1.0, rounding: float = 0.05
 ) -> float:
-    """Upright prism over a rhombus with rounded upright edges.
+    """Upright prism over a rhombus whose vertical edges are rounded.
 
     Args:
         p: Point.
         diagonals: Full size along x and z, before rounding.
         height: Full height.
-        rounding: How far the outline is grown, which rounds its corners.
+        rounding: Radius of the vertical edges, by which the outline is enlarged.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -186,6 +186,6 @@ def rhombus(
     direction = side / side_length
     across = q.x * direction.y - q.y * direction.x
     beyond = abs(dot(q, direction) - 0.5 * side_length) - 0.5 * side_length
-    # Inside, the foot of the perpendicular always lies on the side.
+    # Inside, the nearest point of the side's line always lies on the side.
     outline = length(max(vec2(beyond, across), 0.0)) + min(across, 0.0)
     return inside_both(outline - rounding, abs(p.y) - 0.5 * height)

@@ -1,8 +1,8 @@
-"""Regular and Archimedean solids from the directions of their faces.
+"""Regular and Archimedean solids, defined by the directions of their faces.
 
-Input: a point and the numbers of a shape. Output: a convex body's largest plane
-distance: exact inside, a lower bound outside. The directions come as axes: a face looks both ways
-along each.
+Input: a point and the numbers of a shape. Output: the largest distance to a face's plane: exact
+inside, a lower bound outside. The directions are given as axes: there is a face at both ends of
+each axis.
 
 Source: Ergun Akleman and Jianer Chen, "Generalized Distance Functions", Shape Modeling
 International 1999; Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), for the families of axes.
@@ -22,14 +22,15 @@ from distal.lang.functions import Func
 
 GOLDEN: Final = (1.0 + math.sqrt(5.0)) / 2.0
 DIAGONAL: Final = 1.0 / math.sqrt(3.0)
-# Of (0, 1, golden) and of (0, 1/golden, golden), normalised: a dodecahedron's faces look along the
-# first and its cyclic turns, an icosahedron's along the second and along the diagonals.
+# Components of (0, 1, golden) and (0, 1/golden, golden), normalised. The normals of a dodecahedron
+# are the first vector and its cyclic permutations; those of an icosahedron are the second vector,
+# its cyclic permutations, and the diagonals.
 VERTEX_SHORT: Final = 1.0 / math.sqrt(1.0 + GOLDEN * GOLDEN)
 VERTEX_LONG: Final = GOLDEN * VERTEX_SHORT
 FACE_SHORT: Final = DIAGONAL / GOLDEN
 FACE_LONG: Final = DIAGONAL * GOLDEN
 
-# Distance of the faces where the vertices are at distance 1.
+# Distance of the faces for vertices at distance 1.
 OCTAHEDRON_FACE: Final = DIAGONAL
 ICOSAHEDRON_FACE: Final = math.sqrt((5.0 + 2.0 * math.sqrt(5.0)) / 15.0)
 DODECAHEDRON_FACE: Final = ICOSAHEDRON_FACE
@@ -39,23 +40,23 @@ TRUNCATED_OCTAHEDRON_SQUARE: Final = 2.0 / math.sqrt(5.0)
 FOOTBALL_RADIUS: Final = math.sqrt(1.0 + 9.0 * GOLDEN * GOLDEN)
 FOOTBALL_HEXAGON: Final = 3.0 * GOLDEN * FACE_LONG / FOOTBALL_RADIUS
 FOOTBALL_PENTAGON: Final = VERTEX_LONG * (1.0 / GOLDEN + 3.0 * GOLDEN) / FOOTBALL_RADIUS
-# How far the vertices reach along x, y and z.
+# Extent of the vertices along x, y and z.
 DODECAHEDRON_REACH: Final = FACE_LONG
 ICOSAHEDRON_REACH: Final = VERTEX_LONG
 FOOTBALL_REACH: Final = 3.0 * GOLDEN / FOOTBALL_RADIUS
 
 
 def equal_faces(name: str, face: float, reach: float) -> Callable[[Func], Func]:
-    """Declare the ``@func`` below as a body whose nearest faces are equally far away.
+    """Declare the ``@func`` below as a solid whose nearest faces have equal distance.
 
-    Growth: to move all faces out by r scales such a body by 1 + r over their distance. The vertices
-    then leave the box by at most r times their own distance over it (a side by their reach over
-    it). Faces that are farther away move out by less than the scale.
+    Growth: moving all faces outwards by r scales such a solid by 1 + r / face. The vertices then
+    leave the box by at most r / face (a side by r * reach / face). Faces that are farther away move
+    outwards by less than this scale.
 
     Args:
-        name: The shape's.
+        name: Name of the shape.
         face: Distance of the faces, for vertices at distance 1.
-        reach: How far the vertices reach along an axis.
+        reach: Extent of the vertices along an axis.
     """
 
     def declare(distance: Func) -> Func:
@@ -69,19 +70,19 @@ def equal_faces(name: str, face: float, reach: float) -> Callable[[Func], Func]:
     return declare
 
 
-# The largest part of p along any axis of a family. ``q`` is abs(p): every family has the symmetry
-# of the box, so that one octant is enough.
+# The largest projection of p on the axes of a family. ``q`` is abs(p): every family has the
+# symmetry of the box, so one octant is enough.
 
 
 @func
 def along_diagonals(q: vec3) -> float:
-    """Along the octahedron's axes."""
+    """Return the largest projection on the octahedron's axes."""
     return (q.x + q.y + q.z) * DIAGONAL
 
 
 @func
 def along_vertices(q: vec3) -> float:
-    """Along the axes through an icosahedron's vertices."""
+    """Return the largest projection on the axes through an icosahedron's vertices."""
     return max(
         q.y * VERTEX_SHORT + q.z * VERTEX_LONG,
         q.z * VERTEX_SHORT + q.x * VERTEX_LONG,
@@ -91,7 +92,7 @@ def along_vertices(q: vec3) -> float:
 
 @func
 def along_faces(q: vec3) -> float:
-    """Along the axes through an icosahedron's faces."""
+    """Return the largest projection on the axes through an icosahedron's faces."""
     return max(
         along_diagonals(q),
         q.z * FACE_SHORT + q.y * FACE_LONG,
@@ -103,11 +104,11 @@ def along_faces(q: vec3) -> float:
 @primitive("OctahedronCheap", INSIDE_AND_BOUND, bounds=sphere_bounds, growth=1.0 / OCTAHEDRON_FACE)
 @func
 def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
-    """Octahedron by its faces alone; beyond edges less than the distance.
+    """Octahedron as the maximum of its faces' planes; a lower bound beyond edges.
 
     Args:
         p: Point.
-        radius: From the centre to the vertices, which lie on the axes.
+        radius: Distance from the centre to the vertices, which lie on the axes.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -122,11 +123,11 @@ def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
 @equal_faces("Dodecahedron", DODECAHEDRON_FACE, DODECAHEDRON_REACH)
 @func
 def dodecahedron(p: vec3, radius: float = 1.0) -> float:
-    """Regular body of twelve pentagons; beyond edges less than the distance.
+    """Regular solid of twelve pentagons; a lower bound beyond edges.
 
     Args:
         p: Point.
-        radius: From the centre to the vertices.
+        radius: Distance from the centre to the vertices.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999.
 
@@ -141,11 +142,11 @@ def dodecahedron(p: vec3, radius: float = 1.0) -> float:
 @equal_faces("Icosahedron", ICOSAHEDRON_FACE, ICOSAHEDRON_REACH)
 @func
 def icosahedron(p: vec3, radius: float = 1.0) -> float:
-    """Regular body of twenty triangles; beyond edges less than the distance.
+    """Regular solid of twenty triangles; a lower bound beyond edges.
 
     Args:
         p: Point.
-        radius: From the centre to the vertices.
+        radius: Distance from the centre to the vertices.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999.
 
@@ -166,11 +167,11 @@ def icosahedron(p: vec3, radius: float = 1.0) -> float:
 )
 @func
 def truncated_octahedron(p: vec3, radius: float = 1.0) -> float:
-    """Body of eight hexagons and six squares with equal edges; it fills space.
+    """Solid of eight hexagons and six squares with equal edges; copies of it fill space.
 
     Args:
         p: Point.
-        radius: From the centre to the vertices.
+        radius: Distance from the centre to the vertices.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999; each family of faces at its
         own distance.
@@ -190,11 +191,11 @@ def truncated_octahedron(p: vec3, radius: float = 1.0) -> float:
 @equal_faces("TruncatedIcosahedron", FOOTBALL_HEXAGON, FOOTBALL_REACH)
 @func
 def truncated_icosahedron(p: vec3, radius: float = 1.0) -> float:
-    """Football: twenty hexagons and twelve pentagons with equal edges.
+    """Football: solid of twenty hexagons and twelve pentagons with equal edges.
 
     Args:
         p: Point.
-        radius: From the centre to the vertices.
+        radius: Distance from the centre to the vertices.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999; each family of faces at its
         own distance.

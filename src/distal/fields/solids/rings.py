@@ -1,7 +1,7 @@
-"""Circles and what lies at a distance from them: rings, arcs, links, discs.
+"""Circles and shapes around them: rings, arcs, links, discs.
 
-Input: a point and the numbers of a shape. Output: the distance. Rings lie flat,
-around the y axis.
+Input: a point and the numbers of a shape. Output: the distance. Rings are horizontal, around the y
+axis.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from distal.lang import abs, cos, func, length, max, select, sin, vec2, vec3
 
 @func
 def flat_bounds(radius: float) -> Bounds:
-    """The square around a flat circle."""
+    """Return the box of a horizontal circle."""
     reach = vec3(radius, 0.0, radius)
     return Bounds(-reach, reach)
 
@@ -23,7 +23,7 @@ def flat_bounds(radius: float) -> Bounds:
 @primitive("CircleLine", EXACT_OUTSIDE, bounds=flat_bounds, signed=False)
 @func
 def circle_line(p: vec3, radius: float = 0.75) -> float:
-    """A circle without thickness around the y axis.
+    """Circle without thickness around the y axis.
 
     Args:
         p: Point.
@@ -42,7 +42,7 @@ def circle_line(p: vec3, radius: float = 0.75) -> float:
 @primitive("Disc", EXACT_OUTSIDE, bounds=flat_bounds, signed=False)
 @func
 def disc(p: vec3, radius: float = 0.75) -> float:
-    """A round plate without thickness around the y axis.
+    """Round plate without thickness around the y axis.
 
     Args:
         p: Point.
@@ -60,20 +60,20 @@ def disc(p: vec3, radius: float = 0.75) -> float:
 
 @func
 def torus_bounds(major: float, minor: float) -> Bounds:
-    """The box of a lying ring."""
+    """Return the box of a horizontal ring."""
     reach = vec3(major + minor, minor, major + minor)
     return Bounds(-reach, reach)
 
 
 def torus_requires(major: float, minor: float) -> str | None:
-    """A thicker tube would run into itself."""
+    """Return why the tube is too thick, or None."""
     return "minor must be at most major" if minor > major else None
 
 
 @primitive("Torus", EXACT, bounds=torus_bounds, requires=torus_requires)
 @func
 def torus(p: vec3, major: float = 0.75, minor: float = 0.25) -> float:
-    """Ring around the y axis.
+    """Torus (ring) around the y axis.
 
     Args:
         p: Point.
@@ -92,7 +92,7 @@ def torus(p: vec3, major: float = 0.75, minor: float = 0.25) -> float:
 
 @func
 def capped_torus_bounds(angle: float, major: float, minor: float) -> Bounds:
-    """The box of an arc that is symmetric about x."""
+    """Return the box of an arc that is symmetric about x."""
     wide = major * select(angle > 0.5 * PI, 1.0, sin(angle))
     return Bounds(
         vec3(major * cos(angle) - minor, -minor, -wide - minor),
@@ -101,7 +101,7 @@ def capped_torus_bounds(angle: float, major: float, minor: float) -> Bounds:
 
 
 def capped_torus_requires(angle: float, major: float, minor: float) -> str | None:
-    """The tube must not run into itself."""
+    """Return why the tube would intersect itself, or None."""
     if angle > PI + 1e-6:
         return "angle must be at most pi"
     if minor > major:
@@ -115,11 +115,11 @@ def capped_torus_requires(angle: float, major: float, minor: float) -> str | Non
 @primitive("CappedTorus", EXACT, bounds=capped_torus_bounds, requires=capped_torus_requires)
 @func
 def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float = 0.25) -> float:
-    """Part of a ring around the y axis, with round ends, symmetric about the x axis.
+    """Arc of a ring around the y axis, with round ends, symmetric about the x axis.
 
     Args:
         p: Point.
-        angle: From the middle of the arc, on the x axis, to either end; at most pi.
+        angle: Angle from the middle of the arc, on the x axis, to either end; at most pi.
         major: Radius of the arc.
         minor: Radius of the tube.
 
@@ -131,7 +131,7 @@ def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float 
         capped_torus((0.0, 0.0, -1.0), 1.5707963267948966, 1.0, 0.25) = -0.25
     """
     side = abs(p.z)
-    # In 32 bits the sine of pi is below 0 and would leave out the ring's start.
+    # In 32 bits the sine of pi is below 0, which would leave a gap in the ring.
     end = vec2(cos(angle), max(sin(angle), 0.0))
     to_end = length(vec3(p.x - major * end.x, p.y, side - major * end.y))
     beside_arc = p.x * end.y >= side * end.x
@@ -140,13 +140,13 @@ def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float 
 
 @func
 def link_bounds(height: float, major: float, minor: float) -> Bounds:
-    """The box of an upright link."""
+    """Return the box of an upright link."""
     reach = vec3(major + minor, 0.5 * height + major + minor, minor)
     return Bounds(-reach, reach)
 
 
 def link_requires(major: float, minor: float) -> str | None:
-    """A thicker tube would run into itself."""
+    """Return why the tube is too thick, or None."""
     return "minor must be at most major" if minor > major else None
 
 
@@ -155,11 +155,11 @@ def link_requires(major: float, minor: float) -> str | None:
 )
 @func
 def link(p: vec3, height: float = 0.5, major: float = 0.4, minor: float = 0.15) -> float:
-    """Link of a chain, upright, seen as a ring along the z axis.
+    """Upright link of a chain; its hole faces the z axis.
 
     Args:
         p: Point.
-        height: Of the two straight parts.
+        height: Length of the two straight parts.
         major: Radius of the two half rings' centre lines.
         minor: Radius of the tube, at most ``major``.
 

@@ -1,4 +1,4 @@
-"""Balls and what is stretched or swollen from a ball.
+"""Balls, ellipsoids, superellipsoids, and a ball with bumps.
 
 Input: a point and the numbers of a shape. Output: the distance, or a bound on it.
 """
@@ -20,7 +20,7 @@ HALF_BALL: Final = vec3(0.5)
 @primitive("Sphere", EXACT, bounds=sphere_bounds)
 @func
 def sphere(p: vec3, radius: float = 1.0) -> float:
-    """Ball.
+    """Ball, centred at the origin.
 
     Args:
         p: Point.
@@ -38,19 +38,20 @@ def sphere(p: vec3, radius: float = 1.0) -> float:
 
 @func
 def ellipsoid_bounds(radii: vec3) -> Bounds:
-    """The box that the radii span."""
+    """Return the box with these half sizes."""
     return Bounds(-radii, radii)
 
 
 @func
 def ellipsoid_slope(radii: vec3) -> float:
-    """Bound on the slope, from the ratio s of the largest to the smallest radius, squared.
+    """Return a bound on the slope.
 
-    Far away the field is |q|^2 / |q / radii| with q = p / radii; nearer, its gradient is a mean of
-    that one's and a unit vector. Weigh the axes by the squares of q's parts: the squared slope is
-    then 4 - 4 E(r^2) E(r^-2) + E(r^2)^2 E(r^-4), at most E(r^2)^2 E(r^-4). The chord of the convex
-    x^-2 bounds the last factor, and the cubic that results is largest at
-    E(r^2) = 2 (s^2 + s + 1) / (3 (s + 1)), in units of the smallest radius, squared.
+    It depends on the squared ratio s of the largest to the smallest radius. Far away the field is
+    |q|^2 / |q / radii| with q = p / radii; nearer, its gradient is a weighted mean of this field's
+    gradient and a unit vector. Weight the axes by the squares of q's components: the squared slope
+    is then 4 - 4 E(r^2) E(r^-2) + E(r^2)^2 E(r^-4), at most E(r^2)^2 E(r^-4). The chord of the
+    convex x^-2 bounds the last factor, and the resulting cubic is largest at E(r^2) = 2 (s^2 + s +
+    1) / (3 (s + 1)), in units of the smallest radius, squared.
     """
     ratio = max(radii.x, radii.y, radii.z) / min(radii.x, radii.y, radii.z)
     s = ratio * ratio
@@ -60,11 +61,11 @@ def ellipsoid_slope(radii: vec3) -> float:
 
 @func
 def ellipsoid_growth(radii: vec3) -> float:
-    """Half of the ratio s of the largest to the smallest radius and its inverse.
+    """Return half of (s + 1 / s), with s the ratio of the largest to the smallest radius.
 
-    With k = |q| outside, a point is at most |p| (k - 1) / k from the box, and the field is
-    (k - 1) k / |q / radii|. Weigh the axes by the squares of q's parts: the quotient is at most
-    sqrt(E(r^2) E(r^-2)), and that at most (s + 1 / s) / 2 (Kantorovich's inequality).
+    With k = |q| outside, a point is at most |p| (k - 1) / k from the box, and the field is (k - 1)
+    k / |q / radii|. Weight the axes by the squares of q's components: the quotient is at most
+    sqrt(E(r^2) E(r^-2)), and that is at most (s + 1 / s) / 2 (Kantorovich's inequality).
     """
     ratio = max(radii.x, radii.y, radii.z) / min(radii.x, radii.y, radii.z)
     return 0.5 * (ratio + 1.0 / ratio)
@@ -81,8 +82,8 @@ def ellipsoid_growth(radii: vec3) -> float:
 def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:
     """Ellipsoid; outside a lower bound, close to the distance near the surface.
 
-    Outside, the convex ``|p / radii| - 1`` over its own slope. Inside that would jump at the
-    centre; there the scale goes over to the smallest radius.
+    Outside, the value is the convex function ``|p / radii| - 1`` divided by its own slope. Inside,
+    this would jump at the centre, so the divisor changes gradually to that of the smallest radius.
 
     Args:
         p: Point.
@@ -103,7 +104,7 @@ def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:
 
 
 def superellipsoid_requires(across: float, upward: float) -> str | None:
-    """Below 1 the shape has spikes, and the field no bound on its slope."""
+    """Return why exponents below 1 are invalid (no bound on the slope), or None."""
     if across < 1.0 or upward < 1.0:
         return "across and upward must be 1 or more"
     return None
@@ -111,20 +112,24 @@ def superellipsoid_requires(across: float, upward: float) -> str | None:
 
 @func
 def superellipsoid_steepest(across: float, upward: float) -> float:
-    """How much faster than the distance the norm grows, over the smallest radius, at most."""
+    """Return a bound on the slope of the norm, times the smallest radius."""
     return pow(2.0, max(1.0 / across - 0.5, 0.0) + max(1.0 / upward - 0.5, 0.0))
 
 
 @func
 def superellipsoid_side_growth(radii: vec3, across: float, upward: float) -> float:
-    """The norm is at least each part of p / radii: a side is passed by its radius at most."""
+    """Return the growth of the sides.
+
+    The norm is at least each component of p / radii, so a point passes a side by at most its radius
+    for each unit of the norm.
+    """
     smallest = min(radii.x, radii.y, radii.z)
     return max(radii.x, radii.y, radii.z) / smallest * superellipsoid_steepest(across, upward)
 
 
 @func
 def superellipsoid_growth(radii: vec3, across: float, upward: float) -> float:
-    """As for a side, all of them passed at once."""
+    """Return the growth: that of a side, all sides passed at the same time."""
     smallest = min(radii.x, radii.y, radii.z)
     return length(radii) / smallest * superellipsoid_steepest(across, upward)
 
@@ -141,16 +146,17 @@ def superellipsoid_growth(radii: vec3, across: float, upward: float) -> float:
 def superellipsoid(
     p: vec3, radii: vec3 = HALF_BALL, across: float = 4.0, upward: float = 4.0
 ) -> float:
-    """Between a diamond, a ball and a box, by two exponents; a bound with slope 1.
+    """Shape between a diamond, a ball and a box, set by two exponents; a bound with slope 1.
 
-    ``((|x|^across + |z|^across)^(upward/across) + |y|^upward)^(1/upward)``, of p / radii, less 1:
-    a norm. It grows no faster than the distance times 2^(1/e - 1/2) for each exponent e below 2,
-    over the smallest radius.
+    The field is a norm: ``((|x|^across + |z|^across)^(upward/across) + |y|^upward)^(1/upward)`` of
+    p / radii, minus 1. It is divided by its slope, which is at most the product of 2^(1/e - 1/2)
+    for each exponent e below 2, over the smallest radius.
 
     Args:
         p: Point.
         radii: Half of the size along x, y and z.
-        across: Exponent of the outline seen from above: 1 diamond, 2 circle, large square.
+        across: Exponent of the outline seen from above: 1 for a diamond, 2 for a circle, large for
+            a square.
         upward: Exponent of the outline seen from the side.
 
     Source: Alan Barr, "Superquadrics and Angle-Preserving Transformations", IEEE Computer Graphics
@@ -162,7 +168,7 @@ def superellipsoid(
         superellipsoid((3.0, 4.0, 0.0), (1.0, 1.0, 1.0), 2.0, 2.0) = 4.0
     """
     q = abs(p / radii)
-    # Relative to the largest part, so that no power overflows.
+    # Divide by the largest component, so that no power overflows.
     largest = max(q.x, q.y, q.z, TINY)
     r = q / largest
     ring = pow(pow(r.x, across) + pow(r.z, across), upward / across)
@@ -171,28 +177,28 @@ def superellipsoid(
     return (norm - 1.0) * (min(radii.x, radii.y, radii.z) / steepest)
 
 
-# A bump reaches half way to the next: the cosine of half the angle between the vertices of an
+# A bump extends halfway to the next one: the cosine of half the angle between the vertices of an
 # icosahedron.
 BUMP_EDGE: Final = 0.8506508083520399
-# The steepest descent of a bump along the angle: 4 / (3 sqrt(3)) * sqrt(2 / (1 - BUMP_EDGE)).
+# The largest slope of a bump along the angle: 4 / (3 sqrt(3)) * sqrt(2 / (1 - BUMP_EDGE)).
 BUMP_SLOPE: Final = 2.8172
 
 
 @func
 def blob_bounds(radius: float, height: float) -> Bounds:
-    """The ball with its bumps."""
+    """Return the box of the ball with its bumps."""
     return Bounds(vec3(-radius - height), vec3(radius + height))
 
 
 @func
 def blob_slope(radius: float, height: float) -> float:
-    """Outward at most 1, sideways the bumps' share."""
+    """Return a bound on the slope: at most 1 outwards, combined with the slope of the bumps."""
     sideways = BUMP_SLOPE * height / radius
     return sqrt(1.0 + sideways * sideways)
 
 
 def blob_requires(radius: float, height: float) -> str | None:
-    """A higher bump would turn the field around near the centre."""
+    """Return why the bumps are too high, or None."""
     return "height must be at most the radius" if height > radius else None
 
 
@@ -207,12 +213,12 @@ def blob_requires(radius: float, height: float) -> str | None:
 )
 @func
 def blob(p: vec3, radius: float = 0.75, height: float = 0.2) -> float:
-    """Ball with twelve round bumps, towards the vertices of an icosahedron.
+    """Ball with twelve round bumps, in the directions of the vertices of an icosahedron.
 
     Args:
         p: Point.
-        radius: Of the ball between the bumps.
-        height: Of the bumps, at most the radius.
+        radius: Radius of the ball between the bumps.
+        height: Height of the bumps, at most the radius.
 
     Source: after Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), with another profile.
 
@@ -223,7 +229,7 @@ def blob(p: vec3, radius: float = 0.75, height: float = 0.2) -> float:
     """
     far = length(p)
     towards = along_vertices(abs(p))
-    # 1 - cosine of the angle to the nearest bump's top, as a share of that at its foot.
+    # 1 - cosine of the angle to the nearest bump's top, relative to that at its edge.
     outward = clamp((1.0 - towards / max(far, TINY)) / (1.0 - BUMP_EDGE), 0.0, 1.0)
     bump = (1.0 - outward) * (1.0 - outward)
     return far - radius - height * min(far / radius, 1.0) * bump

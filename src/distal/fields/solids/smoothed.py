@@ -1,14 +1,12 @@
-"""Regular and Archimedean solids with soft edges: between a ball and the sharp body.
+"""Regular and Archimedean solids with soft edges: shapes between a ball and the sharp solid.
 
-Input: a point and the numbers of a shape. Output: a bound on the distance with
-slope 1.
+Input: a point and the numbers of a shape. Output: a bound on the distance with slope 1.
 
-Where the sharp body takes the largest part of the point along an axis, these take the sum of all
-parts to a power e, then its e-th root. It grows by at most (weight / 3)^(1/e) for each unit of
-distance, where weight is the sum of 1 / distance^2 of the faces, of which the nearest is at
-distance 1: the axes of each family point evenly in all directions, so for e = 2 it is exactly
-sqrt(weight / 3) times the distance from the centre, a ball; and |v|_e^e <= |v|_2^2 where no part is
-above 1.
+The sharp solid takes the largest projection of the point on the axes; these shapes take the e-th
+root of the sum of all projections to the power e. Its slope is at most (weight / 3)^(1/e), where
+weight is the sum of 1 / distance^2 of the faces, of which the nearest is at distance 1. Reason: the
+axes of each family are distributed evenly, so for e = 2 the value is exactly sqrt(weight / 3) times
+the distance from the centre, a ball; and |v|_e^e <= |v|_2^2 if no component is above 1.
 
 Source: Ergun Akleman and Jianer Chen, "Generalized Distance Functions", Shape Modeling
 International 1999; the scale to slope 1 is derived here.
@@ -44,7 +42,7 @@ from distal.lang.functions import Func
 OCTAHEDRON_WEIGHT: Final = 4.0
 DODECAHEDRON_WEIGHT: Final = 6.0
 ICOSAHEDRON_WEIGHT: Final = 10.0
-# The second family of faces is farther away than the first by this factor.
+# The ratio of the second family's face distance to the first's.
 SQUARE_RATIO: Final = TRUNCATED_OCTAHEDRON_SQUARE / TRUNCATED_OCTAHEDRON_HEXAGON
 PENTAGON_RATIO: Final = FOOTBALL_PENTAGON / FOOTBALL_HEXAGON
 TRUNCATED_OCTAHEDRON_WEIGHT: Final = 4.0 + 3.0 / SQUARE_RATIO**2
@@ -53,7 +51,7 @@ FOOTBALL_WEIGHT: Final = 10.0 + 6.0 / PENTAGON_RATIO**2
 
 @func
 def powers_of_diagonals(p: vec3, exponent: float) -> float:
-    """Over the octahedron's four axes."""
+    """Return the sum of powers for the octahedron's four axes."""
     return (
         pow(abs(p.x + p.y + p.z) * DIAGONAL, exponent)
         + pow(abs(p.x + p.y - p.z) * DIAGONAL, exponent)
@@ -64,7 +62,7 @@ def powers_of_diagonals(p: vec3, exponent: float) -> float:
 
 @func
 def powers_of_pairs(p: vec3, short: float, long: float, exponent: float) -> float:
-    """Over (0, short, long) and (0, short, -long), and their cyclic turns."""
+    """Return the sum for (0, short, long), (0, short, -long) and their cyclic permutations."""
     return (
         pow(abs(p.y * short + p.z * long), exponent)
         + pow(abs(p.y * short - p.z * long), exponent)
@@ -77,54 +75,54 @@ def powers_of_pairs(p: vec3, short: float, long: float, exponent: float) -> floa
 
 @func
 def powers_of_faces(p: vec3, exponent: float) -> float:
-    """Over the ten axes through an icosahedron's faces."""
-    # Those of (0, long, short): the dodecahedron's vertices turn the other way round.
+    """Return the sum of powers for the ten axes through an icosahedron's faces."""
+    # (0, long, short): the dodecahedron's vertices are permuted in the opposite order.
     return powers_of_diagonals(p, exponent) + powers_of_pairs(p, FACE_LONG, FACE_SHORT, exponent)
 
 
 @func
 def smooth_growth(exponent: float, weight: float, reach: float) -> float:
-    """How far the sharp body that holds the smooth one reaches, for a radius of 1.
+    """Return the extent of the sharp solid around the smooth one, for a radius of 1.
 
-    Its faces are at the distance by which the sum of powers grows; ``reach`` is how far its
-    vertices are where its nearest faces are at distance 1. Moving the surface out only scales both
-    bodies: this is also the growth, of the sides where ``reach`` is that along an axis.
+    Its faces are at the distance given by the slope of the sum of powers; ``reach`` is the extent
+    of its vertices for nearest faces at distance 1. Moving the surface outwards only scales both
+    solids, so this is also the growth (of the sides if ``reach`` is the extent along an axis).
     """
     return pow(weight / 3.0, 1.0 / exponent) * reach
 
 
 @func
 def cube_around(side: float) -> Bounds:
-    """The box from minus to plus ``side``."""
+    """Return the box from minus to plus ``side``."""
     return Bounds(vec3(-side), vec3(side))
 
 
 @func
 def largest_part(p: vec3) -> float:
-    """Scale that keeps powers from overflowing."""
+    """Return the scale that keeps powers from overflowing."""
     q = abs(p)
     return max(q.x, q.y, q.z, TINY)
 
 
 @func
 def smoothed(total: float, scale: float, radius: float, exponent: float, weight: float) -> float:
-    """The field from the sum of the powers of p / scale."""
+    """Return the field from the sum of the powers of p / scale."""
     return scale * pow(total * (3.0 / weight), 1.0 / exponent) - radius
 
 
 def smooth_requires(exponent: float) -> str | None:
-    """At 2 it is a ball; below, no longer convex in every direction alike."""
+    """Return why an exponent below 2 is invalid, or None."""
     return None if exponent >= 2.0 else "exponent must be 2 or more"
 
 
 def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable[[Func], Func]:
-    """Declare the ``@func`` below as a smooth body, in the box of the sharp one around it.
+    """Declare the ``@func`` below as a smooth solid, with the box of the sharp one around it.
 
     Args:
-        name: The shape's.
+        name: Name of the shape.
         weight: Sum of 1 / distance^2 of the faces, the nearest of which is at distance 1.
         face: Distance of the nearest faces, for vertices at distance 1.
-        reach: How far the vertices reach along an axis then.
+        reach: Extent of the vertices along an axis, for vertices at distance 1.
     """
     furthest, along_axis = 1.0 / face, reach / face
 
@@ -155,12 +153,13 @@ def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable
 @smooth_body("SmoothOctahedron", OCTAHEDRON_WEIGHT, OCTAHEDRON_FACE, 1.0)
 @func
 def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> float:
-    """Between a ball and an octahedron; a bound with slope 1.
+    """Shape between a ball and an octahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Of the ball for exponent 2; the largest ball inside an octahedron for a large one.
-        exponent: 2 or more; the larger, the sharper.
+        radius: Radius of the ball for exponent 2, and of the largest ball inside the octahedron for
+            a large exponent.
+        exponent: 2 or more; a larger exponent gives sharper edges.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999, scaled to slope 1.
 
@@ -177,12 +176,13 @@ def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> f
 @smooth_body("SmoothDodecahedron", DODECAHEDRON_WEIGHT, DODECAHEDRON_FACE, DODECAHEDRON_REACH)
 @func
 def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
-    """Between a ball and a dodecahedron; a bound with slope 1.
+    """Shape between a ball and a dodecahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Of the ball for exponent 2; the largest ball inside a dodecahedron for a large one.
-        exponent: 2 or more; the larger, the sharper.
+        radius: Radius of the ball for exponent 2, and of the largest ball inside the dodecahedron
+            for a large exponent.
+        exponent: 2 or more; a larger exponent gives sharper edges.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999, scaled to slope 1.
 
@@ -199,12 +199,13 @@ def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) ->
 @smooth_body("SmoothIcosahedron", ICOSAHEDRON_WEIGHT, ICOSAHEDRON_FACE, ICOSAHEDRON_REACH)
 @func
 def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
-    """Between a ball and an icosahedron; a bound with slope 1.
+    """Shape between a ball and an icosahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Of the ball for exponent 2; the largest ball inside an icosahedron for a large one.
-        exponent: 2 or more; the larger, the sharper.
+        radius: Radius of the ball for exponent 2, and of the largest ball inside the icosahedron
+            for a large exponent.
+        exponent: 2 or more; a larger exponent gives sharper edges.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999, scaled to slope 1.
 
@@ -226,12 +227,13 @@ def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> 
 )
 @func
 def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
-    """Between a ball and a truncated octahedron; a bound with slope 1.
+    """Shape between a ball and a truncated octahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Of the ball for exponent 2; the largest ball inside the body for a large one.
-        exponent: 2 or more; the larger, the sharper.
+        radius: Radius of the ball for exponent 2, and of the largest ball inside the solid for a
+            large exponent.
+        exponent: 2 or more; a larger exponent gives sharper edges.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999, scaled to slope 1.
 
@@ -251,12 +253,13 @@ def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 
 @smooth_body("SmoothTruncatedIcosahedron", FOOTBALL_WEIGHT, FOOTBALL_HEXAGON, FOOTBALL_REACH)
 @func
 def smooth_truncated_icosahedron(p: vec3, radius: float = 0.9, exponent: float = 48.0) -> float:
-    """Between a ball and a football; a bound with slope 1.
+    """Shape between a ball and a football; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Of the ball for exponent 2; the largest ball inside the body for a large one.
-        exponent: 2 or more; the larger, the sharper.
+        radius: Radius of the ball for exponent 2, and of the largest ball inside the solid for a
+            large exponent.
+        exponent: 2 or more; a larger exponent gives sharper edges.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999, scaled to slope 1.
 

@@ -1,7 +1,7 @@
-"""Planes and what few of them enclose: half spaces, slabs, wedges; flat faces without thickness.
+"""Planes, half spaces, slabs and wedges; triangles and quads without thickness.
 
-Input: a point and the numbers of a shape. Output: the distance; of the faces,
-which have no inside, without a sign.
+Input: a point and the numbers of a shape. Output: the signed distance; for faces, which have no
+inside, the unsigned distance.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ CORNER_D: Final = vec3(-0.5, 0.0, -0.5)
 @primitive("Plane", EXACT)
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
-    """Ground: everything up to a height.
+    """Ground: the half space below a horizontal plane.
 
     Args:
         p: Point.
-        y: The height.
+        y: Height of the plane.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -45,12 +45,12 @@ def plane(p: vec3, y: float = 0.0) -> float:
 @primitive("HalfSpace", EXACT)
 @func
 def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
-    """Everything behind a plane.
+    """Half space on one side of a plane.
 
     Args:
         p: Point.
-        normal: The way out, of length 1.
-        offset: How far along the normal the plane is from the origin.
+        normal: Normal of the plane that points outwards, of length 1.
+        offset: Distance of the plane from the origin along the normal.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -65,7 +65,7 @@ def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
 @primitive("Slab", EXACT)
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:
-    """Level slab without end, half of it above the origin.
+    """Infinite horizontal slab, centred at y = 0.
 
     Args:
         p: Point.
@@ -82,18 +82,18 @@ def slab(p: vec3, thickness: float = 0.5) -> float:
 
 
 def wedge_requires(angle: float) -> str | None:
-    """A whole turn leaves nothing outside."""
+    """Return why the angle is too large, or None."""
     return None if angle < TURN else "angle must be below a whole turn, 2 pi"
 
 
 @primitive("Wedge", EXACT, requires=wedge_requires)
 @func
 def wedge(p: vec3, angle: float = 1.0) -> float:
-    """What lies between two planes that meet in the z axis, around the way down; without end.
+    """Infinite wedge between two planes that meet in the z axis; it opens downwards.
 
     Args:
         p: Point.
-        angle: Between the planes, below 2 pi.
+        angle: Angle between the planes in radians, below 2 pi.
 
     Source: the infinite cone of Inigo Quilez, "Distance functions"
         (https://iquilezles.org/articles/distfunctions/), in the plane.
@@ -108,22 +108,23 @@ def wedge(p: vec3, angle: float = 1.0) -> float:
 
 @func
 def beside_edge(p: vec3, start: vec3, end: vec3, normal: vec3) -> bool:
-    """Whether p lies outside the plane that stands on an edge; the edges run around normal.
+    """Return whether p lies outside the plane through an edge along the normal.
 
-    True where there is no normal: corners in one line leave edges alone.
+    The edges are counterclockwise around the normal. True if the normal is zero: for corners on one
+    line only the edges count.
     """
     return dot(cross(end - start, normal), p - start) >= 0.0
 
 
 @func
 def nearer(u: vec3, v: vec3) -> vec3:
-    """The shorter of two vectors."""
+    """Return the shorter of two vectors."""
     return select(dot(v, v) < dot(u, u), v, u)
 
 
 @func
 def triangle_bounds(a: vec3, b: vec3, c: vec3) -> Bounds:
-    """The box of the corners."""
+    """Return the box of the corners."""
     return Bounds(min(a, b, c), max(a, b, c))
 
 
@@ -134,9 +135,9 @@ def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C
 
     Args:
         p: Point.
-        a: One corner.
-        b: Another corner.
-        c: The third corner.
+        a: First corner.
+        b: Second corner.
+        c: Third corner.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -156,7 +157,7 @@ def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C
 
 @func
 def quad_bounds(a: vec3, b: vec3, c: vec3, d: vec3) -> Bounds:
-    """The box of the corners."""
+    """Return the box of the corners."""
     return Bounds(min(a, b, c, d), max(a, b, c, d))
 
 
@@ -171,11 +172,12 @@ def quad(
 ) -> float:
     """Face with four corners, without thickness: the triangles a, b, c and a, c, d.
 
-    Flat and convex where the corners are; any others may be given too.
+    If the corners lie in one plane and form a convex outline, so does the face; other corners are
+    allowed.
 
     Args:
         p: Point.
-        a: One corner.
+        a: First corner.
         b: The next corner around the face.
         c: The corner opposite ``a``; the two triangles share the edge between them.
         d: The corner opposite ``b``.

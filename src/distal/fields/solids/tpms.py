@@ -1,13 +1,13 @@
 """Triply periodic minimal surfaces, as sheets or as the solid on one side.
 
-Input: a point, the edge of the cell that repeats, an offset and, for sheets, a thickness.
-Output: the surface's equation over its typical gradient, which is about the distance near
-the surface, and the bound on its slope. ``THICKEN_BY`` lets another shape's distance steer the
-thickness of a sheet.
+Input: a point, the edge length of the repeated cell, an offset and, for sheets, a thickness.
+Output: the value of the surface's equation divided by its typical gradient, which is about the
+distance near the surface, and the bound on its slope. ``THICKEN_BY`` sets the thickness of a sheet
+from another shape's distance.
 
-Each equation's steepest place bounds its slope (maxima over a cell, in closed form where the
-comment gives one). The typical gradient is the mean over a thin layer around the surface, so that a
-sheet is on average as thick as it should be (measured at 200,000 places).
+The slope is bounded by the largest gradient of each equation (maxima over a cell, in closed form if
+the comment gives one). The typical gradient is the mean over a thin layer around the surface, so
+that the mean thickness of a sheet is the requested one (measured at 200,000 points).
 
 Source: Alan Schoen, "Infinite periodic minimal surfaces without self-intersections" (NASA TN
 D-5541, 1970), for the surfaces; the nodal equations after Hans-Georg von Schnering and Reinhard
@@ -43,7 +43,7 @@ IWP_TYPICAL: Final = 4.31
 
 
 def _sheet_fits(cell_size: float, thickness: float, offset: float) -> str | None:
-    """A sheet much thicker than this fills all there is; so does a large offset of a solid."""
+    """Return why a sheet is too thick or an offset is too large, or None."""
     if 4.0 * thickness > cell_size:
         return "thickness must be at most a quarter of cell_size"
     if 10.0 * math.fabs(offset) > cell_size:
@@ -55,13 +55,16 @@ def _sheet_fits(cell_size: float, thickness: float, offset: float) -> str | None
 def layered(
     value: float, cell_size: float, typical: float, thickness: float, offset: float, solid: bool
 ) -> float:
-    """The solid below a value of 0, moved out by ``offset``, or a sheet around its surface."""
+    """Return the solid where ``value`` is below 0, or a sheet around its surface.
+
+    ``offset`` moves the solid's surface outwards.
+    """
     d = value * cell_size / (TAU * typical) - offset
     return d if solid else abs(d) - 0.5 * thickness
 
 
 def minimal_surface(name: str, slope: float) -> Callable[[Func], Func]:
-    """Declare the ``@func`` below as a surface that fills space, with this bound on its slope."""
+    """Declare the ``@func`` below as an infinite surface with this bound on its slope."""
     return primitive(name, NOTHING, slope=slope, requires=_sheet_fits, tier=2)
 
 
@@ -74,7 +77,9 @@ def gyroid(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """Schoen's gyroid: no straight lines, no mirrors, two mazes that never meet.
+    """Gyroid (Schoen): a minimal surface without straight lines or mirror planes.
+
+    It separates space into two labyrinths.
 
     Args:
         p: Point.
@@ -104,7 +109,7 @@ def schwarz_p(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """Schwarz's primitive surface: tubes along the axes that meet in every cell's middle.
+    """Schwarz P (primitive) surface: tubes along the axes that meet in the middle of each cell.
 
     Args:
         p: Point.
@@ -134,7 +139,7 @@ def diamond(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """Schwarz's diamond surface: tubes along the bonds of a diamond's atoms.
+    """Schwarz D (diamond) surface: tubes along the bonds of the atoms in a diamond.
 
     Args:
         p: Point.
@@ -166,7 +171,7 @@ def neovius(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """Neovius' surface: as Schwarz's primitive one, with tubes along the edges too.
+    """Neovius surface: like Schwarz P, with additional tubes along the cell's edges.
 
     Args:
         p: Point.
@@ -196,7 +201,7 @@ def lidinoid(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """Lidin's surface, a twisted kin of the gyroid.
+    """Lidinoid: a surface related to the gyroid, with more twisted labyrinths.
 
     Args:
         p: Point.
@@ -231,7 +236,7 @@ def split_p(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """A surface between the gyroid and Schwarz's primitive one.
+    """Split P surface: between the gyroid and Schwarz P.
 
     Args:
         p: Point.
@@ -267,7 +272,7 @@ def iwp(
     offset: float = 0.0,
     solid: bool = False,
 ) -> float:
-    """Schoen's I-WP surface: tubes along the diagonals of a cube.
+    """I-WP surface (Schoen): tubes along the diagonals of a cube.
 
     Args:
         p: Point.
@@ -291,14 +296,14 @@ def iwp(
 
 @func
 def graded(a: float, b: float, near_thickness: float, far_thickness: float, span: float) -> float:
-    """A sheet around the first surface, its thickness set by the second shape's distance."""
+    """Return a sheet around the first surface; the second shape's distance sets its thickness."""
     share = clamp(b / span, 0.0, 1.0)
     return abs(a) - 0.5 * (near_thickness + (far_thickness - near_thickness) * share)
 
 
 @func
 def graded_mix(a: float, b: float) -> float:
-    """The second shape sets only the thickness and shows nowhere."""
+    """Return 0: the second shape only sets the thickness and is not shown."""
     return 0.0
 
 
@@ -306,7 +311,7 @@ def graded_mix(a: float, b: float) -> float:
 def graded_slope(
     slope_a: float, slope_b: float, near_thickness: float, far_thickness: float, span: float
 ) -> float:
-    """The first shape's, and what the thickness changes."""
+    """Return the first shape's slope plus that of the thickness."""
     return slope_a + 0.5 * slope_b * abs(far_thickness - near_thickness) / span
 
 
@@ -318,7 +323,7 @@ def graded_bounds(
     far_thickness: float,
     side_growth_a: float,
 ) -> Bounds:
-    """The first shape's box, moved out by half of the thickest place."""
+    """Return the first shape's box, enlarged by half of the largest thickness."""
     return moved_out(bounds_a, 0.5 * max(near_thickness, far_thickness), side_growth_a)
 
 

@@ -1,8 +1,8 @@
 """Tubes along lines in space: through points and along Bézier curves.
 
-Input: a point, the curve's points as numbers or data, radii. Output: the distance,
-exact outside. A tube that grows thinner is followed by straight pieces, each
-the hull of two balls: the nearest point of the curve would jump where its radius changes.
+Input: a point, the curve's points as numbers or data, radii. Output: the distance, exact outside. A
+tube of variable radius is approximated by straight pieces, each the convex hull of two balls: along
+the exact curve, the nearest point would jump if its radius changes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PIECES: Final = 16
 
 @func
 def polyline_tube_bounds(points: Buffer[vec3], radius: float) -> Bounds:
-    """Around all points, wider by the radius."""
+    """Return the box around all points, enlarged by the radius."""
     low = points[0]
     high = points[0]
     for i in range(1, size(points)):
@@ -40,13 +40,13 @@ def polyline_tube_bounds(points: Buffer[vec3], radius: float) -> Bounds:
 def polyline_tube(
     p: vec3, points: Buffer[vec3], radius: float = 0.1, closed: bool = False
 ) -> float:
-    """A round tube through points, straight between them.
+    """Round tube along straight lines between points.
 
     Args:
         p: Point.
-        points: The corners in order.
-        radius: Of the tube.
-        closed: Whether the last point is joined to the first.
+        points: Points in order.
+        radius: Radius of the tube.
+        closed: Whether the last point is connected to the first.
 
     Source: the nearest of the lines between the points.
 
@@ -69,7 +69,7 @@ def polyline_tube(
 
 @func
 def tapered_tube_bounds(points: Buffer[vec4]) -> Bounds:
-    """Around all balls."""
+    """Return the box around all balls."""
     low = points[0].xyz - points[0].w
     high = points[0].xyz + points[0].w
     for i in range(1, size(points)):
@@ -81,11 +81,11 @@ def tapered_tube_bounds(points: Buffer[vec4]) -> Bounds:
 @primitive("TaperedPolylineTube", EXACT_OUTSIDE, bounds=tapered_tube_bounds, tier=2)
 @func
 def tapered_polyline_tube(p: vec3, points: Buffer[vec4]) -> float:
-    """A round tube through points, with a radius for each: branches, tentacles.
+    """Round tube along straight lines between points, with a radius for each point.
 
     Args:
         p: Point.
-        points: The corners in order; the fourth number of each is the radius there, above 0.
+        points: Points in order; the fourth number of each is the radius there, above 0.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/), for
     each piece, a round cone.
@@ -106,7 +106,7 @@ def tapered_polyline_tube(p: vec3, points: Buffer[vec4]) -> float:
 
 @func
 def bezier_tube_bounds(start: vec3, control: vec3, end: vec3, radius: float) -> Bounds:
-    """Around the ends, and where the curve turns back along an axis."""
+    """Return the box around the ends and the curve's extreme points along each axis."""
     velocity = control - start
     bend = end - control - velocity
     divisor = select(abs(bend) > TINY, bend, TINY)
@@ -120,14 +120,14 @@ def bezier_tube_bounds(start: vec3, control: vec3, end: vec3, radius: float) -> 
 def bezier_tube(
     p: vec3, start: vec3 = START, control: vec3 = CONTROL, end: vec3 = END, radius: float = 0.1
 ) -> float:
-    """A round tube along a quadratic Bézier curve.
+    """Round tube along a quadratic Bézier curve.
 
     Args:
         p: Point.
-        start: Where it starts.
-        control: Where it heads at first, and comes from at last.
-        end: Where it ends.
-        radius: Of the tube.
+        start: First point.
+        control: Control point: the tangents at both ends point to it.
+        end: Last point.
+        radius: Radius of the tube.
 
     Source: Inigo Quilez, "Quadratic Bézier - distance 3D"
     (https://iquilezles.org/articles/distfunctions/), for the cubic; its roots by Edmond Halley's
@@ -145,7 +145,7 @@ def bezier_tube(
 def cubic_tube_bounds(
     start: vec3, leaving: vec3, arriving: vec3, end: vec3, start_radius: float, end_radius: float
 ) -> Bounds:
-    """Around the ends and the control points, wider by the larger radius."""
+    """Return the box around all four points, enlarged by the larger radius."""
     radius = max(start_radius, end_radius)
     low = min(start, leaving, arriving, end) - radius
     return Bounds(low, max(start, leaving, arriving, end) + radius)
@@ -177,14 +177,14 @@ def cubic_bezier_tube(
     end_radius: float = 0.06,
     pieces: int = PIECES,
 ) -> float:
-    """A round tube along a cubic Bézier curve, its radius changing evenly; made of straight pieces.
+    """Round tube along a cubic Bézier curve, of linearly changing radius; straight pieces.
 
     Args:
         p: Point.
-        start: Where it starts.
-        leaving: Where it heads at first.
-        arriving: Where it comes from at last.
-        end: Where it ends.
+        start: First point.
+        leaving: First control point: the direction in which the curve starts.
+        arriving: Second control point: the direction from which the curve ends.
+        end: Last point.
         start_radius: Radius at ``start``.
         end_radius: Radius at ``end``.
         pieces: Number of straight pieces that approximate the curve.
@@ -218,7 +218,7 @@ def cubic_bezier_tube(
 def tapered_bezier_bounds(
     start: vec3, control: vec3, end: vec3, start_radius: float, end_radius: float
 ) -> Bounds:
-    """Around the ends and the turns, wider by the larger radius."""
+    """Return the box around the ends and extreme points, enlarged by the larger radius."""
     return bezier_tube_bounds(start, control, end, max(start_radius, end_radius))
 
 
@@ -240,13 +240,15 @@ def tapered_bezier_tube(
     end_radius: float = 0.06,
     pieces: int = PIECES,
 ) -> float:
-    """A round tube along a quadratic Bézier curve, its radius changing evenly; straight pieces.
+    """Round tube along a quadratic Bézier curve, of linearly changing radius.
+
+    The curve is approximated by straight pieces.
 
     Args:
         p: Point.
-        start: Where it starts.
-        control: Where it heads at first, and comes from at last.
-        end: Where it ends.
+        start: First point.
+        control: Control point: the tangents at both ends point to it.
+        end: Last point.
         start_radius: Radius at ``start``.
         end_radius: Radius at ``end``.
         pieces: Number of straight pieces that approximate the curve.

@@ -1,9 +1,9 @@
 """Distances stored on a grid: scanned and simulated shapes, meshes sampled beforehand.
 
-Input: a point, a volume of samples, the size of the box they fill. Output: the
-samples interpolated inside the box, and a lower bound of the way to it outside. Texels are blended
-here and not by the target's own filter: that of a graphics card knows 256 places between two
-samples, which shows in normals, and has no gradient.
+Input: a point, a volume of samples, the size of the box that they fill. Output: the interpolated
+samples inside the box, and a lower bound of the distance outside. Texels are interpolated here and
+not by the target's own filter: that of a graphics card has only 256 steps between two samples,
+which is visible in normals, and has no gradient.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from distal.lang import (
 from distal.lang import size as size_of
 
 BOX_SIZE: Final = vec3(1.0)
-# Samples that differ by at most their distance, blended: each partial derivative is at most 1.
+# Interpolated samples that differ by at most their distance: each partial derivative is at most 1.
 GRID_SLOPE: Final = 1.7320508075688772
 
 
 @func
 def interpolated(volume: Texture3D, place: vec3) -> float:
-    """Trilinear, the first channel; ``place`` counts texels from the first one's middle."""
+    """Interpolate the first channel trilinearly; ``place`` is in texels from the first centre."""
     last = size_of(volume) - 1
     lower = clamp(ivec3(floor(place)), ivec3(0), max(last - 1, ivec3(0)))
     upper = min(lower + 1, last)
@@ -73,18 +73,19 @@ def interpolated(volume: Texture3D, place: vec3) -> float:
 @primitive("VolumeField", NOTHING, slope=GRID_SLOPE, bounds=box_bounds, tier=2, growth=1.0)
 @func
 def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float = 1.0) -> float:
-    """A shape whose distances are the samples of a grid, in their first channel.
+    """Shape from a grid of distance samples, in the first channel of a volume texture.
 
     Neighbouring samples must differ by at most the distance between them, as true distances do;
-    ``scale`` is applied first. Then the surface is at most 0.87 of a sample's spacing from the one
-    that was sampled, and much nearer where that is smooth. A shape that goes on beyond the box is
-    cut off there.
+    ``scale`` is applied first. Then the surface is at most 0.87 of the samples' spacing from the
+    sampled one, and much closer where that is smooth. A shape that extends beyond the box is cut
+    off there.
 
     Args:
         p: Point.
         volume: The distances, negative inside.
-        size: Of the box, its middle at the origin; samples lie in the middles of equal cells.
-        scale: The distance that a sample of value 1 represents.
+        size: Size of the box, which is centred at the origin; samples are at the centres of equal
+            cells.
+        scale: Distance of a sample of value 1.
 
     Source: trilinear interpolation.
 
@@ -101,5 +102,5 @@ def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float
     beyond = length(p - held)
     past = abs(p) - half
     wall = max(max(past.x, past.y), past.z)
-    # The way to the box and the way on from there make at least a right angle.
+    # The vector to the box and the vector on to the surface make an angle of 90 degrees or more.
     return max(inside, wall) if wall < 0.0 else length(vec2(beyond, max(inside, 0.0)))
