@@ -153,7 +153,7 @@ def embossed_bounds(bounds_a: Boxes, bounds_b: Boxes, height: float, side_growth
 
 
 # A difference is exact inside only if the first shape is exact inside and the second outside. A
-# union stays exact outside, an intersection inside; an exclusive or neither.
+# union stays exact outside, an intersection inside; an exclusive or needs both of both shapes.
 UNION = operator(
     "union",
     combine=union,

@@ -1,7 +1,7 @@
-"""From one shape to another across space: a morph whose progress depends on the place.
+"""Gradual transitions from one shape to another: a morph whose progress depends on the point.
 
-Input: two distances, the point, the children's boxes and slopes. Output: the
-distance between the two, and the rules of slope and material.
+Input: two distances, the point, the children's boxes and slopes. Output: the interpolated distance,
+and the rules for its slope and material.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from distal.lang import abs, clamp, dot, func, length, max, vec3
 
 @func
 def most_apart(bounds_a: Bounds, bounds_b: Bounds, slope_a: float, slope_b: float) -> float:
-    """How far apart the values of two shapes are at most, within the box around both.
+    """Return a bound on the difference of two shapes' values within the box around both.
 
-    Each is 0 somewhere in the box, so that within it neither is beyond slope times diagonal.
+    Each value is 0 somewhere in the box, so within it neither exceeds slope times diagonal.
     """
     return max(slope_a, slope_b) * diameter(hull_of(bounds_a, bounds_b))
 
@@ -31,10 +31,10 @@ def transition(
     slope_a: float,
     slope_b: float,
 ) -> float:
-    """From one shape to the other by ``t``.
+    """Interpolate between two shapes by ``t``.
 
-    How far they are apart is cut off at what they can be where the surfaces are; farther out, where
-    both are positive, the result stays positive.
+    The difference of the values is limited to its bound at the surfaces; farther out, where both
+    are positive, the result stays positive.
     """
     limit = most_apart(bounds_a, bounds_b, slope_a, slope_b)
     return a + t * clamp(b - a, -limit, limit)
@@ -44,14 +44,14 @@ def transition(
 def transition_slope(
     rise: float, bounds_a: Bounds, bounds_b: Bounds, slope_a: float, slope_b: float
 ) -> float:
-    """A mean of both slopes, and how fast the mean shifts times what is between them."""
+    """Return a mean of both slopes plus the slope of ``t`` times the difference of values."""
     limit = most_apart(bounds_a, bounds_b, slope_a, slope_b)
     return unless_endless(limit, max(slope_a, slope_b) + rise * limit)
 
 
 @func
 def linear_progress(p: vec3, start: vec3, end: vec3, ease: int) -> float:
-    """How far ``p`` is on the way from ``start`` to ``end``."""
+    """Return the eased progress of ``p`` from ``start`` to ``end``."""
     way = end - start
     return eased(dot(p - start, way) / dot(way, way), ease)
 
@@ -69,7 +69,7 @@ def transition_linear(
     slope_b: float,
     ease: int = 1,
 ) -> float:
-    """The first shape before the point ``start``, the second beyond ``end``."""
+    """Return the first shape before the point ``start``, the second beyond ``end``."""
     t = linear_progress(p, start, end, ease)
     return transition(a, b, t, bounds_a, bounds_b, slope_a, slope_b)
 
@@ -78,7 +78,7 @@ def transition_linear(
 def transition_linear_mix(
     a: float, b: float, p: vec3, start: vec3, end: vec3, ease: int = 1
 ) -> float:
-    """The share of ``b``."""
+    """Return the share of ``b``."""
     return linear_progress(p, start, end, ease)
 
 
@@ -92,14 +92,14 @@ def transition_linear_slope(
     end: vec3,
     ease: int = 1,
 ) -> float:
-    """The shorter the way, the steeper."""
+    """Return the slope; it is larger for a shorter distance from start to end."""
     rise = ease_slope(ease) / length(end - start)
     return transition_slope(rise, bounds_a, bounds_b, slope_a, slope_b)
 
 
 @func
 def radial_progress(p: vec3, inner: float, outer: float, ease: int) -> float:
-    """How far ``p`` is on the way out from the y axis."""
+    """Return the eased progress of ``p`` between two radii about the y axis."""
     return eased((length(p.xz) - inner) / (outer - inner), ease)
 
 
@@ -116,7 +116,7 @@ def transition_radial(
     slope_b: float,
     ease: int = 1,
 ) -> float:
-    """The first shape within ``inner`` of the y axis, the second beyond ``outer``."""
+    """Return the first shape within ``inner`` of the y axis, the second beyond ``outer``."""
     t = radial_progress(p, inner, outer, ease)
     return transition(a, b, t, bounds_a, bounds_b, slope_a, slope_b)
 
@@ -125,7 +125,7 @@ def transition_radial(
 def transition_radial_mix(
     a: float, b: float, p: vec3, inner: float, outer: float, ease: int = 1
 ) -> float:
-    """The share of ``b``."""
+    """Return the share of ``b``."""
     return radial_progress(p, inner, outer, ease)
 
 
@@ -139,7 +139,7 @@ def transition_radial_slope(
     outer: float,
     ease: int = 1,
 ) -> float:
-    """The narrower the ring, the steeper."""
+    """Return the slope; it is larger for a narrower ring."""
     rise = ease_slope(ease) / abs(outer - inner)
     return transition_slope(rise, bounds_a, bounds_b, slope_a, slope_b)
 
@@ -147,14 +147,14 @@ def transition_radial_slope(
 def way_requirement(
     start: tuple[float, float, float], end: tuple[float, float, float], ease: int
 ) -> str | None:
-    """Why a transition along a way cannot be, or None."""
+    """Return why a linear transition is invalid, or None."""
     if tuple(start) == tuple(end):
         return "start and end must be different points"
     return ease_requirement(ease)
 
 
 def ring_requirement(inner: float, outer: float, ease: int) -> str | None:
-    """Why a transition across a ring cannot be, or None."""
+    """Return why a radial transition is invalid, or None."""
     if inner >= outer:
         return "outer must be above inner"
     return ease_requirement(ease)

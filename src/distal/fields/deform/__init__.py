@@ -1,1 +1,1 @@
-"""Operators that change a shape: bending, folding, offsets, shells."""
+"""Operators that deform a shape: bending, folding, offsets, shells."""

@@ -1,7 +1,7 @@
-"""Flat shapes bent out of shape: elongated, bent. As ``deform`` does for solids.
+"""Deformations of flat shapes: elongated, bent. The counterpart of ``solid``.
 
-Input: a point of the plane. Output: the point to ask the shape at, the slope, the
-rectangle. Of these the scene code of ``deform`` is the same, with the third coordinate 0.
+Input: a point of the plane. Output: the point at which the shape is evaluated, the slope, the
+rectangle. The formulas are those of ``solid``, with the third coordinate 0.
 """
 
 from __future__ import annotations
@@ -14,37 +14,37 @@ from distal.lang import func, vec2
 
 @func
 def elongated_flat(p: vec2, lengths: vec2) -> vec2:
-    """The place before the shape was cut in the middle and its halves were moved apart."""
+    """Return the point before the shape was cut in the middle and its halves moved apart."""
     return elongated(in_space(p), in_space(lengths)).xy
 
 
 @func
 def elongated_flat_bounds(bounds: Bounds2, lengths: vec2) -> Bounds2:
-    """The rectangle, larger by half the lengths on each side."""
+    """Return the rectangle, enlarged by half of the lengths on each side."""
     return Bounds2(bounds.low - 0.5 * lengths, bounds.high + 0.5 * lengths)
 
 
 @func
 def bent_flat(p: vec2, rate: float, bounds: Bounds2) -> vec2:
-    """The place before a turn by ``rate`` for each unit along x: the ends go up."""
+    """Return the point before a rotation by ``rate`` per unit along x: the ends go up."""
     return bent(in_space(p), rate, slab(bounds)).xy
 
 
 @func
 def bent_flat_bounds(bounds: Bounds2) -> Bounds2:
-    """As far around as the rectangle reaches."""
+    """Return the square around the circle about the origin that contains the rectangle."""
     return flat_bounds(bent_bounds(slab(bounds)))
 
 
 @func
 def bent_flat_value(d: float, p: vec2, bounds: Bounds2) -> float:
-    """At least the distance to the disc."""
+    """Return the value, but at least the distance to the disc around the shape."""
     return bent_value(d, in_space(p), slab(bounds))
 
 
 @func
 def bent_flat_slope(slope: float, bounds: Bounds2, rate: float) -> float:
-    """A turn that changes along the plane it turns."""
+    """Return the slope of a rotation whose angle changes in the plane of rotation."""
     return bent_slope(slope, slab(bounds), rate)
 
 

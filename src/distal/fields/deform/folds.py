@@ -1,8 +1,8 @@
-"""Space folded and curled: around a cylinder, into a sphere, into ever larger copies, by noise.
+"""Maps of space: around a cylinder, sphere inversion, scaled copies, displacement by noise.
 
-Input: a point, the numbers of the fold, the child's box. Output: the point to ask
-the child at, a value without jumps, the slope, the box. As in ``deform``, the slope is the child's
-times the largest stretch of the map, and a folded shape answers at least the distance to its box.
+Input: a point, the numbers of the map, the child's box. Output: the point at which the child is
+evaluated, a value without jumps, the slope, the box. As in ``solid``, the slope is the child's
+times the largest stretch of the map, and the value is at least the distance to the result's box.
 """
 
 from __future__ import annotations
@@ -39,36 +39,38 @@ from distal.lang import (
     vec3,
 )
 
-# Wrapped around the y axis
+# Wrapping around the y axis
 
 
 @func
 def wrapped(p: vec3, radius: float) -> vec3:
-    """The place before x was laid around a cylinder about the y axis, and z out of it.
+    """Return the point before x was wrapped around a cylinder about the y axis.
 
-    The middle of the shape stays where z is ``radius``; an x of pi times the radius is behind.
+    z is the distance from the axis. The middle of the shape is where z is ``radius``; an x of pi
+    times the radius is behind.
     """
     return vec3(atan2(p.x, p.z) * radius, p.y, length(p.xz) - radius)
 
 
 @func
 def wrapped_inner(bounds: Bounds, radius: float) -> float:
-    """How near the wrapped shape comes to the axis."""
+    """Return the least distance of the wrapped shape from the axis."""
     return radius + bounds.low.z
 
 
 @func
 def wrapped_half(bounds: Bounds, radius: float) -> float:
-    """How far around it goes on either side, as an angle."""
+    """Return the angle that the shape covers on either side."""
     return reach(bounds).x / radius
 
 
 @func
 def wrapped_value(d: float, p: vec3, radius: float, bounds: Bounds) -> float:
-    """The value, without the jump behind and the endless stretch at the axis.
+    """Return the value without the jump behind and the infinite stretch at the axis.
 
-    The shape lies in a sector of an annulus. At the half-plane behind and near the axis the value
-    is held to the distance to that, from both sides; away from there it is let go by as much.
+    The shape lies in a sector of an annulus. At the half plane behind and near the axis the value
+    is clamped to the distance to this sector, from both sides; away from there the tolerance grows
+    with the distance.
     """
     rho = length(p.xz)
     inner = wrapped_inner(bounds, radius)
@@ -83,7 +85,11 @@ def wrapped_value(d: float, p: vec3, radius: float, bounds: Bounds) -> float:
 
 @func
 def wrapped_slope(slope: float, bounds: Bounds, radius: float) -> float:
-    """The radius over the least distance from the axis at which the child is evaluated."""
+    """Return the slope.
+
+    The factor is the radius divided by the least distance from the axis at which the child is
+    evaluated.
+    """
     inner = wrapped_inner(bounds, radius)
     crowded = inner <= 1e-3 * radius or wrapped_half(bounds, radius) > 0.98 * PI
     stretch = radius / max(0.75 * inner, 1e-12)
@@ -92,17 +98,19 @@ def wrapped_slope(slope: float, bounds: Bounds, radius: float) -> float:
 
 @func
 def wrapped_bounds(bounds: Bounds, radius: float) -> Bounds:
-    """As far around as the shape reaches."""
+    """Return the box of the sector that the shape covers."""
     r = radius + bounds.high.z
     return Bounds(vec3(-r, bounds.low.y, -r), vec3(r, bounds.high.y, r))
 
 
-# Folded into a sphere
+# Sphere fold
 
 
 @func
 def sphere_folded(p: vec3, inner: float, outer: float) -> vec3:
-    """The place before space within ``outer`` was turned inside out, and within ``inner`` enlarged.
+    """Return the point before the sphere fold.
+
+    It inverts space within ``outer`` and enlarges it within ``inner``.
 
     Source: the sphere fold of the Mandelbox (Tom Lowe, 2010).
     """
@@ -112,48 +120,48 @@ def sphere_folded(p: vec3, inner: float, outer: float) -> vec3:
 
 @func
 def sphere_folded_bounds(bounds: Bounds, outer: float) -> Bounds:
-    """The box and the sphere, into which everything outside is mapped too."""
+    """Return the box around the box and the sphere, which the outside is also mapped into."""
     return Bounds(min(bounds.low, vec3(-outer)), max(bounds.high, vec3(outer)))
 
 
 @func
 def sphere_folded_value(d: float, p: vec3, outer: float, bounds: Bounds) -> float:
-    """At least the distance to the box."""
+    """Return the value, but at least the distance to the box."""
     return max(d, box_distance(p, sphere_folded_bounds(bounds, outer)))
 
 
 @func
 def sphere_folded_slope(slope: float, inner: float, outer: float) -> float:
-    """Conformal; the most it enlarges is in the middle."""
+    """Return the slope: the map is conformal and has its largest factor in the middle."""
     return max(slope * (outer * outer) / (inner * inner), 1.0)
 
 
-# Ever larger, ever smaller
+# Copies of growing size
 
 
 @func
 def nearest_of(bounds: Bounds) -> float:
-    """How near a box comes to the origin."""
+    """Return the least distance of a box from the origin."""
     return length(max(max(bounds.low, -bounds.high), vec3(0.0)))
 
 
 @func
 def farthest_of(bounds: Bounds) -> float:
-    """How far from the origin a box goes."""
+    """Return the largest distance of a box from the origin."""
     r = reach(bounds)
     return select(max(max(r.x, r.y), r.z) > ENDLESS, UNBOUNDED, length(r))
 
 
 @func
 def scale_index(p: vec3, ratio: float, bounds: Bounds) -> float:
-    """Which of the copies is evaluated: the borders are halfway between their annuli."""
+    """Return the index of the evaluated copy; borders are halfway between the copies' annuli."""
     border = 0.5 * (nearest_of(bounds) + farthest_of(bounds) / ratio)
     return floor(log2(max(length(p), 1e-12) / border) / log2(ratio))
 
 
 @func
 def rescaled(p: vec3, ratio: float, bounds: Bounds) -> Site:
-    """The place in the copy of its size: each is ``ratio`` times as large as the one before.
+    """Return the point in the nearest copy; each copy is ``ratio`` times as large as the last.
 
     This repeats the logarithm of the distance from the origin (log-polar space).
     """
@@ -163,7 +171,7 @@ def rescaled(p: vec3, ratio: float, bounds: Bounds) -> Site:
 
 @func
 def rescaled_value(d: float, p: vec3, ratio: float, bounds: Bounds) -> float:
-    """The value, safe for the copies inside and outside: annuli replace them (``repeat``)."""
+    """Return the value, limited by the annuli of the copies inside and outside (``repeat``)."""
     scale = exp2(scale_index(p, ratio, bounds) * log2(ratio))
     rho = length(p) / scale
     near, far = nearest_of(bounds), farthest_of(bounds)
@@ -174,7 +182,7 @@ def rescaled_value(d: float, p: vec3, ratio: float, bounds: Bounds) -> float:
 
 @func
 def rescaled_slope(slope: float, bounds: Bounds, ratio: float) -> float:
-    """The child's, where its annulus leaves a gap to the next."""
+    """Return the child's slope if its annulus leaves a gap to the next."""
     near, far = nearest_of(bounds), farthest_of(bounds)
     crowded = far * (1.0 + 2.0 * ROOM) >= near * ratio
     return select(crowded, UNBOUNDED, max(slope, 1.0))
@@ -182,16 +190,16 @@ def rescaled_slope(slope: float, bounds: Bounds, ratio: float) -> float:
 
 @func
 def rescaled_bounds(bounds: Bounds) -> Bounds:
-    """Without end."""
+    """Return an infinite box."""
     return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED))
 
 
-# Shaken by noise
+# Displacement by noise
 
 
 @func
 def warped(p: vec3, amount: float, frequency: float, seed: int = 0) -> vec3:
-    """The place before each coordinate was moved by up to ``amount``, by gradient noise."""
+    """Return the point before each coordinate was moved by up to ``amount``, by gradient noise."""
     q = p * frequency
     x = gradient_noise(q, 3 * seed)
     y = gradient_noise(q, 3 * seed + 1)
@@ -201,29 +209,29 @@ def warped(p: vec3, amount: float, frequency: float, seed: int = 0) -> vec3:
 
 @func
 def warped_bounds(bounds: Bounds, amount: float) -> Bounds:
-    """The box, larger by the amount."""
+    """Return the box, enlarged by the amount."""
     return Bounds(bounds.low - abs(amount), bounds.high + abs(amount))
 
 
 @func
 def warped_value(d: float, p: vec3, amount: float, bounds: Bounds) -> float:
-    """At least the distance to the box."""
+    """Return the value, but at least the distance to the box."""
     return max(d, box_distance(p, warped_bounds(bounds, amount)))
 
 
 @func
 def warped_slope(slope: float, amount: float, frequency: float) -> float:
-    """1 and what three noises of their slope can add at once."""
+    """Return the slope times (1 + the largest stretch of three noises together)."""
     return max(slope, 1.0) * (1.0 + sqrt(3.0) * GRADIENT_SLOPE * abs(amount * frequency))
 
 
 def fold_requirement(inner: float, outer: float) -> str | None:
-    """Why there is nothing between two radii, or None."""
+    """Return why the two radii are invalid, or None."""
     return None if inner < outer else "outer must be above inner"
 
 
 def ratio_requirement(ratio: float) -> str | None:
-    """Why copies would not grow, or None."""
+    """Return why the ratio is invalid, or None."""
     return None if ratio > 1.0 else "ratio must be above 1"
 
 

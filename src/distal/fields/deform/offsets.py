@@ -1,11 +1,13 @@
-"""A shape changed by its value alone, and cut by a plane: rounding, offsets, shells.
+"""Operators on the value of a shape alone (rounding, offsets, shells), and cuts by a plane.
 
-Input: a distance. Output: the distance of the new surface, its box, its guarantees.
-Knows no second shape.
+Input: a distance. Output: the distance of the new surface, its box, its guarantees. Does not depend
+on other shapes.
 
-A surface that is moved out by r is where the old field is r. The box grows by r times the growth
-(``guarantees``), as a field may be far below the distance there.
-A lower bound is not kept by moving the surface: it says nothing of the levels inside and near it.
+A surface that is moved outwards by r is where the old field is r. The box is enlarged by r times
+the growth (``guarantees``), because a field may be far less than the distance there.
+
+A lower bound is not kept when the surface is moved: it says nothing about values inside and near
+the surface.
 """
 
 from __future__ import annotations
@@ -27,85 +29,85 @@ OUTSIDE_ALONE = frozenset({Guarantee.EXACT_OUTSIDE})
 
 @func
 def rounded(d: float, radius: float) -> float:
-    """The shape grown by ``radius``: every edge becomes round, and it is larger by that."""
+    """Move the surface outwards by ``radius``, which makes every edge round."""
     return d - radius
 
 
 @func
 def rounded_bounds(bounds: Boxes, radius: float, side_growth: float) -> Boxes:
-    """The box moved out by the radius."""
+    """Return the box, enlarged by the radius."""
     return moved_out(bounds, radius, side_growth)
 
 
 @func
 def offset_value(d: float, distance: float) -> float:
-    """The surface moved by ``distance``, outward where it is above 0."""
+    """Move the surface by ``distance``, outwards if it is above 0."""
     return d - distance
 
 
 @func
 def offset_bounds(bounds: Boxes, distance: float, side_growth: float) -> Boxes:
-    """The box moved out as the surface is; it is not made smaller."""
+    """Return the box, enlarged as the surface is; it is never reduced."""
     return moved_out(bounds, max(distance, 0.0), side_growth)
 
 
 @func
 def eroded(d: float, distance: float) -> float:
-    """The shape without everything within ``distance`` of its surface."""
+    """Move the surface inwards by ``distance``."""
     return d + distance
 
 
 @func
 def shell_inner(d: float, thickness: float) -> float:
-    """A hollow shape; its wall lies inside the surface."""
+    """Return a hollow shape whose wall lies inside the surface."""
     return max(d, -d - thickness)
 
 
 @func
 def shell_centre(d: float, thickness: float) -> float:
-    """A hollow shape; the surface is the middle of its wall."""
+    """Return a hollow shape whose wall has the surface as its middle."""
     return abs(d) - 0.5 * thickness
 
 
 @func
 def shell_outer(d: float, thickness: float) -> float:
-    """A hollow shape; its wall lies outside the surface."""
+    """Return a hollow shape whose wall lies outside the surface."""
     return max(d - thickness, -d)
 
 
 @func
 def shell_centre_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
-    """The box moved out by half the wall."""
+    """Return the box, enlarged by half of the wall."""
     return moved_out(bounds, 0.5 * thickness, side_growth)
 
 
 @func
 def shell_outer_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
-    """The box moved out by the wall."""
+    """Return the box, enlarged by the wall."""
     return moved_out(bounds, thickness, side_growth)
 
 
 @func
 def kept_below(d: float, p: vec3, normal: vec3, offset: float) -> float:
-    """What lies behind a plane: the half that its normal points away from."""
+    """Return the part behind a plane: the side that its normal points away from."""
     return max(d, dot(p, normal) - offset)
 
 
 @func
 def kept_above(d: float, p: vec3, normal: vec3, offset: float) -> float:
-    """What lies before a plane: the half that its normal points into."""
+    """Return the part in front of a plane: the side that its normal points to."""
     return max(d, offset - dot(p, normal))
 
 
 @func
 def kept_below_flat(d: float, p: vec2, normal: vec2, offset: float) -> float:
-    """What lies behind a line: the half that its normal points away from."""
+    """Return the part behind a line: the side that its normal points away from."""
     return max(d, dot(p, normal) - offset)
 
 
 @func
 def kept_above_flat(d: float, p: vec2, normal: vec2, offset: float) -> float:
-    """What lies before a line: the half that its normal points into."""
+    """Return the part in front of a line: the side that its normal points to."""
     return max(d, offset - dot(p, normal))
 
 

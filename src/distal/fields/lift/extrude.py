@@ -1,8 +1,8 @@
-"""From the plane to space: extruding flat shapes, plain, twisted, tapered, and from one to another.
+"""Extrusion of flat shapes to solids: straight, twisted, tapered, and lofts between two outlines.
 
-Input: the distance of a flat shape, the point, and the shape's bounds. Output:
-the distance of the solid, and the rules of its slope and box. The plane is that of x and y, solids
-stand along z, their middle at z = 0.
+Input: the distance of a flat shape, the point, and the shape's bounds. Output: the distance of the
+solid, and the rules for its slope and box. The flat shape lies in the xy plane; the solid extends
+along z, its middle at z = 0.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ ENDED = "a flat shape with an end: without a box its slope grows without end"
 
 @func
 def flat_point(p: vec3) -> vec2:
-    """The point seen along z."""
+    """Return the projection of the point along z."""
     return p.xy
 
 
 @func
 def extruded(d: float, p: vec3, height: float) -> float:
-    """Inside the outline and between the ends; exact where the outline is.
+    """Return the distance to the extruded outline; exact if that of the outline is.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
     """
@@ -40,51 +40,51 @@ def extruded(d: float, p: vec3, height: float) -> float:
 
 @func
 def extruded_bounds(bounds: Bounds2, height: float) -> Bounds:
-    """The rectangle, from end to end."""
+    """Return the box from end to end."""
     half = 0.5 * height
     return Bounds(vec3(bounds.low, -half), vec3(bounds.high, half))
 
 
 @func
 def rounded_extruded(d: float, p: vec3, height: float, radius: float) -> float:
-    """As ``extruded``, its edges rounded; outline and ends stay where they are."""
+    """Return ``extruded`` with rounded edges; outline and ends do not move."""
     return inside_both(d + radius, abs(p.z) - 0.5 * height + radius) - radius
 
 
 @func
 def chamfered_extruded(d: float, p: vec3, height: float, chamfer: float) -> float:
-    """As ``extruded``, its edges cut off at 45 degrees; outline and ends stay where they are."""
+    """Return ``extruded`` with edges chamfered at 45 degrees; outline and ends do not move."""
     past_end = abs(p.z) - 0.5 * height
     return max(inside_both(d, past_end), HALF_ROOT * (d + past_end + chamfer))
 
 
 @func
 def progress(p: vec3, height: float) -> float:
-    """How far from the lower to the upper end, 0 to 1."""
+    """Return the position between the lower and the upper end, clamped to 0 to 1."""
     return clamp(p.z / height + 0.5, 0.0, 1.0)
 
 
 @func
 def circle_around(bounds: Bounds2) -> float:
-    """The radius of the circle about the origin that holds a rectangle."""
+    """Return the radius of the circle about the origin that contains a rectangle."""
     return length(reach_flat(bounds))
 
 
 @func
 def within_circle(q: vec2, radius: float) -> vec2:
-    """The point, or that of the circle before it: what lies farther is not evaluated."""
+    """Return the nearest point in a circle; points outside it are not evaluated."""
     return q * min(1.0, radius / max(length(q), TINY))
 
 
 @func
 def turn_at(p: vec3, height: float, angle: float) -> float:
-    """How far the outline is turned at the height of ``p``; beyond the ends as there."""
+    """Return the rotation of the outline at the height of ``p``; constant beyond the ends."""
     return angle * (progress(p, height) - 0.5)
 
 
 @func
 def twisted(p: vec3, height: float, angle: float, bounds: Bounds2) -> vec2:
-    """The place in the outline, turned back."""
+    """Return the point in the outline, with the rotation undone."""
     turn = turn_at(p, height, angle)
     c = cos(turn)
     s = sin(turn)
@@ -94,13 +94,16 @@ def twisted(p: vec3, height: float, angle: float, bounds: Bounds2) -> vec2:
 
 @func
 def twisted_value(d: float, p: vec3, height: float, bounds: Bounds2) -> float:
-    """As ``extruded``; beyond the circle around the outline, at least the distance to it."""
+    """Return the extruded value; at least the distance to the circle around the outline."""
     return extruded(max(d, length(p.xy) - circle_around(bounds)), p, height)
 
 
 @func
 def twisted_slope(slope: float, bounds: Bounds2, height: float, angle: float) -> float:
-    """The largest singular value of a shear is (s + sqrt(s^2 + 4)) / 2; s grows with the radius."""
+    """Return the slope, from the largest singular value of a shear s: (s + sqrt(s^2 + 4)) / 2.
+
+    s grows with the radius.
+    """
     radius = circle_around(bounds)
     shear = abs(angle) * radius / height
     return unless_endless(radius, max(slope * 0.5 * (shear + sqrt(shear * shear + 4.0)), 1.0))
@@ -108,26 +111,26 @@ def twisted_slope(slope: float, bounds: Bounds2, height: float, angle: float) ->
 
 @func
 def twisted_bounds(bounds: Bounds2, height: float) -> Bounds:
-    """The circle around the outline, from end to end."""
+    """Return the box of the circle around the outline, from end to end."""
     radius = circle_around(bounds)
     return extruded_bounds(Bounds2(vec2(-radius), vec2(radius)), height)
 
 
 @func
 def size_at(p: vec3, height: float, top: float) -> float:
-    """How large the outline is at the height of ``p``; beyond the ends as there."""
+    """Return the scale of the outline at the height of ``p``; constant beyond the ends."""
     return mix(1.0, top, progress(p, height))
 
 
 @func
 def both_ends(bounds: Bounds2, top: float) -> Bounds2:
-    """The rectangle around the lower end and the upper one."""
+    """Return the rectangle around the lower and the upper end."""
     return hull_of(bounds, Bounds2(top * bounds.low, top * bounds.high))
 
 
 @func
 def tapered(p: vec3, height: float, top: float, bounds: Bounds2) -> vec2:
-    """The place in the outline, scaled back."""
+    """Return the point in the outline, with the scale undone."""
     return within_circle(p.xy / size_at(p, height, top), circle_around(bounds))
 
 
@@ -135,12 +138,11 @@ def tapered(p: vec3, height: float, top: float, bounds: Bounds2) -> vec2:
 def tapered_value(
     d: float, p: vec3, height: float, top: float, bounds: Bounds2, slope: float
 ) -> float:
-    """As ``extruded``; values are cut off where they would make the slope grow.
+    """Return the extruded value, limited where it would increase the slope.
 
-    At least the distance to the box.
-
-    With s the size at a height and R the circle around the outline, the change of s d(q / s) by
-    s is d - q . grad d, at most R slope plus the value itself.
+    It is at least the distance to the box. With s the scale at a height and R the radius of the
+    circle around the outline, the derivative of s d(q / s) by s is d - q . grad d, at most R slope
+    plus the value itself.
     """
     radius = circle_around(bounds)
     scale = size_at(p, height, top)
@@ -152,7 +154,7 @@ def tapered_value(
 
 @func
 def tapered_slope(slope: float, bounds: Bounds2, height: float, top: float) -> float:
-    """The outline's own slope, and how fast its sides lean; see ``tapered_value``."""
+    """Return the outline's slope, combined with the lean of its sides; see ``tapered_value``."""
     radius = circle_around(bounds)
     lean = abs(top - 1.0) * radius / height
     sides = slope * sqrt(1.0 + 2.25 * lean * lean)
@@ -161,13 +163,13 @@ def tapered_slope(slope: float, bounds: Bounds2, height: float, top: float) -> f
 
 @func
 def tapered_bounds(bounds: Bounds2, height: float, top: float) -> Bounds:
-    """Around both ends."""
+    """Return the box around both ends."""
     return extruded_bounds(both_ends(bounds, top), height)
 
 
 @func
 def flat_most_apart(bounds_a: Bounds2, bounds_b: Bounds2, slope_a: float, slope_b: float) -> float:
-    """How far apart the values of two outlines are at most, within the rectangle around both."""
+    """Return a bound on the difference of two outlines' values in the rectangle around both."""
     around = hull_of(bounds_a, bounds_b)
     return max(slope_a, slope_b) * length(around.high - around.low)
 
@@ -184,10 +186,10 @@ def lofted(
     slope_b: float,
     ease: int = 0,
 ) -> float:
-    """From the first outline at the lower end to the second at the upper one.
+    """Interpolate between an outline at the lower end and another at the upper end.
 
-    How far the two values are apart is cut off at what they can be where the outlines are; farther
-    out, where both are positive, the result stays positive.
+    The difference of the values is limited to its bound at the outlines; farther out, where both
+    are positive, the result stays positive.
     """
     limit = flat_most_apart(bounds_a, bounds_b, slope_a, slope_b)
     return a + eased(progress(p, height), ease) * clamp(b - a, -limit, limit)
@@ -195,7 +197,7 @@ def lofted(
 
 @func
 def lofted_mix(a: float, b: float, p: vec3, height: float, ease: int = 0) -> float:
-    """The share of ``b``."""
+    """Return the share of ``b``."""
     return eased(progress(p, height), ease)
 
 
@@ -208,7 +210,11 @@ def lofted_slope(
     height: float,
     ease: int = 0,
 ) -> float:
-    """Across, a mean of both slopes; along z, how fast the mean shifts, at right angles to it."""
+    """Return the slope.
+
+    Across z it is a mean of both slopes; along z, perpendicular to that, it is the rate at which
+    the mean changes.
+    """
     limit = flat_most_apart(bounds_a, bounds_b, slope_a, slope_b)
     rise = ease_slope(ease) * limit / height
     across = max(slope_a, slope_b)
@@ -217,22 +223,22 @@ def lofted_slope(
 
 @func
 def lofted_bounds(bounds_a: Bounds2, bounds_b: Bounds2, height: float) -> Bounds:
-    """Around both outlines, from end to end."""
+    """Return the box around both outlines, from end to end."""
     return extruded_bounds(hull_of(bounds_a, bounds_b), height)
 
 
 def edges_requirement(height: float, radius: float) -> str | None:
-    """Why edges cannot be rounded so much, or None."""
+    """Return why the rounding is too large, or None."""
     return "radius may be at most half of height" if 2.0 * radius > height else None
 
 
 def bevels_requirement(height: float, chamfer: float) -> str | None:
-    """Why edges cannot be cut off so far, or None."""
+    """Return why the chamfer is too large, or None."""
     return "chamfer may be at most half of height" if 2.0 * chamfer > height else None
 
 
 def loft_requirement(height: float, ease: int) -> str | None:
-    """Why a loft cannot be, or None."""
+    """Return why a loft is invalid, or None."""
     return ease_requirement(ease)
 
 

@@ -1,11 +1,11 @@
 """Flat shapes swept along a path: through points, or along a Bézier curve.
 
-Input: the field of a flat shape, its rectangle, and the points of a path. Output:
-the distance of the solid, the place in the outline, and the rules of slope and box.
+Input: the field of a flat shape, its rectangle, and the points of a path. Output: the distance of
+the solid, the point in the outline, and the rules for slope and box.
 
-Each straight piece of the path carries the outline; at a joint two pieces meet in the plane that
-halves the bend, where the outline has the same place for both because the frame of the next piece
-is the mirror image of the last one's (a frame that turns no more than the path does).
+Each straight piece of the path carries the outline. At a joint two pieces meet in the bisecting
+plane, where a point has the same coordinates in the outline for both, because the frame of the next
+piece is the mirror image of the last one's (a rotation minimizing frame).
 
 Source: Wenping Wang, Bert Jüttler, Dayue Zheng and Yang Liu, "Computation of Rotation Minimizing
 Frames", ACM Transactions on Graphics 27(1), 2008, for frames by mirrors.
@@ -40,22 +40,22 @@ UP: Final = vec3(0.0, 1.0, 0.0)
 START: Final = vec3(-0.8, 0.0, 0.0)
 CONTROL: Final = vec3(0.0, 0.0, 1.0)
 END: Final = vec3(0.8, 0.0, 0.0)
-# Below this two directions are taken for one.
+# Two directions that differ by less count as equal.
 PARALLEL: Final = 1e-4
-# The sharpest bend that is followed, as the cosine of half of it: 157 degrees.
+# The sharpest bend that is allowed, as the cosine of half its angle: 157 degrees.
 SHARPEST: Final = 0.2
 FOLLOWS: Final = "an outline with an end, and a path that never turns back on itself"
 
 
 @func
 def direction(way: vec3) -> vec3:
-    """Of length 1; zero where there is no way."""
+    """Return a vector of length 1; zero for a zero vector."""
     return way / max(length(way), TINY)
 
 
 @func
 def upright(ahead: vec3, up: vec3) -> vec3:
-    """The outline's y axis where the path goes ``ahead``: as far toward ``up`` as can be."""
+    """Return the outline's y axis on a path in direction ``ahead``: as near to ``up`` as possible."""
     across = up - dot(up, ahead) * ahead
     other = SIDEWAYS - ahead.x * ahead
     return direction(select(length(across) > PARALLEL, across, other))
@@ -63,13 +63,13 @@ def upright(ahead: vec3, up: vec3) -> vec3:
 
 @func
 def bend_cosine(ahead: vec3, turned: vec3) -> float:
-    """Of half of the angle between two directions."""
+    """Return the cosine of half the angle between two directions."""
     return 0.5 * length(ahead + turned)
 
 
 @func
 def joints_are_apart(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]) -> bool:
-    """Whether no two joints' planes cross within the outline."""
+    """Return whether no two joints' planes intersect within the outline."""
     radius = circle_around(bounds)
     apart = True
     start = point_at(0)
@@ -90,7 +90,7 @@ def joints_are_apart(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec
 
 @func
 def sharpest_bend(pieces: int, point_at: Callable[[int], vec3]) -> float:
-    """The least cosine of half of a bend."""
+    """Return the smallest cosine of half a bend's angle."""
     sharpest = 1.0
     start = point_at(0)
     end = point_at(1)
@@ -105,7 +105,7 @@ def sharpest_bend(pieces: int, point_at: Callable[[int], vec3]) -> float:
 
 @func
 def from_disc(q: vec3, normal: vec3, radius: float) -> float:
-    """Distance to a disc about the origin."""
+    """Return the distance to a disc about the origin."""
     height = dot(q, normal)
     return length(vec2(height, max(length(q - height * normal) - radius, 0.0)))
 
@@ -119,11 +119,11 @@ def swept_along(
     up: vec3,
     bounds: Bounds2,
 ) -> vec3:
-    """The distance, and the place in the outline (y, z), of the nearest piece of a path.
+    """Return the distance, and the point in the outline (y, z), of the nearest piece of a path.
 
-    Behind a joint's plane the next piece stands in, so that nothing is hollow there: inside, only
-    the way to the path's own ends counts. That makes no jump where the joints are apart; else each
-    piece is closed by its planes.
+    Behind a joint's plane the next piece is used, so that there are no hollow places: inside, only
+    the distance to the path's own ends counts. This is continuous if the joints are apart;
+    otherwise each piece is closed by its planes.
     """
     joined = joints_are_apart(bounds, pieces, point_at)
     start = point_at(0)
@@ -147,12 +147,12 @@ def swept_along(
         past = max(past_start, past_end)
         here = max(field(place), select(joined and past <= 0.0, inside_ends, past))
         found = select(here < found.x, vec3(here, place), found)
-        # The frame's mirror image in the joint's plane.
+        # Mirror the frame in the joint's plane.
         if not last:
             y -= (2.0 * dot(y, end_plane)) * end_plane
         start = end
         end = following
-        # The same number to its last bit: no point is beyond a plane for both of its pieces.
+        # Exactly the same number, so that no point is beyond a plane for both of its pieces.
         past_start = -past_end
         ahead = turned
     return found
@@ -162,14 +162,14 @@ def swept_along(
 def sweep_slope(
     slope: float, bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]
 ) -> float:
-    """The outline's."""
+    """Return the outline's slope."""
     fits = sharpest_bend(pieces, point_at) > SHARPEST and circle_around(bounds) < ENDLESS
     return select(fits, max(slope, 1.0), UNBOUNDED)
 
 
 @func
 def sweep_box(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]) -> Bounds:
-    """Around the points, wider by how far the outline reaches at the sharpest bend."""
+    """Return the box around the points, enlarged by the outline's extent at the sharpest bend."""
     low = point_at(0)
     high = low
     for i in range(pieces):
@@ -181,17 +181,17 @@ def sweep_box(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]) -> 
 
 @func
 def sweep_growth(growth: float, pieces: int, point_at: Callable[[int], vec3]) -> float:
-    """How far out a value of 1 may be.
+    """Return the growth: the largest distance from the box for a value of 1.
 
-    A place lies within the growth of the outline's circle, and 1 past a joint's plane; at the
-    sharpest bend both count by the inverse cosine.
+    A point lies within the growth of the outline's circle, and 1 past a joint's plane; at the
+    sharpest bend both are divided by the cosine.
     """
     return min((1.0 + growth) / max(sharpest_bend(pieces, point_at), SHARPEST), UNBOUNDED)
 
 
 @func
 def swept(field: Field2, p: vec3, points: Buffer[vec3], bounds: Bounds2, up: vec3 = UP) -> float:
-    """The outline along the straight ways between points, cut off at both ends."""
+    """Return the distance to the outline swept along lines between points, with flat ends."""
     return swept_along(field, p, size(points) - 1, lambda i: points[i], up, bounds).x
 
 
@@ -199,31 +199,31 @@ def swept(field: Field2, p: vec3, points: Buffer[vec3], bounds: Bounds2, up: vec
 def swept_site(
     field: Field2, p: vec3, points: Buffer[vec3], bounds: Bounds2, up: vec3 = UP
 ) -> vec2:
-    """The place in the outline."""
+    """Return the point in the outline."""
     return swept_along(field, p, size(points) - 1, lambda i: points[i], up, bounds).yz
 
 
 @func
 def swept_slope(slope: float, bounds: Bounds2, points: Buffer[vec3]) -> float:
-    """As ``sweep_slope``."""
+    """Return ``sweep_slope`` of the points."""
     return sweep_slope(slope, bounds, size(points) - 1, lambda i: points[i])
 
 
 @func
 def swept_bounds(bounds: Bounds2, points: Buffer[vec3]) -> Bounds:
-    """As ``sweep_box``."""
+    """Return ``sweep_box`` of the points."""
     return sweep_box(bounds, size(points) - 1, lambda i: points[i])
 
 
 @func
 def swept_growth(growth: float, points: Buffer[vec3]) -> float:
-    """As ``sweep_growth``."""
+    """Return ``sweep_growth`` of the points."""
     return sweep_growth(growth, size(points) - 1, lambda i: points[i])
 
 
 @func
 def on_bezier(i: int, pieces: int, start: vec3, control: vec3, end: vec3) -> vec3:
-    """The end of a piece of a quadratic Bézier curve."""
+    """Return the end of a piece of a quadratic Bézier curve."""
     t = float(i) / float(pieces)
     way = control - start
     return start + (2.0 * way + (end - control - way) * t) * t
@@ -240,7 +240,10 @@ def swept_bezier(
     up: vec3 = UP,
     pieces: int = 12,
 ) -> float:
-    """The outline along a quadratic Bézier curve of straight pieces, cut off at both ends."""
+    """Return the distance to the outline swept along a Bézier curve, with flat ends.
+
+    The quadratic curve is approximated by straight pieces.
+    """
     return swept_along(
         field, p, pieces, lambda i: on_bezier(i, pieces, start, control, end), up, bounds
     ).x
@@ -257,7 +260,7 @@ def swept_bezier_site(
     up: vec3 = UP,
     pieces: int = 12,
 ) -> vec2:
-    """The place in the outline."""
+    """Return the point in the outline."""
     return swept_along(
         field, p, pieces, lambda i: on_bezier(i, pieces, start, control, end), up, bounds
     ).yz
@@ -272,7 +275,7 @@ def swept_bezier_slope(
     end: vec3 = END,
     pieces: int = 12,
 ) -> float:
-    """As ``sweep_slope``."""
+    """Return ``sweep_slope`` of the curve."""
     return sweep_slope(slope, bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end))
 
 
@@ -284,7 +287,7 @@ def swept_bezier_bounds(
     end: vec3 = END,
     pieces: int = 12,
 ) -> Bounds:
-    """As ``sweep_box``."""
+    """Return ``sweep_box`` of the curve."""
     return sweep_box(bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end))
 
 
@@ -296,12 +299,12 @@ def swept_bezier_growth(
     end: vec3 = END,
     pieces: int = 12,
 ) -> float:
-    """As ``sweep_growth``."""
+    """Return ``sweep_growth`` of the curve."""
     return sweep_growth(growth, pieces, lambda i: on_bezier(i, pieces, start, control, end))
 
 
 def bezier_requirement(start: tuple[float, ...], end: tuple[float, ...], pieces: int) -> str | None:
-    """Why a curve cannot be, or None."""
+    """Return why a curve is invalid, or None."""
     if not 1 <= pieces <= 1000:
         return "pieces must be from 1 to 1000"
     return "start and end must be two different points" if tuple(start) == tuple(end) else None

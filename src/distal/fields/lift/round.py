@@ -1,7 +1,7 @@
-"""Between the plane and space by turning, wrapping, cutting and casting shadows.
+"""Revolution and wrapping of flat shapes to solids; slices and projections of solids.
 
-Input: the distance of a flat shape or of a solid, the point, and the shape's bounds.
-Output: the distance of the solid or the flat shape, and the rules of its slope and box.
+Input: the distance of a flat shape or of a solid, the point, and the shape's bounds. Output: the
+distance of the solid or the flat shape, and the rules for its slope and box.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ from distal.lang import (
 
 FORWARDS: Final = vec3(0.0, 0.0, 1.0)
 BACKWARDS: Final = vec3(0.0, 0.0, -1.0)
-# Beyond this share of y a normal is taken for upright.
+# A normal whose y component is larger counts as vertical.
 NEARLY_LEVEL: Final = 0.999
 UP: Final = vec3(0.0, 1.0, 0.0)
 ORIGIN: Final = vec3(0.0, 0.0, 0.0)
@@ -57,7 +57,7 @@ ORIGIN: Final = vec3(0.0, 0.0, 0.0)
 
 @func
 def revolved(p: vec3, offset: float = 0.0) -> vec2:
-    """How far from the y axis, and how high; ``offset`` moves the outline outwards.
+    """Return the distance from the y axis and the height; ``offset`` moves the outline outwards.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
     """
@@ -66,16 +66,16 @@ def revolved(p: vec3, offset: float = 0.0) -> vec2:
 
 @func
 def revolved_bounds(bounds: Bounds2, offset: float = 0.0) -> Bounds:
-    """The cylinder that the right side draws."""
+    """Return the box of the cylinder that contains the revolved right side."""
     reach = max(bounds.high.x + offset, 0.0)
     return Bounds(vec3(-reach, bounds.low.y, -reach), vec3(reach, bounds.high.y, reach))
 
 
 @func
 def from_end_face(p: vec3, angle: float) -> vec2:
-    """How far out along the nearer end of a turn, and how far past it.
+    """Return the distance outwards along the nearer end face, and the distance past it.
 
-    Half of the turn lies to each side of the plane z = 0, x > 0.
+    Half of the revolution lies on each side of the half plane z = 0, x > 0.
     """
     c = cos(0.5 * angle)
     s = sin(0.5 * angle)
@@ -85,14 +85,14 @@ def from_end_face(p: vec3, angle: float) -> vec2:
 
 @func
 def partly_revolved(p: vec3, offset: float = 0.0, angle: float = PI) -> vec2:
-    """As ``revolved``; past an end, the place seen at a right angle to the end's face."""
+    """Return the same as ``revolved``; past an end, the point is projected onto the end face."""
     end = from_end_face(p, angle)
     return vec2(select(end.y > 0.0, end.x, length(p.xz)) - offset, p.y)
 
 
 @func
 def partly_revolved_value(d: float, p: vec3, angle: float = PI) -> float:
-    """Inside the outline and between both ends; inside, at most the way to an end's plane."""
+    """Return the distance, limited inside by the distance to an end's plane."""
     end = from_end_face(p, angle)
     behind = select(end.x > 0.0, end.y, -length(p.xz))
     return inside_both(d, select(end.y > 0.0, end.y, behind))
@@ -100,12 +100,15 @@ def partly_revolved_value(d: float, p: vec3, angle: float = PI) -> float:
 
 @func
 def partly_revolved_growth(growth: float, angle: float = PI) -> float:
-    """Behind the axis an end counts as a whole plane: its distance is too little by the sine."""
+    """Return the growth.
+
+    Behind the axis an end counts as a whole plane, whose distance is too small by the sine.
+    """
     return max(growth, 1.0 / max(sin(min(0.5 * angle, 0.5 * PI)), TINY))
 
 
 def turn_requirement(offset: float, angle: float) -> str | None:
-    """Why an outline cannot be turned so far, or None."""
+    """Return why a partial revolution is invalid, or None."""
     if angle >= 2.0 * math.pi:
         return "angle must be below a full turn (without it, it goes all around)"
     return None
@@ -113,9 +116,9 @@ def turn_requirement(offset: float, angle: float) -> str | None:
 
 @func
 def wrap_margin(bounds: Bounds2, radius: float, height: float) -> float:
-    """How much of a wrapped outline's values counts: less than the gap behind the cylinder.
+    """Return the limit for the values of a wrapped outline: less than the gap behind the cylinder.
 
-    There the outline's two sides meet; where both are cut off, there is no jump.
+    The two sides of the outline meet there. If both values are limited, there is no jump.
     """
     gap = PI * radius - max(abs(bounds.low.x), abs(bounds.high.x))
     return min(gap, 0.5 * (radius - 0.5 * height))
@@ -123,7 +126,7 @@ def wrap_margin(bounds: Bounds2, radius: float, height: float) -> float:
 
 @func
 def wrapped(p: vec3, radius: float) -> vec2:
-    """How far around the cylinder, measured on it, and how high; z > 0 is its front."""
+    """Return the arc length around the cylinder, and the height; z > 0 is the front."""
     return vec2(radius * atan2(p.x, p.z), p.y)
 
 
@@ -131,10 +134,11 @@ def wrapped(p: vec3, radius: float) -> vec2:
 def wrapped_value(
     d: float, p: vec3, radius: float, height: float, bounds: Bounds2, slope: float
 ) -> float:
-    """The outline as a relief, half of ``height`` out of and into the cylinder's surface.
+    """Return the distance to the outline as a relief on the surface of a cylinder.
 
-    The outline's values are scaled to what they are at the relief's inner side, where it is most
-    compressed; farther in they fade out toward the axis.
+    It extends by half of ``height`` to both sides of the surface. The outline's values are scaled
+    as at the relief's inner side, where it is compressed most; farther inside they fade out towards
+    the axis.
     """
     inner = radius - 0.5 * height
     outward = length(p.xz)
@@ -149,7 +153,7 @@ def wrapped_value(
 
 @func
 def wrapped_slope(slope: float, bounds: Bounds2, radius: float, height: float) -> float:
-    """The outline's, and inside the relief what the fading adds: half of 1, at a right angle."""
+    """Return the outline's slope, combined inside with that of the fading: 1/2, perpendicular."""
     steepest = max(slope, 1.0)
     fits = wrap_margin(bounds, radius, height) > 0.0
     return select(fits, length(vec2(steepest, 0.5)), UNBOUNDED)
@@ -157,28 +161,29 @@ def wrapped_slope(slope: float, bounds: Bounds2, radius: float, height: float) -
 
 @func
 def wrapped_bounds(bounds: Bounds2, radius: float, height: float) -> Bounds:
-    """The cylinder around the relief."""
+    """Return the box of the cylinder around the relief."""
     outer = radius + 0.5 * height
     return Bounds(vec3(-outer, bounds.low.y, -outer), vec3(outer, bounds.high.y, outer))
 
 
 def relief_requirement(radius: float, height: float) -> str | None:
-    """Why a relief cannot be so thick, or None."""
+    """Return why a relief is too thick, or None."""
     return "height must be below twice the radius" if height >= 2.0 * radius else None
 
 
 @func
 def plane_right(normal: vec3) -> vec3:
-    """The x axis of a cutting plane: level; for a level plane, that of space."""
+    """Return the x axis of a cutting plane: horizontal; for a horizontal plane, that of space."""
     level = abs(normal.y) > NEARLY_LEVEL
     return normalize(cross(select(level, BACKWARDS, UP), normal))
 
 
 @func
 def sliced(p: vec2, origin: vec3 = ORIGIN, normal: vec3 = FORWARDS) -> vec3:
-    """The place on a plane in space.
+    """Return the point of space for a point of a plane.
 
-    Looking against the normal, y is up as far as the plane allows; on a level plane it is -z.
+    Seen against the normal, y points upwards as far as the plane allows; on a horizontal plane it
+    is -z.
     """
     right = plane_right(normal)
     return origin + p.x * right + p.y * cross(normal, right)
@@ -186,7 +191,7 @@ def sliced(p: vec2, origin: vec3 = ORIGIN, normal: vec3 = FORWARDS) -> vec3:
 
 @func
 def sliced_bounds(bounds: Bounds, origin: vec3 = ORIGIN, normal: vec3 = FORWARDS) -> Bounds2:
-    """The box, seen at a right angle to the plane."""
+    """Return the box, projected onto the plane."""
     right = plane_right(normal)
     up = cross(normal, right)
     seen = turned(
@@ -199,16 +204,16 @@ def sliced_bounds(bounds: Bounds, origin: vec3 = ORIGIN, normal: vec3 = FORWARDS
 
 @func
 def height_of_slice(bounds: Bounds, index: int, count: int) -> float:
-    """Where one of ``count`` slices through a box lies, from its back to its front."""
+    """Return the z of one of ``count`` slices through a box, from back to front."""
     share = (float(index) + 0.5) / float(count)
     return bounds.low.z + (bounds.high.z - bounds.low.z) * share
 
 
 @func
 def projected(field: Field3, p: vec2, bounds: Bounds, count: int = 32) -> float:
-    """What many slices along z together cover: the shadow on the plane, from within.
+    """Return the union of many slices along z: a projection onto the plane, from inside.
 
-    Parts thinner along z than the distance between two slices may be missed.
+    Parts that are thinner along z than the distance of two slices may be missed.
     """
     d = UNBOUNDED
     for i in range(count):
@@ -218,7 +223,7 @@ def projected(field: Field3, p: vec2, bounds: Bounds, count: int = 32) -> float:
 
 @func
 def projected_site(field: Field3, p: vec2, bounds: Bounds, count: int = 32) -> vec3:
-    """The place in the slice that is nearest."""
+    """Return the point in the nearest slice."""
     d = UNBOUNDED
     place = vec3(p, 0.0)
     for i in range(count):
@@ -231,18 +236,18 @@ def projected_site(field: Field3, p: vec2, bounds: Bounds, count: int = 32) -> v
 
 @func
 def projected_slope(slope: float, bounds: Bounds) -> float:
-    """The solid's, where its box has a front and a back."""
+    """Return the solid's slope if its box is finite along z."""
     return unless_endless(max(abs(bounds.low.z), abs(bounds.high.z)), slope)
 
 
 @func
 def projected_bounds(bounds: Bounds) -> Bounds2:
-    """The box, seen along z."""
+    """Return the box, seen along z."""
     return Bounds2(bounds.low.xy, bounds.high.xy)
 
 
 def slices_requirement(count: int) -> str | None:
-    """Why so many slices cannot be, or None."""
+    """Return why the number of slices is invalid, or None."""
     return None if 1 <= count <= 4096 else "count must be from 1 to 4096"
 
 

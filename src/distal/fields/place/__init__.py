@@ -1,1 +1,1 @@
-"""Operators that move, turn, scale, shear and mirror a shape."""
+"""Operators that translate, rotate, scale, shear and mirror a shape."""

@@ -1,7 +1,8 @@
-"""Where a flat shape lies: moved, turned, scaled, sheared and mirrored in the plane.
+"""Placement of flat shapes: translation, rotation, scaling, shear and mirroring in the plane.
 
-Input: a point of the plane, and the numbers of the placement. Output: the point to
-ask the shape at, and the rectangle of the placed shape. As ``place`` and ``mirrors`` do for solids.
+Input: a point of the plane, and the numbers of the placement. Output: the point at which the shape
+is evaluated (the inverse placement of the given point), and the rectangle of the placed shape. The
+counterparts for solids are ``solid`` and ``mirrors``.
 """
 
 from __future__ import annotations
@@ -15,100 +16,103 @@ from distal.lang import abs, cos, dot, func, length, mat2, max, min, sin, sqrt, 
 
 @func
 def translated_flat(p: vec2, offset: vec2) -> vec2:
-    """The place before a shift by ``offset``."""
+    """Return the point before a translation by ``offset``."""
     return p - offset
 
 
 @func
 def translated_flat_bounds(bounds: Bounds2, offset: vec2) -> Bounds2:
-    """The rectangle, shifted."""
+    """Return the rectangle, translated."""
     return Bounds2(bounds.low + offset, bounds.high + offset)
 
 
 @func
 def turn_matrix(angle: float) -> mat2:
-    """A turn counterclockwise."""
+    """Return the matrix of a counterclockwise rotation."""
     c, s = cos(angle), sin(angle)
     return mat2(vec2(c, s), vec2(-s, c))
 
 
 @func
 def rotated_flat(p: vec2, angle: float) -> vec2:
-    """The place before a turn about the origin, counterclockwise."""
+    """Return the point before a counterclockwise rotation about the origin."""
     m = turn_matrix(angle)
     return vec2(dot(m[0], p), dot(m[1], p))
 
 
 @func
 def rotated_flat_bounds(bounds: Bounds2, angle: float) -> Bounds2:
-    """The rectangle around the turned one."""
+    """Return the rectangle around the rotated rectangle."""
     return turned_flat(bounds, turn_matrix(angle))
 
 
 @func
 def scaled_flat(p: vec2, factor: float) -> vec2:
-    """The place before scaling about the origin."""
+    """Return the point before scaling about the origin."""
     return p / factor
 
 
 @func
 def scaled_flat_bounds(bounds: Bounds2, factor: float) -> Bounds2:
-    """The rectangle, scaled."""
+    """Return the rectangle, scaled."""
     return Bounds2(bounds.low * factor, bounds.high * factor)
 
 
 @func
 def stretched_flat(p: vec2, factors: vec2) -> vec2:
-    """The place before scaling each axis by its own factor."""
+    """Return the point before scaling each axis by its own factor."""
     return p / factors
 
 
 @func
 def stretched_flat_bounds(bounds: Bounds2, factors: vec2) -> Bounds2:
-    """The rectangle, scaled."""
+    """Return the rectangle, scaled."""
     return Bounds2(bounds.low * factors, bounds.high * factors)
 
 
 @func
 def stretched_flat_value(d: float, p: vec2, factors: vec2, bounds: Bounds2) -> float:
-    """The distance after the smaller factor; at least the distance to the rectangle."""
+    """Return the distance times the smaller factor; at least that to the rectangle."""
     around = stretched_flat_bounds(bounds, factors)
     return max(d * min(factors.x, factors.y), rectangle_distance(p, around))
 
 
 @func
 def sheared_flat(p: vec2, xy: float) -> vec2:
-    """The place before a shear that moves x by ``xy`` for each y."""
+    """Return the point before a shear that moves x by ``xy`` times y."""
     return vec2(p.x - xy * p.y, p.y)
 
 
 @func
 def sheared_flat_bounds(bounds: Bounds2, xy: float) -> Bounds2:
-    """The rectangle around the sheared one."""
+    """Return the rectangle around the sheared one."""
     return turned_flat(bounds, mat2(vec2(1.0, 0.0), vec2(xy, 1.0)))
 
 
 @func
 def sheared_flat_value(d: float, p: vec2, xy: float, bounds: Bounds2) -> float:
-    """At least the distance to the rectangle."""
+    """Return the value, but at least the distance to the rectangle."""
     return max(d, rectangle_distance(p, sheared_flat_bounds(bounds, xy)))
 
 
 @func
 def sheared_flat_slope(slope: float, xy: float) -> float:
-    """The largest singular value of a shear is (|xy| + sqrt(xy^2 + 4)) / 2."""
+    """Return the slope.
+
+    The largest singular value of a shear is (|xy| + sqrt(xy^2 + 4)) / 2.
+    """
     return max(slope * 0.5 * (abs(xy) + sqrt(xy * xy + 4.0)), 1.0)
 
 
 @func
 def mirrored_flat(p: vec2, normal: vec2, offset: float) -> vec2:
-    """The half of the plane that ``normal`` points into, seen in the other half too."""
+    """Mirror a point to the side of the line that ``normal`` points to."""
     return p - normal * (2.0 * min(dot(p, normal) - offset, 0.0))
 
 
 @func
 def mirrored_flat_bounds(bounds: Bounds2, normal: vec2, offset: float) -> Bounds2:
-    """The rectangle and its mirror image."""
+    """Return the rectangle around the rectangle and its mirror image."""
     image = mat2(
         vec2(1.0, 0.0) - 2.0 * normal.x * normal,
         vec2(0.0, 1.0) - 2.0 * normal.y * normal,
@@ -120,7 +124,7 @@ def mirrored_flat_bounds(bounds: Bounds2, normal: vec2, offset: float) -> Bounds
 
 @func
 def symmetric_flat(p: vec2, x: bool, y: bool) -> vec2:
-    """The positive side of the chosen axes, seen on both."""
+    """Mirror a point to the positive side of the chosen axes."""
     q = p
     if x:
         q.x = abs(q.x)
@@ -131,7 +135,7 @@ def symmetric_flat(p: vec2, x: bool, y: bool) -> vec2:
 
 @func
 def symmetric_flat_bounds(bounds: Bounds2, x: bool, y: bool) -> Bounds2:
-    """The positive part of the rectangle, on both sides."""
+    """Return the positive part of the rectangle and its mirror images."""
     both = max(bounds.high, vec2(0.0))
     low, high = bounds.low, bounds.high
     if x:
@@ -143,45 +147,45 @@ def symmetric_flat_bounds(bounds: Bounds2, x: bool, y: bool) -> Bounds2:
 
 @func
 def diagonal_flat(p: vec2) -> vec2:
-    """The side of the line x = y where x is larger, seen on both."""
+    """Mirror a point to the side of the line x = y where x is larger."""
     return vec2(max(p.x, p.y), min(p.x, p.y))
 
 
 @func
 def diagonal_flat_bounds(bounds: Bounds2) -> Bounds2:
-    """The rectangle and its mirror image."""
+    """Return the rectangle around the rectangle and its mirror image."""
     return hull_of(bounds, Bounds2(bounds.low.yx, bounds.high.yx))
 
 
 @func
 def octant_flat(p: vec2) -> vec2:
-    """An eighth of the turn, from the x axis to the diagonal, seen in all."""
+    """Mirror a point to the eighth of a turn between the x axis and the diagonal."""
     q = abs(p)
     return vec2(max(q.x, q.y), min(q.x, q.y))
 
 
 @func
 def octant_flat_bounds(bounds: Bounds2) -> Bounds2:
-    """What the rectangle shows of the eighth, on all sides."""
+    """Return the rectangle's part in this eighth and its mirror images."""
     side = max(bounds.high.x, 0.0)
     return Bounds2(vec2(-side), vec2(side))
 
 
 @func
 def kaleidoscope_flat(p: vec2, count: int) -> vec2:
-    """``count`` mirrors through the origin show what is between the x axis and half a sector."""
+    """Mirror a point to the wedge from the x axis to half of one of ``count`` sectors."""
     return folded(p, count)
 
 
 @func
 def kaleidoscope_flat_bounds(bounds: Bounds2) -> Bounds2:
-    """As far out as the rectangle goes, all around."""
+    """Return the square around the circle about the origin that contains the rectangle."""
     side = length(max(abs(bounds.low), abs(bounds.high)))
     return Bounds2(vec2(-side), vec2(side))
 
 
 def symmetry_flat_requirement(x: bool, y: bool) -> str | None:
-    """Why nothing would be mirrored, or None."""
+    """Return why no axis is chosen, or None."""
     return None if x or y else "name at least one axis"
 
 

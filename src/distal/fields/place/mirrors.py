@@ -1,11 +1,12 @@
-"""Symmetric solids: part of a shape seen again in mirrors.
+"""Symmetric solids: mirror images of one part of a shape.
 
-Input: a point. Output: the point to ask the shape at, and the box of all images.
-Knows nothing of repetition (``repeat``).
+Input: a point. Output: the point at which the shape is evaluated, and the box of all images. Does
+not depend on repetition (``repeat``).
 
-A fold never moves two points apart: it keeps every slope, and a lower bound stays one, since no
-image of the shape is nearer to a point than the shape is to the point of evaluation. Exactness is
-lost where the shape reaches through a mirror: what lies behind it is not seen, but still measured.
+A mirror fold never increases the distance of two points, so it keeps every slope. It also keeps a
+lower bound, because no image of the shape is nearer to a point than the shape is to the folded
+point. Exactness is lost if the shape crosses a mirror plane: the part behind the plane is not
+visible, but its distance still counts.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from distal.lang import abs, atan2, cos, dot, func, length, mat3, max, min, roun
 
 @func
 def mirrored(p: vec3, normal: vec3, offset: float) -> vec3:
-    """The half of space that ``normal`` points into, seen in the other half too."""
+    """Mirror a point to the side of the plane that ``normal`` points to."""
     return p - normal * (2.0 * min(dot(p, normal) - offset, 0.0))
 
 
 @func
 def mirrored_bounds(bounds: Bounds, normal: vec3, offset: float) -> Bounds:
-    """The box and its mirror image."""
+    """Return the box around the box and its mirror image."""
     image = mat3(
         vec3(1.0, 0.0, 0.0) - 2.0 * normal.x * normal,
         vec3(0.0, 1.0, 0.0) - 2.0 * normal.y * normal,
@@ -37,7 +38,7 @@ def mirrored_bounds(bounds: Bounds, normal: vec3, offset: float) -> Bounds:
 
 @func
 def symmetric(p: vec3, x: bool, y: bool, z: bool) -> vec3:
-    """The positive side of the chosen axes, seen on both."""
+    """Mirror a point to the positive side of the chosen axes."""
     q = p
     if x:
         q.x = abs(q.x)
@@ -50,7 +51,7 @@ def symmetric(p: vec3, x: bool, y: bool, z: bool) -> vec3:
 
 @func
 def symmetric_bounds(bounds: Bounds, x: bool, y: bool, z: bool) -> Bounds:
-    """The positive part of the box, on both sides."""
+    """Return the positive part of the box and its mirror images."""
     both = max(bounds.high, vec3(0.0))
     low, high = bounds.low, bounds.high
     if x:
@@ -64,33 +65,33 @@ def symmetric_bounds(bounds: Bounds, x: bool, y: bool, z: bool) -> Bounds:
 
 @func
 def diagonal(p: vec3) -> vec3:
-    """The side of the plane x = z where x is larger, seen on both."""
+    """Mirror a point to the side of the plane x = z where x is larger."""
     return vec3(max(p.x, p.z), p.y, min(p.x, p.z))
 
 
 @func
 def diagonal_bounds(bounds: Bounds) -> Bounds:
-    """The box and its mirror image."""
+    """Return the box around the box and its mirror image."""
     return hull_of(bounds, Bounds(bounds.low.zyx, bounds.high.zyx))
 
 
 @func
 def octant(p: vec3) -> vec3:
-    """An eighth of the turn about the y axis, from the x axis to the diagonal, seen in all."""
+    """Mirror a point to the eighth of a turn about the y axis from the x axis to the diagonal."""
     q = abs(p.xz)
     return vec3(max(q.x, q.y), p.y, min(q.x, q.y))
 
 
 @func
 def octant_bounds(bounds: Bounds) -> Bounds:
-    """What the box shows of the eighth, on all sides."""
+    """Return the box's part in this eighth and its mirror images."""
     side = max(bounds.high.x, 0.0)
     return Bounds(vec3(-side, bounds.low.y, -side), vec3(side, bounds.high.y, side))
 
 
 @func
 def folded(q: vec2, count: int) -> vec2:
-    """A wedge from angle 0 to half a sector of ``count``, seen in all, every other one mirrored."""
+    """Mirror a point to the wedge from angle 0 to half of one of ``count`` sectors."""
     sector = 2.0 * PI / float(count)
     angle = atan2(q.y, q.x)
     angle = abs(angle - sector * round(angle / sector))
@@ -99,31 +100,31 @@ def folded(q: vec2, count: int) -> vec2:
 
 @func
 def kaleidoscope(p: vec3, count: int) -> vec3:
-    """``count`` mirrors about the y axis show what is between the x axis and half a sector."""
+    """Mirror a point to the wedge between the x axis and half of one of ``count`` sectors."""
     q = folded(vec2(p.x, -p.z), count)
     return vec3(q.x, p.y, -q.y)
 
 
 @func
 def outer_radius(bounds: Bounds) -> float:
-    """How far out a box goes from the y axis."""
+    """Return the largest distance of a box from the y axis."""
     return length(max(abs(bounds.low.xz), abs(bounds.high.xz)))
 
 
 @func
 def kaleidoscope_bounds(bounds: Bounds) -> Bounds:
-    """As far out as the box goes, all around."""
+    """Return the box of the cylinder about the y axis that contains the box."""
     side = outer_radius(bounds)
     return Bounds(vec3(-side, bounds.low.y, -side), vec3(side, bounds.high.y, side))
 
 
 def symmetry_requirement(x: bool, y: bool, z: bool) -> str | None:
-    """Why nothing would be mirrored, or None."""
+    """Return why no axis is chosen, or None."""
     return None if x or y or z else "name at least one axis"
 
 
 def count_requirement(count: int) -> str | None:
-    """Why a number of copies makes no sense, or None."""
+    """Return why a number of copies is invalid, or None."""
     return None if count >= 1 else "count must be 1 or more"
 
 

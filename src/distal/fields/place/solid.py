@@ -1,8 +1,9 @@
-"""Where a solid stands: moved, turned, scaled, sheared.
+"""Placement of solids: translation, rotation, scaling, shear.
 
-Input: a point, and the numbers of the placement. Output: the point to ask the shape
-at, which is the placement backwards, and the box of the placed shape. Rotations are matrices of
-numbers alone: they are computed once a frame. Knows nothing of copies (``mirrors``, ``repeat``).
+Input: a point, and the numbers of the placement. Output: the point at which the shape is evaluated
+(the inverse placement of the given point), and the box of the placed shape. Rotation matrices
+depend on numbers alone, so they are computed once per frame. Does not depend on copies
+(``mirrors``, ``repeat``).
 """
 
 from __future__ import annotations
@@ -27,30 +28,33 @@ from distal.lang import (
     vec4,
 )
 
-# Moved and turned
+# Translation and rotation
 
 
 @func
 def translated(p: vec3, offset: vec3) -> vec3:
-    """The place before a shift by ``offset``."""
+    """Return the point before a translation by ``offset``."""
     return p - offset
 
 
 @func
 def translated_bounds(bounds: Bounds, offset: vec3) -> Bounds:
-    """The box, shifted."""
+    """Return the box, translated."""
     return Bounds(bounds.low + offset, bounds.high + offset)
 
 
 @func
 def turned_back(p: vec3, m: mat3) -> vec3:
-    """The place before a rotation: its inverse is its transpose."""
+    """Return the point before a rotation, whose inverse is its transpose."""
     return vec3(dot(m[0], p), dot(m[1], p), dot(m[2], p))
 
 
 @func
 def axis_matrix(axis: vec3, angle: float) -> mat3:
-    """A turn about a unit axis, counterclockwise as seen from where it points (Rodrigues)."""
+    """Return the rotation matrix for a unit axis (Rodrigues).
+
+    The rotation is counterclockwise if seen from the end of the axis.
+    """
     c, s = cos(angle), sin(angle)
     t = axis * (1.0 - c)
     return mat3(
@@ -62,7 +66,7 @@ def axis_matrix(axis: vec3, angle: float) -> mat3:
 
 @func
 def euler_matrix(angles: vec3) -> mat3:
-    """Turns about the fixed x axis, then the fixed y axis, then the fixed z axis."""
+    """Return the rotation about the fixed x axis, then the y axis, then the z axis."""
     about_x = axis_matrix(vec3(1.0, 0.0, 0.0), angles.x)
     about_y = axis_matrix(vec3(0.0, 1.0, 0.0), angles.y)
     about_z = axis_matrix(vec3(0.0, 0.0, 1.0), angles.z)
@@ -71,7 +75,7 @@ def euler_matrix(angles: vec3) -> mat3:
 
 @func
 def quaternion_matrix(quaternion: vec4) -> mat3:
-    """The turn of a unit quaternion (x, y, z, w)."""
+    """Return the rotation matrix of a unit quaternion (x, y, z, w)."""
     v, w = quaternion.xyz, quaternion.w
     doubled = v + v
     return mat3(
@@ -83,10 +87,11 @@ def quaternion_matrix(quaternion: vec4) -> mat3:
 
 @func
 def orient_matrix(source: vec3, target: vec3) -> mat3:
-    """The shortest turn that takes the direction ``source`` to the direction ``target``.
+    """Return the smallest rotation that maps direction ``source`` to direction ``target``.
 
-    Two mirrorings: at the plane across ``source``, then at the plane across the bisector. Where the
-    two are opposite the bisector is any direction across.
+    It is the product of two reflections: in the plane perpendicular to ``source``, then in the
+    plane perpendicular to the bisector. If the directions are opposite, the bisector is any
+    direction perpendicular to them.
     """
     s, t = normalize(source), normalize(target)
     other = select(abs(s.x) < 0.7, vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0))
@@ -104,182 +109,186 @@ def orient_matrix(source: vec3, target: vec3) -> mat3:
 
 @func
 def rotated(p: vec3, axis: vec3, angle: float) -> vec3:
-    """The place before a turn about an axis through the origin."""
+    """Return the point before a rotation about an axis through the origin."""
     return turned_back(p, axis_matrix(axis, angle))
 
 
 @func
 def rotated_bounds(bounds: Bounds, axis: vec3, angle: float) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, axis_matrix(axis, angle))
 
 
 @func
 def rotated_x(p: vec3, angle: float) -> vec3:
-    """The place before a turn about the x axis: y goes toward z."""
+    """Return the point before a rotation about the x axis (y towards z)."""
     c, s = cos(angle), sin(angle)
     return vec3(p.x, c * p.y + s * p.z, c * p.z - s * p.y)
 
 
 @func
 def rotated_y(p: vec3, angle: float) -> vec3:
-    """The place before a turn about the y axis: z goes toward x."""
+    """Return the point before a rotation about the y axis (z towards x)."""
     c, s = cos(angle), sin(angle)
     return vec3(c * p.x - s * p.z, p.y, c * p.z + s * p.x)
 
 
 @func
 def rotated_z(p: vec3, angle: float) -> vec3:
-    """The place before a turn about the z axis: x goes toward y."""
+    """Return the point before a rotation about the z axis (x towards y)."""
     c, s = cos(angle), sin(angle)
     return vec3(c * p.x + s * p.y, c * p.y - s * p.x, p.z)
 
 
 @func
 def rotated_x_bounds(bounds: Bounds, angle: float) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, axis_matrix(vec3(1.0, 0.0, 0.0), angle))
 
 
 @func
 def rotated_y_bounds(bounds: Bounds, angle: float) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, axis_matrix(vec3(0.0, 1.0, 0.0), angle))
 
 
 @func
 def rotated_z_bounds(bounds: Bounds, angle: float) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, axis_matrix(vec3(0.0, 0.0, 1.0), angle))
 
 
 @func
 def rotated_euler(p: vec3, angles: vec3) -> vec3:
-    """The place before turns about the fixed axes: x, then y, then z."""
+    """Return the point before rotations about the fixed x, then y, then z axis."""
     return turned_back(p, euler_matrix(angles))
 
 
 @func
 def rotated_euler_bounds(bounds: Bounds, angles: vec3) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, euler_matrix(angles))
 
 
 @func
 def rotated_quaternion(p: vec3, quaternion: vec4) -> vec3:
-    """The place before the turn of a quaternion (x, y, z, w)."""
+    """Return the point before the rotation of a quaternion (x, y, z, w)."""
     return turned_back(p, quaternion_matrix(quaternion))
 
 
 @func
 def rotated_quaternion_bounds(bounds: Bounds, quaternion: vec4) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, quaternion_matrix(quaternion))
 
 
 @func
 def rotated_matrix(p: vec3, right: vec3, up: vec3, back: vec3) -> vec3:
-    """The place before a rotation that is given by where it takes the x, y and z axes."""
+    """Return the point before a rotation given by the images of the x, y and z axes."""
     return vec3(dot(right, p), dot(up, p), dot(back, p))
 
 
 @func
 def rotated_matrix_bounds(bounds: Bounds, right: vec3, up: vec3, back: vec3) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, mat3(right, up, back))
 
 
 @func
 def oriented(p: vec3, source: vec3, target: vec3) -> vec3:
-    """The place before the shortest turn that takes ``source`` to ``target``."""
+    """Return the point before the smallest rotation that maps ``source`` to ``target``."""
     return turned_back(p, orient_matrix(source, target))
 
 
 @func
 def oriented_bounds(bounds: Bounds, source: vec3, target: vec3) -> Bounds:
-    """The box around the turned box."""
+    """Return the box around the rotated box."""
     return turned(bounds, orient_matrix(source, target))
 
 
-# Scaled and sheared
+# Scaling and shear
 
 
 @func
 def scaled(p: vec3, factor: float) -> vec3:
-    """The place before scaling about the origin."""
+    """Return the point before scaling about the origin."""
     return p / factor
 
 
 @func
 def scaled_value(d: float, factor: float) -> float:
-    """Distances scale along."""
+    """Return the distance times the scale factor."""
     return d * factor
 
 
 @func
 def scaled_bounds(bounds: Bounds, factor: float) -> Bounds:
-    """The box, scaled."""
+    """Return the box, scaled."""
     return Bounds(bounds.low * factor, bounds.high * factor)
 
 
 @func
 def stretched(p: vec3, factors: vec3) -> vec3:
-    """The place before scaling each axis by its own factor."""
+    """Return the point before scaling each axis by its own factor."""
     return p / factors
 
 
 @func
 def stretched_value(d: float, p: vec3, factors: vec3, bounds: Bounds) -> float:
-    """The distance after the smallest factor: no true distance shrinks by more.
+    """Return the distance times the smallest factor: a lower bound of the true distance.
 
-    Far outside that is much too little, so the distance to the box stands there.
+    Far outside this is much too small, so the result is at least the distance to the box.
     """
     return max(d * smallest(factors), box_distance(p, stretched_bounds(bounds, factors)))
 
 
 @func
 def stretched_bounds(bounds: Bounds, factors: vec3) -> Bounds:
-    """The box, scaled."""
+    """Return the box, scaled."""
     return Bounds(bounds.low * factors, bounds.high * factors)
 
 
 @func
 def sheared(p: vec3, xy: float, xz: float, yz: float) -> vec3:
-    """The place before a shear: x moves by xy for each y and xz for each z, y by yz for each z."""
+    """Return the point before a shear.
+
+    The shear moves x by xy times y and xz times z, and y by yz times z.
+    """
     y = p.y - yz * p.z
     return vec3(p.x - xy * y - xz * p.z, y, p.z)
 
 
 @func
 def shear_matrix(xy: float, xz: float, yz: float) -> mat3:
-    """The shear, forward."""
+    """Return the matrix of the shear (not of its inverse)."""
     return mat3(vec3(1.0, 0.0, 0.0), vec3(xy, 1.0, 0.0), vec3(xz, yz, 1.0))
 
 
 @func
 def sheared_bounds(bounds: Bounds, xy: float, xz: float, yz: float) -> Bounds:
-    """The box around the sheared box."""
+    """Return the box around the sheared box."""
     return turned(bounds, shear_matrix(xy, xz, yz))
 
 
 @func
 def sheared_value(d: float, p: vec3, xy: float, xz: float, yz: float, bounds: Bounds) -> float:
-    """At least the distance to the box."""
+    """Return the value, but at least the distance to the box."""
     return max(d, box_distance(p, sheared_bounds(bounds, xy, xz, yz)))
 
 
 @func
 def trace(m: mat3) -> float:
-    """The sum of the diagonal."""
+    """Return the sum of the diagonal."""
     return m[0].x + m[1].y + m[2].z
 
 
 @func
 def largest_stretch(m: mat3) -> float:
-    """A bound on how far the linear map ``m`` takes two points apart, at most 1 % too large.
+    """Return a bound on how much the linear map ``m`` stretches distances.
 
-    The largest eigenvalue of m'm is below the 64th root of the trace of its 64th power, and that is
-    at most 3^(1/64) times too large. Each squaring is scaled by the trace, so nothing overflows.
+    It is at most 1 % too large. The largest eigenvalue of m'm is at most the 64th root of the trace
+    of its 64th power, and that is at most 3^(1/64) times too large. Each squaring is scaled by the
+    trace, so nothing overflows.
     """
     power = transpose(m) @ m
     bound = 1.0
@@ -295,7 +304,7 @@ def largest_stretch(m: mat3) -> float:
 
 @func
 def sheared_slope(slope: float, xy: float, xz: float, yz: float) -> float:
-    """How far the shear backwards takes two points apart."""
+    """Return the slope times the largest stretch of the inverse shear."""
     back = mat3(vec3(1.0, 0.0, 0.0), vec3(-xy, 1.0, 0.0), vec3(xy * yz - xz, -yz, 1.0))
     return max(slope * largest_stretch(back), 1.0)
 
@@ -303,7 +312,7 @@ def sheared_slope(slope: float, xy: float, xz: float, yz: float) -> float:
 def orthonormal_requirement(
     right: tuple[float, ...], up: tuple[float, ...], back: tuple[float, ...]
 ) -> str | None:
-    """Why three columns are no rotation, or None."""
+    """Return why three columns are not a rotation, or None."""
     columns = (tuple(right), tuple(up), tuple(back))
     for i, a in enumerate(columns):
         for j, b in enumerate(columns):
@@ -317,7 +326,7 @@ def orthonormal_requirement(
 
 
 def direction_requirement(source: tuple[float, ...], target: tuple[float, ...]) -> str | None:
-    """Why two vectors give no turn, or None."""
+    """Return why two vectors do not define a rotation, or None."""
     for name, v in (("from", source), ("to", target)):
         if not any(v):
             return f"'{name}' has no direction: it is zero"

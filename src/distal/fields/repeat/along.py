@@ -1,7 +1,7 @@
 """Repetition of a solid along a line, on the sides of a rectangle, and at given positions.
 
 Input: a point, the arrangement of the copies, the child's box. Output: the distance to the nearest
-copy, bounded as in ``cells`` for the copies that are not evaluated, and its place.
+copy, limited as in ``cells`` by the copies that are not evaluated, and the point in this copy.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ from distal.lang import (
 
 @func
 def line_step(start: vec3, end: vec3, count: int) -> vec3:
-    """From one copy to the next."""
+    """Return the vector from one copy to the next."""
     return (end - start) / (float(count) - 1.0)
 
 
 @func
 def line_index(p: vec3, start: vec3, end: vec3, count: int, bounds: Bounds) -> float:
-    """The copy whose middle is nearest."""
+    """Return the index of the copy whose middle is nearest."""
     step = line_step(start, end, count)
     along = dot(p - start - middle_of(bounds), step) / dot(step, step)
     return clamp(round(along), 0.0, float(count) - 1.0)
@@ -67,7 +67,7 @@ def line_index(p: vec3, start: vec3, end: vec3, count: int, bounds: Bounds) -> f
 
 @func
 def along_line(p: vec3, start: vec3, end: vec3, count: int, bounds: Bounds) -> Site:
-    """The place in the nearest of ``count`` copies from ``start`` to ``end``."""
+    """Return the place in the nearest of ``count`` copies from ``start`` to ``end``."""
     index = line_index(p, start, end, count, bounds)
     return Site(p - start - index * line_step(start, end, count), vec3(index, 0.0, 0.0))
 
@@ -76,10 +76,10 @@ def along_line(p: vec3, start: vec3, end: vec3, count: int, bounds: Bounds) -> S
 def along_line_value(
     d: float, p: vec3, start: vec3, end: vec3, count: int, bounds: Bounds
 ) -> float:
-    """The value, safe for the other copies: each lies in a cylinder around the line.
+    """Return the value, limited by the other copies, each in a cylinder around the line.
 
-    The cylinders are as long as the box along the line, and hold the ball around it. Beyond the box
-    around all copies the value is at least the distance to it.
+    A cylinder is as long as the box along the line, and contains the ball around the box. Beyond
+    the box around all copies, the value is at least the distance to it.
     """
     step = line_step(start, end, count)
     spacing = length(step)
@@ -100,7 +100,7 @@ def along_line_value(
 
 @func
 def along_line_slope(slope: float, bounds: Bounds, start: vec3, end: vec3, count: int) -> float:
-    """The child's, where it is shorter along the line than the way to the next copy."""
+    """Return the child's slope if the child is shorter along the line than a step."""
     step = line_step(start, end, count)
     spacing = length(step)
     room = 0.5 * spacing - dot(abs(step) / spacing, half_of(bounds))
@@ -109,7 +109,7 @@ def along_line_slope(slope: float, bounds: Bounds, start: vec3, end: vec3, count
 
 @func
 def along_line_bounds(bounds: Bounds, start: vec3, end: vec3) -> Bounds:
-    """The box around the first copy and the last."""
+    """Return the box around the first and the last copy."""
     return Bounds(bounds.low + min(start, end), bounds.high + max(start, end))
 
 
@@ -118,7 +118,7 @@ def along_line_bounds(bounds: Bounds, start: vec3, end: vec3) -> Bounds:
 
 @func
 def ring(spacing: vec2, count_x: int, count_z: int) -> Copies:
-    """The block of copies whose outermost ones are the ring."""
+    """Return the block of copies whose outermost ones are the ring."""
     last = vec3(float(count_x) - 1.0, 0.0, float(count_z) - 1.0)
     apart = vec3(spacing.x, 0.0, spacing.y)
     return Copies(apart, -0.5 * last * apart, vec3(0.0), last)
@@ -128,14 +128,14 @@ def ring(spacing: vec2, count_x: int, count_z: int) -> Copies:
 def on_side(
     field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds, index: vec3, free: vec3
 ) -> Nearest:
-    """One copy on a side of the rectangle, safe for the others on that side.
+    """Return one copy on a side of the rectangle, limited by the others on that side.
 
     Args:
         field: The child.
         p: The point.
         copies: The block.
         bounds: The child's box.
-        index: The copy.
+        index: The index of the copy.
         free: 1 along the side, 0 across it.
     """
     q = p - copies.origin - index * copies.spacing
@@ -151,7 +151,10 @@ def on_side(
 def nearest_on_ring(
     field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds
 ) -> Nearest:
-    """The nearer of two: on the side across x and on the side across z that the point is at."""
+    """Return the nearer copy of two: on the side across x and on that across z.
+
+    Both sides are those that the point is nearest to.
+    """
     away = p - middle_of(bounds)
     steps = vec3(
         (away.x - copies.origin.x) / copies.spacing.x,
@@ -168,14 +171,14 @@ def nearest_on_ring(
     beyond = abs(away.xz) - copies.origin.xz - half.xz
     opposite = length(vec2(max(min(beyond.x, beyond.y), 0.0), above))
     best = column if column.distance < row.distance else row
-    # A side that is not evaluated counts as endless, which is wrong beyond the box of all copies.
+    # A side that is not evaluated counts as infinite, which is wrong beyond the box of all copies.
     block = bounds_in(bounds, copies)
     return Nearest(max(min(best.distance, opposite), box_distance(p, block)), best.site)
 
 
 @func
 def around_ring(field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds) -> float:
-    """Copies on the border of a block."""
+    """Return the distance to the copies on the border of a block."""
     return nearest_on_ring(field, p, copies, bounds).distance
 
 
@@ -183,16 +186,16 @@ def around_ring(field: Callable[[vec3], float], p: vec3, copies: Copies, bounds:
 def around_ring_site(
     field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds
 ) -> Site:
-    """The place in the nearest copy; its index is that in the block."""
+    """Return the place in the nearest copy; its index is that in the block."""
     return nearest_on_ring(field, p, copies, bounds).site
 
 
-# At given places
+# At given positions
 
 
 @func
 def nearest_at(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> Nearest:
-    """The nearest of all copies: every one is evaluated."""
+    """Return the nearest of all copies; each copy is evaluated."""
     nearest = UNBOUNDED
     site = Site(p, vec3(0.0))
     for i in range(size(positions)):
@@ -206,19 +209,19 @@ def nearest_at(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3])
 
 @func
 def at_positions(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> float:
-    """A copy at each of the positions."""
+    """Return the distance to the copies at the positions."""
     return nearest_at(field, p, positions).distance
 
 
 @func
 def at_positions_site(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> Site:
-    """The place in the nearest copy; its index is that of the position."""
+    """Return the place in the nearest copy; its index is that of the position."""
     return nearest_at(field, p, positions).site
 
 
 @func
 def at_positions_bounds(bounds: Bounds, positions: Buffer[vec3]) -> Bounds:
-    """The box around all copies."""
+    """Return the box around all copies."""
     low = positions[0]
     high = positions[0]
     for i in range(1, size(positions)):
@@ -228,14 +231,14 @@ def at_positions_bounds(bounds: Bounds, positions: Buffer[vec3]) -> Bounds:
 
 
 def line_requirement(start: tuple[float, ...], end: tuple[float, ...], count: int) -> str | None:
-    """Why there is no line of copies, or None."""
+    """Return why a line of copies is invalid, or None."""
     if count < 2:
         return "count must be 2 or more"
     return "start and end must be different points" if tuple(start) == tuple(end) else None
 
 
 def ring_requirement(count_x: int, count_z: int) -> str | None:
-    """Why there is no ring of copies, or None."""
+    """Return why a ring of copies is invalid, or None."""
     return None if min(count_x, count_z) >= 2 else "each count must be 2 or more"
 
 

@@ -1,21 +1,23 @@
 """Repetition of a shape on a grid, for any set of copies.
 
 Input: a point, the copies (spacing, origin, first and last index), the child's box. Output: the
-point in a copy's own space, the cell's index, and a value that is safe to march. Every kind of
-repetition (infinite, limited, interval, half, ring) is one function from its numbers to ``Copies``.
+point in the local space of a copy, the cell's index, and a value that is safe to march. Each kind
+of repetition (infinite, limited, interval, half, ring) is a function from its numbers to
+``Copies``.
 
-How a repetition stays safe: the child is evaluated in one cell (``neighbours=0``) or in a few.
-Plain modulo is discontinuous at a cell's border unless the child is symmetric, and its value does
-not bound the distance to the next copy: a step may pass through that copy. So the box of each copy
-replaces the copies that are not evaluated: the value never exceeds the distance to the nearest of
-their boxes, and an evaluated copy never gives less than the distance to its own box. Where the set
-of evaluated copies changes, the box that leaves the set is as far away as the box that enters, so
-both sides give that distance: the result is continuous for every child. Its slope is the child's,
-or 1 (of the boxes).
+How a repetition stays safe: the child is evaluated in one cell (``neighbours=0``) or in a few. A
+plain modulo is discontinuous at a cell's border unless the child is symmetric, and its value does
+not bound the distance to the next copy: a step may pass through that copy. Therefore the box of
+each copy stands for a copy that is not evaluated: the value never exceeds the distance to the
+nearest of these boxes, and the value of an evaluated copy is at least the distance to its own box.
+Where the set of evaluated copies changes, the box that leaves the set is as far away as the box
+that enters it, so both sides have that distance: the result is continuous for every child. Its
+slope is the child's, or 1 (of the boxes) if that is larger.
 
-The boxes must leave a gap, or their faces would look like surfaces: a child that does not fit has
-no slope (``UNBOUNDED``) and is refused. Cells are centred on the child's box, wherever that lies. A
-child that is symmetric in its cell needs none of this: ``repeat mirrored``.
+There must be a gap between the boxes, otherwise their faces would look like surfaces: a child that
+does not fit has no slope (``UNBOUNDED``) and is refused. Cells are centred on the child's box,
+wherever it lies. A child that is symmetric in its cell does not need any of this: ``repeat
+mirrored``.
 
 Source: the cells, and the need to ask neighbours: Inigo Quilez, "Domain repetition"
 (https://iquilezles.org/articles/sdfrepetition/); names of the kinds: hg_sdf
@@ -45,9 +47,9 @@ from distal.lang import (
     vec3,
 )
 
-# The share of the spacing that must be free on each side of a copy's box.
+# The fraction of the spacing that must be free on each side of a copy's box.
 ROOM = 0.01
-# The same where copies may overlap: how much nearer the evaluated ones must be than the others.
+# If copies may overlap: the fraction of the spacing by which the evaluated copies must be nearer.
 LEAD = 0.1
 
 
@@ -71,20 +73,20 @@ class Nearest:
 
 @func
 def repeated_axes(spacing: Vectors) -> Vectors:
-    """1 along the axes that are repeated, 0 along the others."""
+    """Return 1 along the axes that are repeated, 0 along the others."""
     return select(spacing == 0.0, spacing * 0.0, spacing * 0.0 + 1.0)
 
 
 @func
 def endless(spacing: vec3) -> Copies:
-    """Copies without end on both sides."""
+    """Return copies that are infinite to both sides."""
     far = vec3(UNBOUNDED)
     return Copies(spacing, vec3(0.0), -far, far)
 
 
 @func
 def counted(spacing: vec3, count_x: int = 1, count_y: int = 1, count_z: int = 1) -> Copies:
-    """A block of copies around the origin; indices start at 0."""
+    """Return a block of copies around the origin; indices start at 0."""
     last = vec3(float(count_x), float(count_y), float(count_z)) - 1.0
     return Copies(spacing, -0.5 * last * spacing, vec3(0.0), last)
 
@@ -99,26 +101,26 @@ def interval(
     last_y: int = 0,
     last_z: int = 0,
 ) -> Copies:
-    """Copies from one index to another, both included; copy 0 is the child itself."""
+    """Return the copies from one index to another, both included; copy 0 is the child itself."""
     first = vec3(float(first_x), float(first_y), float(first_z))
     return Copies(spacing, vec3(0.0), first, vec3(float(last_x), float(last_y), float(last_z)))
 
 
 @func
 def onward(spacing: vec3) -> Copies:
-    """Copies from index 0 on, without end."""
+    """Return the copies from index 0 on, infinite."""
     return Copies(spacing, vec3(0.0), vec3(0.0), vec3(UNBOUNDED) * repeated_axes(spacing))
 
 
 @func
 def middle_of(bounds: Bounds) -> vec3:
-    """The middle of a box; 0 along an axis without ends."""
+    """Return the middle of a box; 0 along an infinite axis."""
     return 0.5 * bounds.low + 0.5 * bounds.high
 
 
 @func
 def nearest_index(p: vec3, copies: Copies, bounds: Bounds) -> vec3:
-    """The copy whose box's middle is nearest."""
+    """Return the index of the copy whose box's middle is nearest."""
     axes = repeated_axes(copies.spacing)
     steps = (p - copies.origin - middle_of(bounds)) / (copies.spacing + 1.0 - axes)
     return clamp(round(steps), copies.first, copies.last) * axes
@@ -126,13 +128,13 @@ def nearest_index(p: vec3, copies: Copies, bounds: Bounds) -> vec3:
 
 @func
 def beside(p: vec3, copies: Copies, index: vec3) -> vec3:
-    """The point in a copy's own space."""
+    """Return the point in the local space of a copy."""
     return p - copies.origin - index * copies.spacing
 
 
 @func
 def at_end(away: vec3, copies: Copies, index: vec3) -> vec3:
-    """1 along the axes where nothing follows on the side that the point lies on."""
+    """Return 1 along the axes where no copy follows on the side of the point."""
     beyond_high = select(index >= copies.last, vec3(1.0), vec3(0.0))
     beyond_low = select(index <= copies.first, vec3(1.0), vec3(0.0))
     return select(away < 0.0, beyond_low, beyond_high)
@@ -142,15 +144,16 @@ def at_end(away: vec3, copies: Copies, index: vec3) -> vec3:
 def to_others(
     away: vec3, half: vec3, copies: Copies, index: vec3, neighbours: int, limited: bool
 ) -> vec3:
-    """Along each axis, the distance to the box of the nearest copy that is not evaluated.
+    """Return the distance to the nearest box that is not evaluated, along each axis.
 
     Args:
-        away: The point from the middle of the nearest copy's box.
-        half: Half of the box.
+        away: The vector from the middle of the nearest copy's box to the point.
+        half: Half of the box's size.
         copies: All copies.
-        index: The nearest copy.
-        neighbours: 0: only it is evaluated; 1: also the next toward the point; 2: on both sides.
-        limited: Whether there are ends.
+        index: The index of the nearest copy.
+        neighbours: 0: only the nearest copy is evaluated; 1: also the next towards the point; 2: on
+            both sides.
+        limited: Whether the set of copies is finite on any side.
     """
     distance = abs(away)
     side = distance if neighbours == 1 else -distance
@@ -164,17 +167,17 @@ def to_others(
 
 @func
 def distance_to_box(away: vec3, half: vec3) -> float:
-    """The distance to a box around the origin, negative inside."""
+    """Return the distance to a box around the origin, negative inside."""
     beyond = abs(away) - half
     return length(max(beyond, vec3(0.0))) + min(largest(beyond), 0.0)
 
 
 @func
 def distance_to_others(away: vec3, half: vec3, gap: vec3) -> float:
-    """The distance to the boxes of the copies that are not evaluated.
+    """Return the distance to the boxes of the copies that are not evaluated.
 
-    Such a copy is ``gap`` away along at least one axis; along the others it may stand as near as
-    the evaluated ones.
+    Such a copy is at the distance ``gap`` along at least one axis; along the others it may be as
+    near as the evaluated ones.
     """
     beside = max(abs(away) - half, vec3(0.0))
     across = max(gap, beside)
@@ -183,7 +186,7 @@ def distance_to_others(away: vec3, half: vec3, gap: vec3) -> float:
 
 @func
 def half_of(bounds: Bounds) -> vec3:
-    """Half of a box's size."""
+    """Return half of a box's size."""
     return 0.5 * bounds.high - 0.5 * bounds.low
 
 
@@ -192,14 +195,14 @@ def half_of(bounds: Bounds) -> vec3:
 
 @func
 def site_in(p: vec3, copies: Copies, bounds: Bounds) -> Site:
-    """The point in the nearest copy's space, and that copy's index."""
+    """Return the point in the local space of the nearest copy, and that copy's index."""
     index = nearest_index(p, copies, bounds)
     return Site(beside(p, copies, index), index)
 
 
 @func
 def value_in(d: float, p: vec3, copies: Copies, bounds: Bounds, limited: bool) -> float:
-    """The value of the nearest copy, made safe for the others."""
+    """Return the value of the nearest copy, limited by the others."""
     index = nearest_index(p, copies, bounds)
     away = beside(p, copies, index) - middle_of(bounds)
     half = half_of(bounds)
@@ -209,7 +212,7 @@ def value_in(d: float, p: vec3, copies: Copies, bounds: Bounds, limited: bool) -
 
 @func
 def slope_in(slope: float, bounds: Bounds, copies: Copies, neighbours: int) -> float:
-    """The child's slope, or 1; none where the boxes leave no gap."""
+    """Return the child's slope, or 1 if larger; no bound if there is no gap between the boxes."""
     half = half_of(bounds)
     room = 0.5 * copies.spacing - half
     share = ROOM
@@ -224,7 +227,7 @@ def slope_in(slope: float, bounds: Bounds, copies: Copies, neighbours: int) -> f
 
 @func
 def bounds_in(bounds: Bounds, copies: Copies) -> Bounds:
-    """The box around all copies."""
+    """Return the box around all copies."""
     low = bounds.low + copies.origin + copies.first * copies.spacing
     high = bounds.high + copies.origin + copies.last * copies.spacing
     far = vec3(UNBOUNDED)
@@ -246,7 +249,7 @@ def nearest_copy(
     neighbours: int,
     limited: bool,
 ) -> Nearest:
-    """The nearest of the copies around the point; safe for those that are not evaluated."""
+    """Return the nearest of the copies around the point, limited by those not evaluated."""
     index = nearest_index(p, copies, bounds)
     middle = middle_of(bounds)
     q = beside(p, copies, index)
@@ -288,7 +291,7 @@ def nearest_copy_distance(
     neighbours: int,
     limited: bool,
 ) -> float:
-    """The distance to the nearest of the copies around the point."""
+    """Return the distance to the nearest of the copies around the point."""
     return nearest_copy(field, p, copies, bounds, neighbours, limited).distance
 
 
@@ -301,5 +304,5 @@ def nearest_copy_site(
     neighbours: int,
     limited: bool,
 ) -> Site:
-    """The place in the cell of the nearest copy."""
+    """Return the place in the cell of the nearest copy."""
     return nearest_copy(field, p, copies, bounds, neighbours, limited).site

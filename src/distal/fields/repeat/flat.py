@@ -1,7 +1,7 @@
-"""Repetition of a flat shape: on a grid, mirrored, around the origin, at given places.
+"""Repetition of a flat shape: on a grid, mirrored, around the origin, at given positions.
 
-Input: a point of the plane. Output: what ``cells`` and ``polar`` give for solids; the functions
-here call those, with the plane as a slice of space that is not repeated across it.
+Input: a point of the plane. Output: the same as that of ``cells`` and ``polar`` for solids; the
+functions here call those, with the plane as a slice of space that is not repeated across it.
 """
 
 from __future__ import annotations
@@ -58,25 +58,25 @@ from distal.lang import Buffer, func, max, min, size, vec2, vec3
 
 @func
 def in_space(p: vec2) -> vec3:
-    """A point of the plane in the plane z = 0."""
+    """Return a point of the plane as a point of the plane z = 0."""
     return vec3(p, 0.0)
 
 
 @func
 def slab(bounds: Bounds2) -> Bounds:
-    """A rectangle as a box without end across the plane."""
+    """Return a rectangle as a box that is infinite along z."""
     return Bounds(vec3(bounds.low, -UNBOUNDED), vec3(bounds.high, UNBOUNDED))
 
 
 @func
 def flat_site(site: Site) -> Site2:
-    """A place in the plane."""
+    """Return a place in space as a place in the plane."""
     return Site2(site.p.xy, site.cell)
 
 
 @func
 def flat_bounds(bounds: Bounds) -> Bounds2:
-    """What a box shows in the plane."""
+    """Return the x and y sides of a box."""
     return Bounds2(bounds.low.xy, bounds.high.xy)
 
 
@@ -85,37 +85,37 @@ def flat_bounds(bounds: Bounds) -> Bounds2:
 
 @func
 def endless_flat(spacing: vec2) -> Copies:
-    """Copies without end on all sides."""
+    """Return copies that are infinite to all sides."""
     return endless(in_space(spacing))
 
 
 @func
 def counted_flat(spacing: vec2, count_x: int = 1, count_y: int = 1) -> Copies:
-    """A block of copies around the origin; indices start at 0."""
+    """Return a block of copies around the origin; indices start at 0."""
     return counted(in_space(spacing), count_x, count_y, 1)
 
 
 @func
 def site_in_flat(p: vec2, copies: Copies, bounds: Bounds2) -> Site2:
-    """The point in the nearest copy's plane, and that copy's index."""
+    """Return the point in the local plane of the nearest copy, and that copy's index."""
     return flat_site(site_in(in_space(p), copies, slab(bounds)))
 
 
 @func
 def value_in_flat(d: float, p: vec2, copies: Copies, bounds: Bounds2, limited: bool) -> float:
-    """The value of the nearest copy, made safe for the others."""
+    """Return the value of the nearest copy, limited by the others."""
     return value_in(d, in_space(p), copies, slab(bounds), limited)
 
 
 @func
 def slope_in_flat(slope: float, bounds: Bounds2, copies: Copies, neighbours: int) -> float:
-    """The child's slope, or 1; none where the rectangles leave no gap."""
+    """Return the child's slope, or 1 if larger; no bound if there is no gap."""
     return slope_in(slope, slab(bounds), copies, neighbours)
 
 
 @func
 def bounds_in_flat(bounds: Bounds2, copies: Copies) -> Bounds2:
-    """The rectangle around all copies."""
+    """Return the rectangle around all copies."""
     return flat_bounds(bounds_in(slab(bounds), copies))
 
 
@@ -128,7 +128,7 @@ def nearest_copy_flat(
     neighbours: int,
     limited: bool,
 ) -> Nearest:
-    """The nearest of the copies around the point; safe for those that are not evaluated."""
+    """Return the nearest of the copies around the point, limited by those not evaluated."""
     return nearest_copy(
         lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, limited
     )
@@ -143,7 +143,7 @@ def nearest_copy_distance_flat(
     neighbours: int,
     limited: bool,
 ) -> float:
-    """The distance to the nearest of the copies around the point."""
+    """Return the distance to the nearest of the copies around the point."""
     return nearest_copy_flat(field, p, copies, bounds, neighbours, limited).distance
 
 
@@ -156,60 +156,60 @@ def nearest_copy_site_flat(
     neighbours: int,
     limited: bool,
 ) -> Site2:
-    """The place in the cell of the nearest copy."""
+    """Return the place in the cell of the nearest copy."""
     return flat_site(nearest_copy_flat(field, p, copies, bounds, neighbours, limited).site)
 
 
 @func
 def mirrored_cells(p: vec2, spacing: vec2) -> Site2:
-    """The place in its cell, every other one mirrored."""
+    """Return the place in its cell; every other cell is mirrored."""
     return flat_site(repeated_mirrored(in_space(p), in_space(spacing)))
 
 
 @func
 def mirrored_cells_bounds(bounds: Bounds2, spacing: vec2) -> Bounds2:
-    """Without end along the repeated axes."""
+    """Return a rectangle that is infinite along the repeated axes."""
     return flat_bounds(bounds_in(slab(bounds), endless(in_space(spacing))))
 
 
-# Around the origin: the plane becomes the ground, with y along -z
+# Around the origin: the plane is mapped to the xz plane, with y along -z
 
 
 @func
 def on_ground(p: vec2) -> vec3:
-    """A point of the plane on the ground, so that turns keep their sense."""
+    """Return a point of the plane in the xz plane; rotations keep their direction."""
     return vec3(p.x, 0.0, -p.y)
 
 
 @func
 def column(bounds: Bounds2) -> Bounds:
-    """A rectangle as a box on the ground, without end upward and downward."""
+    """Return a rectangle as a box on the xz plane, infinite along y."""
     low, high = bounds.low, bounds.high
     return Bounds(vec3(low.x, -UNBOUNDED, -high.y), vec3(high.x, UNBOUNDED, -low.y))
 
 
 @func
 def off_ground(p: vec3) -> vec2:
-    """A point on the ground back in the plane."""
+    """Return a point of the xz plane as a point of the plane."""
     return vec2(p.x, -p.z)
 
 
 @func
 def repeated_polar_flat(p: vec2, count: int, bounds: Bounds2) -> Site2:
-    """The place in the nearest sector."""
+    """Return the place in the nearest sector."""
     site = repeated_polar(on_ground(p), count, column(bounds))
     return Site2(off_ground(site.p), site.cell)
 
 
 @func
 def repeated_polar_flat_value(d: float, p: vec2, count: int, bounds: Bounds2) -> float:
-    """The value, safe for the other sectors."""
+    """Return the value, limited by the other sectors."""
     return repeated_polar_value(d, on_ground(p), count, column(bounds))
 
 
 @func
 def repeated_polar_flat_slope(slope: float, bounds: Bounds2, count: int) -> float:
-    """The child's, where it fits between the lines around it."""
+    """Return the child's slope if the child fits between the lines of its sector."""
     return repeated_polar_slope(slope, column(bounds), count)
 
 
@@ -217,7 +217,7 @@ def repeated_polar_flat_slope(slope: float, bounds: Bounds2, count: int) -> floa
 def repeated_polar_flat_around(
     field: Callable[[vec2], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
 ) -> float:
-    """The nearest of the copies next to the point."""
+    """Return the distance to the nearest of the copies around the point."""
     found = nearest_polar(
         lambda q: field(off_ground(q)), on_ground(p), count, column(bounds), neighbours
     )
@@ -228,7 +228,7 @@ def repeated_polar_flat_around(
 def repeated_polar_flat_site(
     field: Callable[[vec2], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
 ) -> Site2:
-    """The place in the nearest copy."""
+    """Return the place in the nearest copy."""
     found = nearest_polar(
         lambda q: field(off_ground(q)), on_ground(p), count, column(bounds), neighbours
     )
@@ -239,16 +239,16 @@ def repeated_polar_flat_site(
 def repeated_polar_flat_around_slope(
     slope: float, bounds: Bounds2, count: int, neighbours: int
 ) -> float:
-    """The child's, where the evaluated copies are nearer than the others."""
+    """Return the child's slope if the evaluated copies are nearer than others."""
     return repeated_polar_around_slope(slope, column(bounds), count, neighbours)
 
 
-# At given places
+# At given positions
 
 
 @func
 def at_positions_flat(field: Callable[[vec2], float], p: vec2, positions: Buffer[vec2]) -> float:
-    """A copy at each of the positions."""
+    """Return the distance to the copies at the positions."""
     nearest = UNBOUNDED
     for i in range(size(positions)):
         nearest = min(nearest, field(p - positions[i]))
@@ -259,7 +259,7 @@ def at_positions_flat(field: Callable[[vec2], float], p: vec2, positions: Buffer
 def at_positions_flat_site(
     field: Callable[[vec2], float], p: vec2, positions: Buffer[vec2]
 ) -> Site2:
-    """The place in the nearest copy; its index is that of the position."""
+    """Return the place in the nearest copy; its index is that of the position."""
     nearest = UNBOUNDED
     site = Site2(p, vec3(0.0))
     for i in range(size(positions)):
@@ -273,7 +273,7 @@ def at_positions_flat_site(
 
 @func
 def at_positions_flat_bounds(bounds: Bounds2, positions: Buffer[vec2]) -> Bounds2:
-    """The rectangle around all copies."""
+    """Return the rectangle around all copies."""
     low = positions[0]
     high = positions[0]
     for i in range(1, size(positions)):
@@ -283,12 +283,12 @@ def at_positions_flat_bounds(bounds: Bounds2, positions: Buffer[vec2]) -> Bounds
 
 
 def count_requirement_flat(count_x: int = 1, count_y: int = 1) -> str | None:
-    """Why there would be no copies, or None."""
+    """Return why the counts are invalid, or None."""
     return count_requirement(count_x, count_y)
 
 
 def block_requirement_flat(neighbours: int, count_x: int = 1, count_y: int = 1) -> str | None:
-    """Why a block with neighbours cannot be, or None."""
+    """Return why a block with neighbours is invalid, or None."""
     return block_requirement(neighbours, count_x, count_y)
 
 

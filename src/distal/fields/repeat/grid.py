@@ -1,7 +1,7 @@
-"""The operators that repeat a solid on a grid: infinite, limited, interval, half, mirrored.
+"""Operators that repeat a solid on a grid: infinite, limited, interval, half, mirrored.
 
-Input: the functions of ``cells``, and for each kind the function from its numbers to ``Copies``.
-Output: operators. ``one_cell`` and ``several_cells`` declare those of flat shapes as well.
+Input: the functions of ``cells``, and for each kind a function from its numbers to ``Copies``.
+Output: operators. ``one_cell`` and ``several_cells`` also declare those of flat shapes.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ FITS_NEIGHBOURS: Final = (
 
 @dataclass(frozen=True, slots=True)
 class CellFunctions:
-    """The functions of ``cells`` for solids, or what corresponds to them in the plane."""
+    """The functions of ``cells`` for solids, or their counterparts in the plane."""
 
     site: Func
     value: Func
@@ -70,11 +70,11 @@ def one_cell(
     """Declare a repetition that evaluates the child in the nearest cell only.
 
     Args:
-        name: The operator's.
-        functions: For solids or for flat shapes.
-        copies: ``(*numbers) -> Copies``: which copies exist.
-        limited: Whether they end on any side.
-        requires: Tells why numbers do not go together.
+        name: Name of the operator.
+        functions: The functions for solids or for flat shapes.
+        copies: ``(*numbers) -> Copies``: the copies that exist.
+        limited: Whether the set of copies is finite on any side.
+        requires: Returns why numbers contradict each other, or None.
     """
     return operator(
         name,
@@ -93,7 +93,7 @@ def one_cell(
 
 
 def neighbours_requirement(neighbours: int) -> str | None:
-    """Why so many neighbours cannot be evaluated, or None."""
+    """Return why the number of neighbours is invalid, or None."""
     return None if neighbours in (1, 2) else "neighbours must be 0, 1 or 2"
 
 
@@ -105,9 +105,9 @@ def several_cells(
     limited: bool = True,
     requires: Requirement = neighbours_requirement,
 ) -> Operator:
-    """Declare a repetition that evaluates the child in cells around the nearest as well.
+    """Declare a repetition that also evaluates the child in cells around the nearest.
 
-    Its number ``neighbours`` is 1 or 2. Arguments as for ``one_cell``.
+    Its number ``neighbours`` is 1 or 2. Takes the same arguments as ``one_cell``.
     """
     return operator(
         name,
@@ -127,9 +127,9 @@ def several_cells(
 
 @func
 def repeated_mirrored(p: vec3, spacing: vec3) -> Site:
-    """The place in its cell, every other one mirrored: continuous where two cells meet.
+    """Return the place in its cell, mirrored in every other one: continuous at borders.
 
-    For a child that is symmetric in its cell this is plain repetition, at the lowest cost.
+    For a child that is symmetric in its cell this is a plain repetition, at the lowest cost.
     """
     axes = repeated_axes(spacing)
     index = round(p / (spacing + 1.0 - axes)) * axes
@@ -139,19 +139,19 @@ def repeated_mirrored(p: vec3, spacing: vec3) -> Site:
 
 @func
 def repeated_mirrored_bounds(bounds: Bounds, spacing: vec3) -> Bounds:
-    """Without end along the repeated axes."""
+    """Return a box that is infinite along the repeated axes."""
     return bounds_in(bounds, endless(spacing))
 
 
 def count_requirement(count_x: int = 1, count_y: int = 1, count_z: int = 1) -> str | None:
-    """Why there would be no copies, or None."""
+    """Return why the counts are invalid, or None."""
     return None if min(count_x, count_y, count_z) >= 1 else "each count must be 1 or more"
 
 
 def block_requirement(
     neighbours: int, count_x: int = 1, count_y: int = 1, count_z: int = 1
 ) -> str | None:
-    """Why a block with neighbours cannot be, or None."""
+    """Return why a block with neighbours is invalid, or None."""
     return neighbours_requirement(neighbours) or count_requirement(count_x, count_y, count_z)
 
 
@@ -163,7 +163,7 @@ def interval_requirement(
     last_y: int = 0,
     last_z: int = 0,
 ) -> str | None:
-    """Why there would be no copies, or None."""
+    """Return why the indices are invalid, or None."""
     ends = ((first_x, last_x), (first_y, last_y), (first_z, last_z))
     return None if all(a <= b for a, b in ends) else "the last index must not be below the first"
 

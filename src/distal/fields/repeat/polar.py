@@ -1,13 +1,13 @@
 """Repetition of a solid around the y axis.
 
-Input: a point, how many copies, the child's box. Output: the point in a copy's own
-space, the copy's index, and a value that is safe to march. The first copy is the child itself,
-wherever it stands; the others follow counterclockwise as seen from above.
+Input: a point, the number of copies, the child's box. Output: the point in the local space of a
+copy, the copy's index, and a value that is safe to march. The first copy is the child itself; the
+others follow counterclockwise as seen from above.
 
-Bounded as in ``cells``, with sectors of an annulus for boxes: a copy's box lies within an
-angle of the direction to its middle and no nearer to the axis than some radius. Both distances, to
-the sector's flat side and to its inner radius, rise by 1 per unit, and where the set of
-evaluated copies changes, the one that leaves it is as far away as the one that enters.
+Limited as in ``cells``, with sectors of an annulus instead of boxes: a copy's box lies within an
+angle of the direction to its middle, and beyond some radius from the axis. Both distances, to the
+sector's flat side and to its inner radius, have slope 1. Where the set of evaluated copies changes,
+the copy that leaves it is as far away as the one that enters.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ from distal.lang import (
 
 @struct
 class Sector:
-    """Where a copy lies: ``x`` and ``z`` of its direction, its half angle, its inner radius."""
+    """Sector of a copy: ``x`` and ``z`` of its direction, its half angle, its inner radius."""
 
     direction: vec2
     half: float
@@ -59,14 +59,17 @@ class Sector:
 
 @func
 def corner_angle(direction: vec2, corner: vec2) -> float:
-    """The angle between a direction and a corner."""
+    """Return the angle between a direction and a corner."""
     across = direction.x * corner.y - direction.y * corner.x
     return abs(atan2(across, dot(direction, corner)))
 
 
 @func
 def sector_of(bounds: Bounds) -> Sector:
-    """The sector of the child's box; half a turn and more where the axis goes through it."""
+    """Return the sector of the child's box.
+
+    Its half angle is pi or more if the axis goes through the box.
+    """
     low, high = bounds.low.xz, bounds.high.xz
     middle = 0.5 * low + 0.5 * high
     size = length(middle)
@@ -81,21 +84,21 @@ def sector_of(bounds: Bounds) -> Sector:
 
 @func
 def in_sector(q: vec3, sector: Sector) -> vec2:
-    """A point seen from a copy's middle line: along it, and across it on either side."""
+    """Return the coordinates of a point along a copy's middle line, and across it (absolute)."""
     u = sector.direction
     return vec2(q.x * u.x + q.z * u.y, abs(q.z * u.x - q.x * u.y))
 
 
 @func
 def to_side(at: vec2, angle: float) -> float:
-    """The distance to a half-plane from the axis at an angle, positive before it is reached."""
+    """Return the distance to a half plane from the axis at an angle, positive before it."""
     c, s = cos(angle), sin(angle)
     return select(at.x * c + at.y * s < 0.0, length(at), at.x * s - at.y * c)
 
 
 @func
 def to_own(at: vec2, sector: Sector) -> float:
-    """The distance to a copy's sector, negative inside."""
+    """Return the distance to a copy's sector, negative inside."""
     c, s = cos(sector.half), sin(sector.half)
     radius = length(at)
     side = select(at.x * c + at.y * s < 0.0, radius, at.y * c - at.x * s)
@@ -104,19 +107,25 @@ def to_own(at: vec2, sector: Sector) -> float:
 
 @func
 def to_next(at: vec2, angle: float, sector: Sector) -> float:
-    """The distance to a copy whose sector starts at an angle from the middle line."""
+    """Return the distance to a copy whose sector starts at an angle from the middle line."""
     return max(to_side(at, angle), sector.inner - length(at))
 
 
 @func
 def to_drum(p: vec3, bounds: Bounds) -> float:
-    """The distance to the drum that holds all copies: sectors end neither outward nor upward."""
+    """Return the distance to the cylinder that contains all copies.
+
+    It is needed because the sectors are infinite outwards and upwards.
+    """
     return drum_distance(length(p.xz), p.y, outer_radius(bounds), bounds.low.y, bounds.high.y)
 
 
 @func
 def polar_index(p: vec3, count: int, sector: Sector) -> float:
-    """The copy whose middle is nearest by angle: from minus to plus half the count."""
+    """Return the index of the copy whose middle is nearest by angle.
+
+    It is from minus to plus half the count.
+    """
     u = sector.direction
     angle = atan2(p.x * u.y - p.z * u.x, p.x * u.x + p.z * u.y)
     return round(angle * (float(count) / (2.0 * PI)))
@@ -124,13 +133,13 @@ def polar_index(p: vec3, count: int, sector: Sector) -> float:
 
 @func
 def turned_by(p: vec3, index: float, count: int) -> vec3:
-    """The point in a copy's own space."""
+    """Return the point in the local space of a copy."""
     return rotated_y(p, index * (2.0 * PI / float(count)))
 
 
 @func
 def polar_site(p: vec3, index: float, count: int) -> Site:
-    """The place in a copy, whose index counts from 0 to below ``count``."""
+    """Return the place in a copy; its index is from 0 to below ``count``."""
     n = float(count)
     return Site(turned_by(p, index, count), vec3(index - n * floor(index / n), 0.0, 0.0))
 
@@ -140,13 +149,13 @@ def polar_site(p: vec3, index: float, count: int) -> Site:
 
 @func
 def repeated_polar(p: vec3, count: int, bounds: Bounds) -> Site:
-    """The place in the nearest sector."""
+    """Return the place in the nearest sector."""
     return polar_site(p, polar_index(p, count, sector_of(bounds)), count)
 
 
 @func
 def repeated_polar_value(d: float, p: vec3, count: int, bounds: Bounds) -> float:
-    """The value, safe for the other sectors; at least the distance to the drum."""
+    """Return the value, limited by the other sectors; at least the distance to the cylinder."""
     if count < 2:
         return max(d, to_drum(p, bounds))
     sector = sector_of(bounds)
@@ -157,7 +166,7 @@ def repeated_polar_value(d: float, p: vec3, count: int, bounds: Bounds) -> float
 
 @func
 def sector_slope(slope: float, bounds: Bounds, free: float) -> float:
-    """The child's slope, or 1; none where its sector is larger than ``free``."""
+    """Return the child's slope, or 1; no bound if its sector is larger than ``free``."""
     sector = sector_of(bounds)
     outer = outer_radius(bounds)
     crowded = sector.half > free or sector.inner <= 1e-3 * outer or outer > ENDLESS
@@ -166,7 +175,7 @@ def sector_slope(slope: float, bounds: Bounds, free: float) -> float:
 
 @func
 def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
-    """The child's, where it fits between the half-planes around it."""
+    """Return the child's slope if the child fits between the half planes of its sector."""
     if count < 2:
         return max(slope, 1.0)
     return sector_slope(slope, bounds, PI / float(count) * (1.0 - 2.0 * ROOM))
@@ -179,12 +188,12 @@ def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
 def nearest_polar(
     field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> Nearest:
-    """The nearest of the copies next to the point; safe for those that are not evaluated."""
+    """Return the nearest of the copies around the point, limited by those not evaluated."""
     sector = sector_of(bounds)
     index = polar_index(p, count, sector)
     own = turned_by(p, index, count)
     u = sector.direction
-    # the next sector on the point's side is turned the same way
+    # the next sector on the point's side is rotated in the same direction
     toward = select(own.x * u.y - own.z * u.x < 0.0, -1.0, 1.0)
     nearest = UNBOUNDED
     chosen = index
@@ -209,7 +218,7 @@ def nearest_polar(
 def repeated_polar_around(
     field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> float:
-    """The nearest of the copies next to the point."""
+    """Return the distance to the nearest of the copies around the point."""
     return nearest_polar(field, p, count, bounds, neighbours).distance
 
 
@@ -217,25 +226,25 @@ def repeated_polar_around(
 def repeated_polar_around_site(
     field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> Site:
-    """The place in the nearest copy."""
+    """Return the place in the nearest copy."""
     return nearest_polar(field, p, count, bounds, neighbours).site
 
 
 @func
 def repeated_polar_around_slope(slope: float, bounds: Bounds, count: int, neighbours: int) -> float:
-    """The child's, where the evaluated copies are nearer than the others."""
+    """Return the child's slope if the evaluated copies are nearer than others."""
     reach = 1.0 if neighbours == 1 else 1.5
     free = min(2.0 * PI / float(count) * reach * (1.0 - LEAD), 0.49 * PI)
     return sector_slope(slope, bounds, free)
 
 
 def polar_requirement(count: int) -> str | None:
-    """Why there would be no copies, or None."""
+    """Return why the count is invalid, or None."""
     return None if count >= 1 else "count must be 1 or more"
 
 
 def polar_around_requirement(count: int, neighbours: int) -> str | None:
-    """Why so many copies cannot be evaluated, or None."""
+    """Return why the count and the neighbours are invalid, or None."""
     if neighbours not in (1, 2):
         return "neighbours must be 0, 1 or 2"
     return None if count > neighbours else f"count must be {neighbours + 1} or more"

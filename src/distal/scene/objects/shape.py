@@ -204,7 +204,8 @@ class Shape(Placed):
         Args:
             center: The point.
             radius: Distance from the point beyond which nothing moves.
-            strength: How strongly the shape is pulled.
+            strength: Strength of the pull: near the point, the displacement as a fraction of the
+                distance.
         """
         return self._with(deform.ATTRACT, center, radius, strength)
 
