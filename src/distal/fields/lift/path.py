@@ -55,7 +55,7 @@ def direction(way: vec3) -> vec3:
 
 @func
 def upright(ahead: vec3, up: vec3) -> vec3:
-    """Return the outline's y axis on a path in direction ``ahead``: as near to ``up`` as possible."""
+    """Return the outline's y axis for a path direction: as near to ``up`` as possible."""
     across = up - dot(up, ahead) * ahead
     other = SIDEWAYS - ahead.x * ahead
     return direction(select(length(across) > PARALLEL, across, other))

@@ -68,7 +68,7 @@ def corner_angle(direction: vec2, corner: vec2) -> float:
 def sector_of(bounds: Bounds) -> Sector:
     """Return the sector of the child's box.
 
-    Its half angle is pi or more if the axis goes through the box.
+    Its half angle is pi if the axis goes through the box.
     """
     low, high = bounds.low.xz, bounds.high.xz
     middle = 0.5 * low + 0.5 * high

@@ -144,7 +144,7 @@ def capped_cone_between(
     Args:
         p: Point.
         start: Centre of one end.
-        end: Centre of the other.
+        end: Centre of the other end.
         start_radius: Radius at ``start``.
         end_radius: Radius at ``end``.
 

@@ -91,7 +91,7 @@ def cylinder_between(
     Args:
         p: Point.
         start: Centre of one end.
-        end: Centre of the other.
+        end: Centre of the other end.
         radius: Radius.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).

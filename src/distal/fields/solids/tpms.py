@@ -83,10 +83,10 @@ def gyroid(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
 
@@ -113,10 +113,10 @@ def schwarz_p(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Hermann Schwarz (1865), for the surface; its nodal equation.
 
@@ -143,10 +143,10 @@ def diamond(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Hermann Schwarz (1865), for the surface; its nodal equation.
 
@@ -175,10 +175,10 @@ def neovius(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Edvard Neovius (1883), for the surface; its nodal equation.
 
@@ -205,10 +205,10 @@ def lidinoid(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Sven Lidin and Stefan Larsson (1990), for the surface; its nodal equation.
 
@@ -240,10 +240,10 @@ def split_p(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: the nodal equation in use among makers of lattices.
 
@@ -276,10 +276,10 @@ def iwp(
 
     Args:
         p: Point.
-        cell_size: Edge of the cube that repeats.
-        thickness: Of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved to its outer side.
-        solid: The solid inside the surface instead of a sheet.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
 

@@ -114,7 +114,7 @@ def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float)
     if not isinstance(claimed, float):  # computed from parameters: only ``validation`` checks it
         return
     h = STEP * size
-    # Along the direction in which the value changes fastest, the change is at most the slope.
+    # In the direction in which the value changes fastest, its change per distance is at most the slope.
     way = np.stack([value(p + h * axis) - here for axis in np.eye(p.shape[1])], axis=1)
     way = np.nan_to_num(way, posinf=0.0, neginf=0.0)
     way /= np.maximum(np.linalg.norm(way, axis=1), 1e-30)[:, None]
@@ -135,7 +135,7 @@ def _box(node: Node) -> tuple[Points, Points]:
 
 
 def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
-    """Warn of a picture without any light, and say what may cause it.
+    """Warn of a completely black picture, and name the likely cause.
 
     Raises:
         SceneValueError: The camera is inside a solid.

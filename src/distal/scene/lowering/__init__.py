@@ -1,1 +1,1 @@
-"""Lowering: trees of shapes, and scenes, to functions of the IR."""
+"""Lowering of scenes and of trees of shapes to functions of the IR."""

@@ -62,7 +62,7 @@ def _computed(node: Node) -> KnownBounds:
     inner = [known_bounds_of(child) for child in node.children]
     if len(inner) < 2:
         return _call(node, inner)
-    # Many are joined two by two, as they are in a program.
+    # Combine many children pairwise, as in a program.
     result = inner[0]
     for other in inner[1:]:
         result = _call(node, [result, other])
@@ -78,7 +78,7 @@ def _call(node: Node, inner: Sequence[KnownBounds]) -> KnownBounds:
     args += [_plain(number.value) for number in node.numbers.values()]
     doubles = tuple(np.asarray(arg, np.float64)[None] for arg in args)
     found = executor().call(_bounds_step(node, len(inner)), doubles, {}, device="reference")
-    # A shape without numbers is a function of nothing: its results have no axis of rows.
+    # A shape without numbers is a function without arguments: its results have no axis of rows.
     first = [np.asarray(part, np.float64)[0 if doubles else ...].tolist() for part in found]
     slope, divisor, low, high, growth, side_growth = first
     return KnownBounds(slope, divisor, tuple(low), tuple(high), growth, side_growth)

@@ -155,7 +155,7 @@ def _pair_value(table: Any, first: str, second: str) -> Any:
         return next((pair.Value1 for pair in pairs if pair.SecondGlyph == second), None)
     before = table.ClassDef1.classDefs.get(first, 0)
     after = table.ClassDef2.classDefs.get(second, 0)
-    # Class 0 is every glyph that the table does not name: a later table may know it.
+    # Class 0 contains all glyphs that the table does not name; a later table may name them.
     return table.Class1Record[before].Class2Record[after].Value1 if after else None
 
 

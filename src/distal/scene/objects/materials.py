@@ -275,7 +275,7 @@ def as_material(value: Any, place: Span | None = None) -> Material:
     return _declared(MATERIALS.members["matte"], {"color": value}, place)
 
 
-# The kinds of materials
+# Materials with a name
 
 
 def _declared(declaration: Declaration, given: Mapping[str, Any], place: Span | None) -> Material:

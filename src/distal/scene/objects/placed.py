@@ -67,7 +67,7 @@ class Placed(BaseShape):
         return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))
 
     def translate(self, *offset: Any, **parts: Any) -> Self:
-        """Move: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
+        """Move by a vector: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
         return self._with(placing.TRANSLATE, *offset, **parts)
 
     def scale(self, *factors: Any, **parts: Any) -> Self:
@@ -141,7 +141,10 @@ class Placed(BaseShape):
         return self._with(grid.REPEAT_LIMITED, *spacing, **counts)
 
     def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
-        """Repeat ``count`` times about the y axis (flat: about the origin)."""
+        """Repeat ``count`` times about the y axis (a flat shape: about the origin).
+
+        With ``neighbours`` of 1 or more, a copy may extend into adjacent sectors.
+        """
         if neighbours:
             return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=neighbours)
         return self._with(polar.REPEAT_POLAR, count=count)

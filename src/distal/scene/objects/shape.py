@@ -107,7 +107,7 @@ class Shape(Placed):
         return self._with(placing.SHEAR, xy, xz, yz)
 
     def repeat_half(self, *spacing: Any) -> Self:
-        """Repeat infinitely along +x, +y and +z."""
+        """Repeat infinitely along +x, +y and +z; ``spacing`` as for ``repeat``."""
         return self._with(grid.REPEAT_HALF, *spacing)
 
     def repeat_ring(self, *spacing: Any, count: Sequence[int]) -> Self:
@@ -290,7 +290,7 @@ class Shape(Placed):
         return self._joined(blends.PIPE, other, k=radius)
 
     def groove(self, other: BaseShape, depth: Any, width: Any) -> Self:
-        """Cut a groove of rectangular profile where the surfaces cross.
+        """Cut a groove with a rectangular profile where the surfaces cross.
 
         Args:
             other: The shape whose surface the groove follows.
@@ -300,7 +300,7 @@ class Shape(Placed):
         return self._joined(blends.GROOVE, other, depth=depth, width=width)
 
     def tongue(self, other: BaseShape, depth: Any, width: Any) -> Self:
-        """Add a ridge of rectangular profile where the surfaces cross.
+        """Add a ridge with a rectangular profile where the surfaces cross.
 
         Args:
             other: The shape whose surface the ridge follows.

@@ -137,7 +137,7 @@ class Viewable:
 
 
 class _Elevation(Composed):
-    """The elevation of a scene's camera above what it looks at."""
+    """The elevation of a scene's camera above its target."""
 
     name = "elevation"
     signature = ()
