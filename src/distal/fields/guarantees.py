@@ -325,9 +325,20 @@ def primitive(
     estimate: bool = False,
     tier: int = 1,
 ) -> Callable[[F], F]:
-    """Declare the ``@func`` below as a shape of the library; see ``Primitive``.
+    """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
-    ``limits`` contains only limits that differ from ``USUAL_LIMITS``.
+    Args:
+        name: Name of the shape's class.
+        claims: The guarantees besides the bound on the slope.
+        slope: Bound on |gradient|.
+        bounds: The function of the box, or None for an infinite shape.
+        growth: Bound on the growth, or None for the default.
+        side_growth: Bound on the growth of the sides, or None for ``growth``.
+        limits: Only limits that differ from ``USUAL_LIMITS``.
+        requires: Returns why numbers contradict each other, or None.
+        signed: Whether the shape has an inside.
+        estimate: Whether the slope is an estimate.
+        tier: The tier in the catalogue.
     """
 
     def declare(distance: F) -> F:

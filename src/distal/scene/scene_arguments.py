@@ -71,12 +71,26 @@ def _ends(near: float, far: float) -> str | None:
 
 
 def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
-    """Return a checked count of the scene."""
+    """Return a checked count of the scene.
+
+    Args:
+        name: Name of the parameter.
+        value: The author's value.
+        limit: The limit of the count.
+        place: The author's line.
+    """
     return choice(value, Asked(name, "Scene", INT, limit, place=place))
 
 
 def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:
-    """Check that a choice is one of the known names."""
+    """Check that a choice is one of the known names.
+
+    Args:
+        what: The kind of choice, for messages.
+        name: The author's value.
+        known: The allowed names.
+        place: The author's line.
+    """
     if name not in known:
         refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
     return str(name)

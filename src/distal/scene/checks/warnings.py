@@ -49,6 +49,11 @@ _looked_at: WeakSet[Node] = WeakSet()
 def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
     """Check each of the author's functions in a shape, once per function.
 
+    Args:
+        shape: The shape.
+        params: Values of parameters by name; the others have their defaults.
+        time: Time in seconds.
+
     Raises:
         SceneValueError: A function returns NaN at all points.
     """
@@ -63,6 +68,11 @@ def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> No
     """Refuse a shape if parameters or the time leave an operator without a bound on its slope.
 
     Operators whose numbers do not change were checked on construction.
+
+    Args:
+        shape: The shape.
+        params: Values of parameters by name; the others have their defaults.
+        time: Time in seconds.
 
     Raises:
         SceneValueError: At the line of the innermost such operator.
@@ -114,7 +124,7 @@ def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float)
     if not isinstance(claimed, float):  # computed from parameters: only ``validation`` checks it
         return
     h = STEP * size
-    # In the direction in which the value changes fastest, its change per distance is at most the slope.
+    # In the direction of the fastest change, the change per distance is at most the slope.
     way = np.stack([value(p + h * axis) - here for axis in np.eye(p.shape[1])], axis=1)
     way = np.nan_to_num(way, posinf=0.0, neginf=0.0)
     way /= np.maximum(np.linalg.norm(way, axis=1), 1e-30)[:, None]
@@ -136,6 +146,12 @@ def _box(node: Node) -> tuple[Points, Points]:
 
 def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
     """Warn of a completely black picture, and name the likely cause.
+
+    Args:
+        scene: The scene.
+        picture: The rendered picture.
+        params: Values of parameters by name; the others have their defaults.
+        time: Time in seconds.
 
     Raises:
         SceneValueError: The camera is inside a solid.

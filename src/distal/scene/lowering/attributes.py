@@ -27,7 +27,13 @@ class Attribute(ABC):
 
     @abstractmethod
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """Return the attribute of the whole subtree, or None to descend into it."""
+        """Return the attribute of the whole subtree, or None to descend into it.
+
+        Args:
+            body: The statements to add to.
+            node: The root of the subtree.
+            site: The place at which the attribute is evaluated.
+        """
 
     @abstractmethod
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
@@ -35,7 +41,13 @@ class Attribute(ABC):
 
     @abstractmethod
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
-        """Return the attribute of faces cut by the subtree; None for that of the cut shape."""
+        """Return the attribute of faces cut by the subtree; None for that of the cut shape.
+
+        Args:
+            body: The statements to add to.
+            node: The root of the subtree that cuts.
+            site: The place at which the attribute is evaluated.
+        """
 
 
 class AttributePoint:

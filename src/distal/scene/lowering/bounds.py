@@ -78,7 +78,13 @@ class BoundsComposer:
         self._call = values.assembly.call
 
     def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
-        """Return the bounds of a subtree with these numbers."""
+        """Return the bounds of a subtree with these numbers.
+
+        Args:
+            body: The statements to add to.
+            node: The root of the subtree.
+            values: The numbers of the subtree.
+        """
         own, shares = self._values.split(node, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -129,7 +135,13 @@ class BoundsComposer:
     def given(
         self, body: StatementList, node: Node, shares: Sequence[Sequence[Expr]]
     ) -> dict[str, Expr]:
-        """Return the children's bounds, by the parameter names of an operator's functions."""
+        """Return the children's bounds, by the parameter names of an operator's functions.
+
+        Args:
+            body: The statements to add to.
+            node: The operator's node.
+            shares: The numbers of each child.
+        """
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
@@ -138,7 +150,14 @@ class BoundsComposer:
     def of_primitive(
         self, body: StatementList, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
     ) -> ShapeBounds:
-        """Return the bounds of a primitive with these numbers."""
+        """Return the bounds of a primitive with these numbers.
+
+        Args:
+            body: The statements to add to.
+            rule: The primitive.
+            own: The primitive's numbers, by name.
+            flat: Whether the shape lies in the plane.
+        """
         slope = self._number(body, "slope", rule.slope, own)
         whole = everywhere2 if flat else everywhere
         bounds = body.let("bounds", self._call(rule.bounds or whole, own))

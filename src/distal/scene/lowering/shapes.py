@@ -79,7 +79,13 @@ class ShapeComposer:
     # Distances
 
     def field(self, node: Node, values: Sequence[Expr], cell: Expr) -> FunctionRef:
-        """Return a subtree's distance as a function of the point alone."""
+        """Return a subtree's distance as a function of the point alone.
+
+        Args:
+            node: The root of the subtree.
+            values: The numbers of the subtree.
+            cell: The index of the repetition.
+        """
         name, captures = self._function(node, values, cell)
         point = VEC2 if node.flat else VEC3
         return FunctionRef(name, captures, FunctionType((point,), FLOAT))
@@ -176,13 +182,25 @@ class ShapeComposer:
     def moved(
         self, body: StatementList, rule: Operator, given: Mapping[str, Expr]
     ) -> tuple[Expr, Expr]:
-        """Return the point and the cell at which an operator's children are evaluated."""
+        """Return the point and the cell at which an operator's children are evaluated.
+
+        Args:
+            body: The statements to add to.
+            rule: The operator.
+            given: The values for the operator's functions, by name.
+        """
         if rule.point is None:
             return given["p"], given["cell"]
         return self.site(body, self.call(rule.point, given), given["cell"])
 
     def site(self, body: StatementList, place: Expr, cell: Expr) -> tuple[Expr, Expr]:
-        """Return the point and the cell of a place that an operator returned."""
+        """Return the point and the cell of a place that an operator returned.
+
+        Args:
+            body: The statements to add to.
+            place: The returned value: a point or a ``Site``.
+            cell: The index of the repetition around the operator.
+        """
         if isinstance(place.type, Struct):
             site = body.let("site", place)
             return field_of(site, "p"), field_of(site, "cell")

@@ -69,7 +69,13 @@ def cube_texture(images: Any, what: str, place: Span | None) -> TextureCube:
 
 
 def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[np.float32]:
-    """Return the content of a texture: float32 (height, width, 4), top row first."""
+    """Return the content of a texture: float32 (height, width, 4), top row first.
+
+    Args:
+        texture: The texture.
+        what: The name in messages of the object that uses it.
+        place: The author's line.
+    """
     try:
         return texels(texture.data, TextureShape.FLAT)[::-1]
     except LoadError as error:
@@ -78,7 +84,13 @@ def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[
 
 
 def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
-    """Return the linear light of a picture: float32 (height, width, 4), top row first."""
+    """Return the linear light of a picture: float32 (height, width, 4), top row first.
+
+    Args:
+        image: A file, an array or a ``Picture``.
+        what: The name in messages of the object that uses it.
+        place: The author's line.
+    """
     if isinstance(image, Picture):
         return image.linear
     encoded = isinstance(image, str | os.PathLike)

@@ -67,7 +67,7 @@ class Placed(BaseShape):
         return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))
 
     def translate(self, *offset: Any, **parts: Any) -> Self:
-        """Move by a vector: ``translate(1, 0, 0)``, ``translate((1, 0, 0))``, ``translate(x=1)``."""
+        """Move: ``translate(1, 0, 0)``, ``translate((1, 0, 0))`` or ``translate(x=1)``."""
         return self._with(placing.TRANSLATE, *offset, **parts)
 
     def scale(self, *factors: Any, **parts: Any) -> Self:

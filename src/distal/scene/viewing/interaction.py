@@ -85,7 +85,13 @@ def notched(zoom: float, notches: float) -> float:
 
 
 def notches_of(delta: float, unit: int, is_pinch: bool) -> float:
-    """Return the notches of a wheel event whose unit is pixels (0), lines (1) or pages (2)."""
+    """Return the notches of a wheel event whose unit is pixels (0), lines (1) or pages (2).
+
+    Args:
+        delta: Movement of the wheel, in the event's unit.
+        unit: Unit of the event, as in browsers: 0, 1 or 2.
+        is_pinch: Whether the event is a pinch on a touch pad.
+    """
     return delta * NOTCHES_PER_UNIT[unit] * (NOTCHES_PER_PINCH if is_pinch else 1.0)
 
 
@@ -102,6 +108,12 @@ def advanced(time: float, passed: float, start: float, duration: float | None) -
     """Return the time after ``passed`` seconds.
 
     A loop restarts at its end; a time without a duration stops at ``LATEST_S``.
+
+    Args:
+        time: Time before, in seconds.
+        passed: Seconds that have passed.
+        start: Start of the time, in seconds.
+        duration: Length of the loop in seconds, or None.
     """
     if duration is None:
         return min(time + passed, max(time, LATEST_S))
@@ -118,7 +130,13 @@ def first_time(start: float, duration: float | None) -> float:
 
 
 def last_time(time: float, start: float, duration: float | None) -> float:
-    """Return the right end of the timeline: ten seconds, doubled until the time is within it."""
+    """Return the right end of the timeline: ten seconds, doubled until the time is within it.
+
+    Args:
+        time: Current time, in seconds.
+        start: Start of the time, in seconds.
+        duration: Length of the loop in seconds, or None.
+    """
     if duration is not None:
         return start + duration
     low = first_time(start, duration)
@@ -129,7 +147,13 @@ def last_time(time: float, start: float, duration: float | None) -> float:
 
 
 def jumped(time: float, start: float, duration: float | None) -> float:
-    """Return the nearest time that a person can choose."""
+    """Return the nearest time that a person can choose.
+
+    Args:
+        time: Requested time, in seconds.
+        start: Start of the time, in seconds.
+        duration: Length of the loop in seconds, or None.
+    """
     high = LATEST_S if duration is None else start + duration
     return clamped(time, first_time(start, duration), high)
 
@@ -157,7 +181,13 @@ POINT_STEP: Final = 0.05
 
 
 def position_count(low: float, high: float, step: float | None) -> float:
-    """Return the number of the last position of a slider, which starts at 0."""
+    """Return the number of the last position of a slider, which starts at 0.
+
+    Args:
+        low: Start of the range.
+        high: End of the range.
+        step: The slider's step, or None.
+    """
     # If the step does not divide the range, the last step is shorter and ends at the limit.
     return POSITIONS if step is None else float(math.ceil((high - low) / step - 1e-6))
 
