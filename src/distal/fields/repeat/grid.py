@@ -107,7 +107,7 @@ def several_cells(
 ) -> Operator:
     """Declare a repetition that also evaluates the child in cells around the nearest.
 
-    Its number ``neighbours`` is 1 or 2. Takes the same arguments as ``one_cell``.
+    Its number ``neighbours`` is 1 or 2. Arguments as for ``one_cell``.
     """
     return operator(
         name,

@@ -170,7 +170,7 @@ class ShapeComposer:
     ) -> tuple[dict[str, Expr], list[Sequence[Expr]]]:
         """Return the values for a node's functions by name, and the numbers of each child.
 
-        Takes the same arguments as ``distance``.
+        Arguments as for ``distance``.
         """
         own, shares = self.values.split(node, values)
         given = {**own, "p": p, "cell": cell}

@@ -115,7 +115,7 @@ class BaseShape(Composed, Presentable):
     ) -> Any:
         """Return the gradient of the distance at points, an array of the shape of ``points``.
 
-        Takes the same arguments as a call of the shape.
+        Arguments as for a call of the shape.
         """
         return self._asked(self._gradient, points, params, time)
 
@@ -249,7 +249,7 @@ class BaseShape(Composed, Presentable):
     ) -> Self:
         """Intersect with other shapes; also written ``a & b``.
 
-        Takes the same arguments as ``union``.
+        Arguments as for ``union``.
         """
         joined: Self = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
         return joined
@@ -259,7 +259,7 @@ class BaseShape(Composed, Presentable):
     ) -> Self:
         """Subtract other shapes; also written ``a - b``.
 
-        Takes the same arguments as ``union``.
+        Arguments as for ``union``.
         """
         joined: Self = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
         return joined

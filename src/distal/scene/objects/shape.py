@@ -212,7 +212,7 @@ class Shape(Placed):
     def repel(self, center: Any, radius: Any, strength: Any) -> Self:
         """Push the part within a radius of a point away from this point.
 
-        Takes the same arguments as ``attract``.
+        Arguments as for ``attract``.
         """
         return self._with(deform.REPEL, center, radius, strength)
 
