@@ -40,7 +40,7 @@ UP: Final = vec3(0.0, 1.0, 0.0)
 START: Final = vec3(-0.8, 0.0, 0.0)
 CONTROL: Final = vec3(0.0, 0.0, 1.0)
 END: Final = vec3(0.8, 0.0, 0.0)
-# Two directions that differ by less count as equal.
+# If the part of ``up`` across the path is shorter than this, ``up`` counts as parallel to the path.
 PARALLEL: Final = 1e-4
 # The sharpest bend that is allowed, as the cosine of half its angle: 157 degrees.
 SHARPEST: Final = 0.2
@@ -162,7 +162,10 @@ def swept_along(
 def sweep_slope(
     slope: float, bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]
 ) -> float:
-    """Return the outline's slope."""
+    """Return the outline's slope, at least 1; no bound if a bend is too sharp.
+
+    There is also no bound for an infinite outline.
+    """
     fits = sharpest_bend(pieces, point_at) > SHARPEST and circle_around(bounds) < ENDLESS
     return select(fits, max(slope, 1.0), UNBOUNDED)
 

@@ -83,7 +83,7 @@ def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:
     """Ellipsoid; outside a lower bound, close to the distance near the surface.
 
     Outside, the value is the convex function ``|p / radii| - 1`` divided by its own slope. Inside,
-    this would jump at the centre, so the divisor changes gradually to that of the smallest radius.
+    this would jump at the centre, so the factor changes gradually to the smallest radius.
 
     Args:
         p: Point.
