@@ -33,7 +33,7 @@ from distal.scene.objects.lights import Light as _Light
 __version__: str
 
 class GradientBackground(_DeclaredBackground):
-    """One colour straight down, another straight up, evenly between by height.
+    """One colour straight down and another straight up, blended linearly by height.
 
     Args:
         bottom: Colour straight down.
@@ -50,14 +50,14 @@ class Sky(_DeclaredSurroundings):
     """A clear sky with a sun, and ground below the horizon.
 
     Args:
-        sun: To the sun; of any length.
+        sun: Direction to the sun; of any length.
         sun_color: The sun's colour.
-        sun_intensity: How bright a white matte surface shows that faces the sun.
-        sun_angle: How wide the sun looks, in radians.
+        sun_intensity: The value that a white matte surface shows if it faces the sun.
+        sun_angle: Angular size of the sun, in radians.
         zenith: Colour overhead.
         horizon: Colour along the horizon.
         ground: Colour below.
-        intensity: Brightness of all but the sun.
+        intensity: Brightness of everything but the sun.
         light: Whether it lights the scene whose background it is. Among a scene's lights it always
             does.
 
@@ -81,16 +81,16 @@ class Sky(_DeclaredSurroundings):
     ) -> None: ...
 
 class Camera(_PlacedCamera):
-    """A camera that looks from one place at another, with perspective.
+    """A perspective camera at one point that looks at another.
 
     Args:
-        position: Where it is.
-        target: What it looks at.
-        up: Which way is up in the picture.
+        position: Position of the camera.
+        target: The point that it looks at.
+        up: The direction that is up in the picture.
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
         fov_deg: The same in degrees.
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -109,18 +109,19 @@ class Camera(_PlacedCamera):
     ) -> None: ...
 
 class FisheyeCamera(_BaseCamera):
-    """A camera that sees half of the world around, or more, in a circle.
+    """A camera that sees half of its surroundings, or more, in a circle.
 
-    The angle from the view grows evenly from the middle of the picture (equidistant).
+    The angle from the viewing direction is proportional to the distance from the middle of the
+    picture (equidistant).
 
     Args:
-        position: Where it is.
-        target: What it looks at.
-        up: Which way is up in the picture.
+        position: Position of the camera.
+        target: The point that it looks at.
+        up: The direction that is up in the picture.
         fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
             (default: 180 degrees).
         fov_deg: The same in degrees.
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -139,17 +140,17 @@ class FisheyeCamera(_BaseCamera):
     ) -> None: ...
 
 class OrbitCamera(_BaseCamera):
-    """A camera on a sphere around what it looks at.
+    """A camera on a sphere around its target.
 
     Args:
         distance: From the target.
         azimuth: Around the y axis, in radians; 0 is on the side of +z, pi/2 on that of +x.
         elevation: Up, in radians; pi/2 is straight above.
-        target: What it looks at.
+        target: The point that it looks at.
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
         fov_deg: The same in degrees.
-        mirror: Left and right swapped, as left-handed systems see it.
+        mirror: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range.
@@ -169,14 +170,14 @@ class OrbitCamera(_BaseCamera):
     ) -> None: ...
 
 class OrthographicCamera(_BaseCamera):
-    """A camera without perspective: what is far is as large as what is near.
+    """A camera without perspective: far objects appear as large as near ones.
 
     Args:
-        position: The middle of the picture; what lies behind it is not seen.
-        target: What it looks at.
-        up: Which way is up in the picture.
-        height: What the picture shows from bottom to top, in scene units.
-        mirror: Left and right swapped, as left-handed systems see it.
+        position: The point in the middle of the picture; what lies behind it is not seen.
+        target: The point that it looks at.
+        up: The direction that is up in the picture.
+        height: Height of the visible area, in scene units.
+        mirror: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -194,15 +195,15 @@ class OrthographicCamera(_BaseCamera):
     ) -> None: ...
 
 class PanoramaCamera(_BaseCamera):
-    """A camera that sees all around: longitude to the right, latitude up (equirectangular).
+    """A camera that sees all directions: longitude to the right, latitude up (equirectangular).
 
     A picture twice as wide as high shows everything.
 
     Args:
-        position: Where it is.
-        target: What is in the middle of the picture.
-        up: Which way is up in the picture.
-        mirror: Left and right swapped, as left-handed systems see it.
+        position: Position of the camera.
+        target: The point in the middle of the picture.
+        up: The direction that is up in the picture.
+        mirror: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -219,10 +220,10 @@ class PanoramaCamera(_BaseCamera):
     ) -> None: ...
 
 class AmbientLight(_Light):
-    """The same light from everywhere.
+    """The same light from every direction.
 
     Args:
-        intensity: How bright; a white matte surface shows this much.
+        intensity: Brightness; a white matte surface shows this value.
         color: Its colour.
 
     Raises:
@@ -233,13 +234,13 @@ class AmbientLight(_Light):
     def __init__(self, intensity: Number = 0.1, color: Color = ...) -> None: ...
 
 class DistantLight(_Light):
-    """Light from one side, equally bright everywhere: the sun.
+    """Light from one direction, equally bright everywhere, such as the sun.
 
     Args:
         direction: Towards the light, of any length.
-        intensity: How bright a white matte surface shows that faces it.
+        intensity: The value that a white matte surface shows if it faces the light.
         color: Its colour.
-        angle: How wide it looks, in radians: what softens its shadows (the sun: 0.0093).
+        angle: Its angular size in radians, which softens shadows (the sun: 0.0093).
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -255,13 +256,13 @@ class DistantLight(_Light):
     ) -> None: ...
 
 class HemisphereLight(_Light):
-    """Light of one colour from the upper half of space, of another from the lower.
+    """Light of one colour from the upper half of space and of another from the lower half.
 
     Args:
         sky: Colour of the upper half.
         ground: Colour of the lower half.
         intensity: A factor on both.
-        up: Where the upper half is, of any length.
+        up: Direction of the upper half, of any length.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -277,13 +278,13 @@ class HemisphereLight(_Light):
     ) -> None: ...
 
 class PointLight(_Light):
-    """Light from one point, fading with the square of the distance.
+    """Light from one point, falling off with the square of the distance.
 
     Args:
-        position: Where it is.
-        intensity: How bright a white matte surface shows that faces it at distance 1.
+        position: Position of the light.
+        intensity: The value that a white matte surface shows if it faces the light at distance 1.
         color: Its colour.
-        radius: How large it is: what softens its shadows.
+        radius: Radius of the light, which softens shadows.
 
     Raises:
         ValueError: A number is out of its range.
@@ -302,13 +303,13 @@ class SpotLight(_Light):
     """A point light that shines in a cone.
 
     Args:
-        position: Where it is.
-        target: What it points at.
+        position: Position of the light.
+        target: The point that it points at.
         intensity: As for a point light.
         color: Its colour.
-        angle: The whole cone's opening, in radians; below pi.
-        softness: Share of half the angle over which the rim fades: 0 sharp, 1 from the axis on.
-        radius: How large it is: what softens its shadows.
+        angle: The opening of the whole cone, in radians; below pi.
+        softness: Fraction of half the angle over which the rim fades; 0: sharp, 1: from the axis.
+        radius: Radius of the light, which softens shadows.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -327,11 +328,11 @@ class SpotLight(_Light):
     ) -> None: ...
 
 def emissive(color: Color | Varying = ..., strength: Number | Varying = 1.0) -> Material:
-    """A material that shines by itself and shows nothing else.
+    """A material that emits light and reflects none.
 
     Args:
-        color: What it gives off.
-        strength: A factor on it; beyond 1 too.
+        color: Colour of the emitted light.
+        strength: Factor on the colour; may be above 1.
 
     Raises:
         ValueError: A number is out of its range.
@@ -344,15 +345,15 @@ def glossy(
     specular: Number | Varying = 0.5,
     roughness: Number | Varying = 0.0,
 ) -> Material:
-    """A material that scatters a part of the light and mirrors a part, alike from all sides.
+    """A material that scatters part of the light and mirrors part, independent of the angle.
 
-    The shares add up to at most 1.
+    The weights add up to at most 1.
 
     Args:
-        color: What it scatters.
-        diffuse: Share of light scattered.
-        specular: Share of light mirrored.
-        roughness: 0 mirrors sharply, 1 hardly at all.
+        color: Fraction of the light that it scatters.
+        diffuse: Weight of scattered light.
+        specular: Weight of mirrored light.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
 
     Raises:
         ValueError: A number is out of its range.
@@ -360,10 +361,10 @@ def glossy(
     """
 
 def matte(color: Color | Varying = ...) -> Material:
-    """A material that scatters light evenly to all sides: plaster, paper.
+    """A material that scatters light evenly in all directions: plaster, paper.
 
     Args:
-        color: What it scatters.
+        color: Fraction of the light that it scatters.
 
     Raises:
         ValueError: A number is out of its range.
@@ -371,11 +372,11 @@ def matte(color: Color | Varying = ...) -> Material:
     """
 
 def metal(color: Color | Varying = ..., roughness: Number | Varying = 0.2) -> Material:
-    """A metal: it mirrors in its own colour, white at the rim.
+    """A metal: it mirrors in its own colour, and white at grazing angles.
 
     Args:
-        color: What it mirrors, seen straight on.
-        roughness: 0 mirrors sharply, 1 hardly at all.
+        color: Colour of the mirrored light, seen straight on.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
 
     Raises:
         ValueError: A number is out of its range.
@@ -386,7 +387,7 @@ def mirror(color: Color | Varying = ...) -> Material:
     """A perfect mirror.
 
     Args:
-        color: What it mirrors.
+        color: Colour of the mirrored light.
 
     Raises:
         ValueError: A number is out of its range.
@@ -398,11 +399,11 @@ def plastic(
     roughness: Number | Varying = 0.2,
     ior: Number | Varying = 1.5,
 ) -> Material:
-    """A scattering material under a clear coat: it mirrors more the flatter light comes.
+    """A scattering material under a clear coat, which mirrors more at grazing angles.
 
     Args:
-        color: What it scatters.
-        roughness: Of the coat; 0 mirrors sharply.
+        color: Fraction of the light that it scatters.
+        roughness: Roughness of the coat; 0 mirrors sharply.
         ior: Index of refraction of the coat.
 
     Raises:
@@ -411,12 +412,12 @@ def plastic(
     """
 
 def by_cell(seed: Number | Varying = 0.0) -> Pattern:
-    """A colour of its own for each repetition of a shape that is painted, then repeated.
+    """A different colour for each repetition of a shape that is painted first, then repeated.
 
-    It has any hue, and is neither pale nor dark.
+    The colour has any hue, and is neither pale nor dark.
 
     Args:
-        seed: Any number; another gives other colours.
+        seed: Any number; another seed selects other colours.
 
     Raises:
         ValueError: A number is out of its range.
@@ -435,7 +436,7 @@ def checker(
     b: Color | Varying | Material = "#222",
     size: Number | Varying = 1.0,
 ) -> Material:
-    """Cubes of two colours or materials in turn; on a flat floor, squares.
+    """Cubes of two alternating colours or materials; squares on a flat floor.
 
     Args:
         a: A colour, a pattern, or a material.
@@ -461,13 +462,13 @@ def gradient(
     start: Vector | Varying = ...,
     end: Vector | Varying = ...,
 ) -> Material:
-    """One colour or material that becomes another along a line.
+    """A blend from one colour or material to another along a line.
 
     Args:
         a: A colour, a pattern, or a material: up to ``start``.
         b: The other: from ``end`` on.
-        start: Where the change begins.
-        end: Where it is complete.
+        start: Where the blend starts.
+        end: Where the blend is complete.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -493,9 +494,9 @@ def noise(
     Args:
         a: A colour, a pattern, or a material.
         b: The other.
-        size: How large the largest clouds are.
-        octaves: How many layers of clouds, each half as large and half as strong as the one before;
-            fixed when compiled.
+        size: Size of the largest clouds.
+        octaves: Number of layers of clouds, each half as large and half as strong as the one
+            before; a constant at compile time.
 
     Raises:
         ValueError: A number is out of its range.
@@ -513,10 +514,10 @@ def palette(
 
     Args:
         t: A pattern that gives a number, or a number.
-        base: The colour in the middle.
-        amplitude: How far each part swings.
-        frequency: How often each part swings as t goes from 0 to 1.
-        phase: Where in its swing each part begins.
+        base: The mean colour.
+        amplitude: Amplitude of each component.
+        frequency: Number of periods of each component as t goes from 0 to 1.
+        phase: Phase of each component, as a fraction of a period.
 
     Raises:
         ValueError: A number is out of its range.
@@ -539,13 +540,13 @@ def radial_gradient(
     center: Vector | Varying = ...,
     radius: Number | Varying = 1.0,
 ) -> Material:
-    """One colour or material that becomes another with the distance from a point.
+    """A blend from one colour or material to another with the distance from a point.
 
     Args:
         a: A colour, a pattern, or a material: at the centre.
         b: The other: from ``radius`` on.
-        center: Where it begins.
-        radius: Where the change is complete.
+        center: Where the blend starts.
+        radius: Distance at which the blend is complete.
 
     Raises:
         ValueError: A number is out of its range.
@@ -566,13 +567,13 @@ def stripes(
     size: Number | Varying = 1.0,
     direction: Vector | Varying = ...,
 ) -> Material:
-    """Layers of two colours or materials in turn.
+    """Layers of two alternating colours or materials.
 
     Args:
         a: A colour, a pattern, or a material.
         b: The other.
-        size: How thick one layer is.
-        direction: Across the layers.
+        size: Thickness of one layer.
+        direction: Direction perpendicular to the layers.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -593,13 +594,13 @@ def waves(
     size: Number | Varying = 1.0,
     direction: Vector | Varying = ...,
 ) -> Material:
-    """Two colours or materials going smoothly from one to the other and back.
+    """A smooth alternation between two colours or materials.
 
     Args:
         a: A colour, a pattern, or a material.
         b: The other.
-        size: From one crest to the next.
-        direction: Across the waves.
+        size: Distance from one crest to the next.
+        direction: Direction across the crests.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -607,12 +608,12 @@ def waves(
     """
 
 class Annulus(Shape2D):
-    """Ring all around."""
+    """Full ring, centred at the origin."""
 
     def __init__(self, radius: Number = 0.75, thickness: Number = 0.25) -> None: ...
 
 class Arc(Shape2D):
-    """Part of a ring with round ends, around the y axis."""
+    """Arc of a ring with round ends, symmetric about the y axis."""
 
     def __init__(
         self,
@@ -622,7 +623,7 @@ class Arc(Shape2D):
     ) -> None: ...
 
 class ArcCam(Shape2D):
-    """A cam with round flanks that turns about the origin, its nose up."""
+    """Cam with convex flanks that rotates about the origin, its nose at the top."""
 
     def __init__(
         self,
@@ -633,7 +634,7 @@ class ArcCam(Shape2D):
     ) -> None: ...
 
 class ArchimedeanSpiral(Shape2D):
-    """A line that winds outwards by the same amount each turn, counterclockwise from the x axis."""
+    """Spiral line with a constant distance between turns, counterclockwise from the x axis."""
 
     def __init__(
         self,
@@ -644,12 +645,12 @@ class ArchimedeanSpiral(Shape2D):
     ) -> None: ...
 
 class BccLattice(Shape):
-    """Struts from the corners of cubes to their middles (body-centred cubic)."""
+    """Infinite lattice of struts from the corners of cubes to their middles (body-centred cubic)."""
 
     def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
 
 class BezierTube(Shape):
-    """A round tube along a quadratic Bézier curve."""
+    """Round tube along a quadratic Bézier curve."""
 
     @overload
     def __init__(
@@ -676,17 +677,17 @@ class BezierTube(Shape):
     ) -> None: ...
 
 class Blob(Shape):
-    """Ball with twelve round bumps, towards the vertices of an icosahedron."""
+    """Ball with twelve round bumps, in the directions of the vertices of an icosahedron."""
 
     def __init__(self, radius: Number = 0.75, height: Number = 0.2) -> None: ...
 
 class BlobbyCross(Shape2D):
-    """Four points on the axes, joined by parabolas that are drawn in toward the middle."""
+    """Star with four points on the axes, joined by concave parabolas."""
 
     def __init__(self, radius: Number = 0.6, depth: Number = 0.15) -> None: ...
 
 class Box(Shape):
-    """Box."""
+    """Box with sides along the axes, centred at the origin."""
 
     @overload
     def __init__(self, size: Vector | Number = ...) -> None: ...
@@ -696,7 +697,7 @@ class Box(Shape):
     def __init__(self, *, x: Number = ..., y: Number = ..., z: Number = ...) -> None: ...
 
 class BoxCheap(Shape):
-    """Box without a square root; outside, off the faces, the value is less than the distance."""
+    """Box without a square root; outside, next to edges and corners, a lower bound."""
 
     @overload
     def __init__(self, size: Vector | Number = ...) -> None: ...
@@ -706,7 +707,7 @@ class BoxCheap(Shape):
     def __init__(self, *, x: Number = ..., y: Number = ..., z: Number = ...) -> None: ...
 
 class BoxFrame(Shape):
-    """The twelve edges of a box as square beams."""
+    """The twelve edges of a box as beams with a square cross-section."""
 
     @overload
     def __init__(self, size: Vector | Number = ..., thickness: Number = 0.1) -> None: ...
@@ -730,12 +731,12 @@ class BoxFrame(Shape):
     ) -> None: ...
 
 class CappedCone(Shape):
-    """Upright cone with its tip cut off."""
+    """Upright truncated cone (frustum), centred at the origin."""
 
     def __init__(self, bottom: Number = 0.6, top: Number = 0.3, height: Number = 1.0) -> None: ...
 
 class CappedConeBetween(Shape):
-    """Cut cone whose ends are centred at two points."""
+    """Truncated cone (frustum) whose ends are centred at two points."""
 
     @overload
     def __init__(
@@ -760,17 +761,17 @@ class CappedConeBetween(Shape):
     ) -> None: ...
 
 class CappedTorus(Shape):
-    """Part of a ring around the y axis, with round ends, symmetric about the x axis."""
+    """Arc of a ring around the y axis, with round ends, symmetric about the x axis."""
 
     def __init__(self, angle: Number = 2.0, major: Number = 0.75, minor: Number = 0.25) -> None: ...
 
 class Capsule(Shape):
-    """Upright round bar with half balls at its ends."""
+    """Upright capsule: a cylinder with half balls at its ends."""
 
     def __init__(self, radius: Number = 0.4, height: Number = 1.0) -> None: ...
 
 class CapsuleBetween(Shape):
-    """Round bar between two points, with half balls at its ends."""
+    """Capsule: a cylinder between two points, with half balls at its ends."""
 
     @overload
     def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.4) -> None: ...
@@ -788,7 +789,7 @@ class CapsuleBetween(Shape):
     ) -> None: ...
 
 class ChamferBox(Shape):
-    """Box with every edge cut off at 45 degrees; outside a lower bound."""
+    """Box with edges chamfered at 45 degrees; outside a lower bound."""
 
     @overload
     def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.1) -> None: ...
@@ -812,7 +813,7 @@ class ChamferBox(Shape):
     ) -> None: ...
 
 class ChamferedRectangle(Shape2D):
-    """Rectangle whose corners are cut off at 45 degrees."""
+    """Rectangle with corners chamfered at 45 degrees."""
 
     @overload
     def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.2) -> None: ...
@@ -822,22 +823,22 @@ class ChamferedRectangle(Shape2D):
     def __init__(self, *, x: Number = ..., y: Number = ..., chamfer: Number = 0.2) -> None: ...
 
 class Circle(Shape2D):
-    """Disc around the origin."""
+    """Disc, centred at the origin."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class CircleCross(Shape2D):
-    """A star of four points with sides of circles, hollow between the points."""
+    """Star with four points and concave sides made of circular arcs."""
 
     def __init__(self, width: Number = 1.0, height: Number = 0.8) -> None: ...
 
 class CircleLine(Shape):
-    """A circle without thickness around the y axis."""
+    """Circle without thickness around the y axis."""
 
     def __init__(self, radius: Number = 0.75) -> None: ...
 
 class CircleWave(Shape2D):
-    """A wave of arcs along the x axis without end, a crest at x = 0."""
+    """Infinite wave of circular arcs along the x axis, with a crest at x = 0."""
 
     def __init__(
         self,
@@ -847,12 +848,12 @@ class CircleWave(Shape2D):
     ) -> None: ...
 
 class Cone(Shape):
-    """Upright cone, its tip on top."""
+    """Upright cone with its tip at the top."""
 
     def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class ConeBetween(Shape):
-    """Cone from the centre of its base to its tip."""
+    """Cone given by the centre of its base and its tip."""
 
     @overload
     def __init__(self, start: Vector = ..., end: Vector = ..., radius: Number = 0.5) -> None: ...
@@ -870,12 +871,12 @@ class ConeBetween(Shape):
     ) -> None: ...
 
 class ConeCheap(Shape):
-    """Upright cone by its side and its base alone; beyond tip and rim less than the distance."""
+    """Upright cone as the maximum of side and base; a lower bound beyond tip and rim."""
 
     def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class ConvexPolyhedron(Shape):
-    """What planes leave of a box; beyond edges less than the distance."""
+    """Box cut by planes; a lower bound beyond edges."""
 
     @overload
     def __init__(self, planes: Points = ..., size: Vector | Number = ...) -> None: ...
@@ -899,22 +900,22 @@ class ConvexPolyhedron(Shape):
     ) -> None: ...
 
 class CoolS(Shape2D):
-    """The S of 14 straight lines."""
+    """The "cool S", a figure of 14 straight lines that pupils draw."""
 
     def __init__(self, height: Number = 1.0, thickness: Number = 0.03) -> None: ...
 
 class Corner(Shape):
-    """The eighth of space where x, y and z are all negative."""
+    """The octant of space where x, y and z are negative."""
 
     def __init__(self) -> None: ...
 
 class Cross(Shape2D):
-    """Two equal bars across each other."""
+    """Cross of two equal perpendicular bars."""
 
     def __init__(self, span: Number = 1.0, thickness: Number = 0.3) -> None: ...
 
 class CubicBezier(Shape2D):
-    """A line along a cubic Bézier curve, followed by pairs of parabolas."""
+    """Line along a cubic Bézier curve, approximated by pairs of parabolas."""
 
     @overload
     def __init__(
@@ -943,7 +944,7 @@ class CubicBezier(Shape2D):
     ) -> None: ...
 
 class CubicBezierTube(Shape):
-    """A round tube along a cubic Bézier curve, its radius changing evenly; made of straight pieces."""
+    """Round tube along a cubic Bézier curve, of linearly changing radius; straight pieces."""
 
     @overload
     def __init__(
@@ -978,17 +979,17 @@ class CubicBezierTube(Shape):
     ) -> None: ...
 
 class CubicLattice(Shape):
-    """Struts along the edges of cubes, a node at the origin."""
+    """Infinite lattice of struts along the edges of cubes, with a node at the origin."""
 
     def __init__(self, cell_size: Number = 0.5, radius: Number = 0.06) -> None: ...
 
 class CutDisk(Shape2D):
-    """What a level line leaves of a disc, above it."""
+    """Disc cut by a horizontal line; the part above the line."""
 
     def __init__(self, radius: Number = 1.0, height: Number = -0.3) -> None: ...
 
 class CutHollowSphere(Shape):
-    """Bowl: what lies below a level plane of a ball's wall, with a round rim."""
+    """Bowl: the wall of a ball below a horizontal plane, with a round rim."""
 
     def __init__(
         self,
@@ -998,12 +999,12 @@ class CutHollowSphere(Shape):
     ) -> None: ...
 
 class CutSphere(Shape):
-    """What a level plane leaves of a ball: the part above."""
+    """Ball cut by a horizontal plane; the part above the plane."""
 
     def __init__(self, radius: Number = 1.0, height: Number = 0.25) -> None: ...
 
 class Cylinder(Shape):
-    """Upright cylinder."""
+    """Upright cylinder, centred at the origin."""
 
     def __init__(self, radius: Number = 0.5, height: Number = 1.0) -> None: ...
 
@@ -1026,7 +1027,7 @@ class CylinderBetween(Shape):
     ) -> None: ...
 
 class DeathStar(Shape):
-    """Ball with a hollow that another ball above it leaves."""
+    """Ball with a hollow cut by another ball above it."""
 
     def __init__(
         self,
@@ -1036,7 +1037,7 @@ class DeathStar(Shape):
     ) -> None: ...
 
 class Diamond(Shape):
-    """Schwarz's diamond surface: tubes along the bonds of a diamond's atoms."""
+    """Schwarz D (diamond) surface: tubes along the bonds of the atoms in a diamond."""
 
     def __init__(
         self,
@@ -1047,17 +1048,17 @@ class Diamond(Shape):
     ) -> None: ...
 
 class Disc(Shape):
-    """A round plate without thickness around the y axis."""
+    """Round plate without thickness around the y axis."""
 
     def __init__(self, radius: Number = 0.75) -> None: ...
 
 class Dodecahedron(Shape):
-    """Regular body of twelve pentagons; beyond edges less than the distance."""
+    """Regular solid of twelve pentagons; a lower bound beyond edges."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class Egg(Shape2D):
-    """Two discs, one above the other, and bulging sides that go smoothly over into both."""
+    """Egg: two discs, one above the other, with convex sides tangent to both."""
 
     def __init__(
         self,
@@ -1088,12 +1089,12 @@ class Ellipsoid(Shape):
     def __init__(self, *, x: Number = ..., y: Number = ..., z: Number = ...) -> None: ...
 
 class EquilateralTriangle(Shape2D):
-    """Triangle with equal sides, a corner up, its middle at the origin."""
+    """Equilateral triangle with a corner at the top, centred at the origin."""
 
     def __init__(self, size: Number = 1.0) -> None: ...
 
 class FbmSolid(Shape):
-    """Rugged lumps: noise at several scales."""
+    """Infinite rugged lumps of fractal noise (fBm): noise at several scales."""
 
     def __init__(
         self,
@@ -1106,12 +1107,12 @@ class FbmSolid(Shape):
     ) -> None: ...
 
 class FccLattice(Shape):
-    """Struts from the corners of cubes to the middles of their faces (face-centred cubic)."""
+    """Infinite lattice of struts from cube corners to face middles (face-centred cubic)."""
 
     def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
 
 class GearProfile(Shape2D):
-    """A gear with involute teeth, one of them up; gears of one tooth size mesh."""
+    """Gear with involute teeth, one of them at the top; gears with equal teeth mesh."""
 
     def __init__(
         self,
@@ -1121,12 +1122,12 @@ class GearProfile(Shape2D):
     ) -> None: ...
 
 class GradientNoiseSolid(Shape):
-    """Lumps of Perlin's noise."""
+    """Infinite lumps of gradient noise (Perlin noise)."""
 
     def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
 
 class Gyroid(Shape):
-    """Schoen's gyroid: no straight lines, no mirrors, two mazes that never meet."""
+    """Gyroid (Schoen): a minimal surface without straight lines or mirror planes."""
 
     def __init__(
         self,
@@ -1137,7 +1138,7 @@ class Gyroid(Shape):
     ) -> None: ...
 
 class HalfPlane(Shape2D):
-    """All that lies behind a straight line."""
+    """Half plane on one side of a straight line."""
 
     @overload
     def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
@@ -1147,7 +1148,7 @@ class HalfPlane(Shape2D):
     def __init__(self, *, x: Number = ..., y: Number = ..., offset: Number = 0.0) -> None: ...
 
 class HalfSpace(Shape):
-    """Everything behind a plane."""
+    """Half space on one side of a plane."""
 
     @overload
     def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
@@ -1171,12 +1172,12 @@ class HalfSpace(Shape):
     ) -> None: ...
 
 class Heart(Shape2D):
-    """A square on its corner with half a disc on each upper side."""
+    """Heart: a square standing on its corner, with half a disc on each upper side."""
 
     def __init__(self, height: Number = 1.0) -> None: ...
 
 class Heightfield(Shape):
-    """Terrain from an image of heights, in its first channel; its edges go on without end."""
+    """Terrain from the first channel of an image; its border heights continue without end."""
 
     @overload
     def __init__(
@@ -1208,27 +1209,27 @@ class Heightfield(Shape):
     ) -> None: ...
 
 class Helix(Shape):
-    """A tube that winds around the y axis without end, through the x axis, rising toward z."""
+    """Infinite tube that winds around the y axis and crosses the x axis, rising towards z."""
 
     def __init__(self, major: Number = 0.5, minor: Number = 0.1, pitch: Number = 0.4) -> None: ...
 
 class HexPrism(Shape):
-    """Upright prism over a regular hexagon; one side looks along z."""
+    """Upright prism over a regular hexagon; two sides face along z."""
 
     def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class Hexagon(Shape2D):
-    """Regular polygon with six corners, one of them up."""
+    """Regular hexagon with a corner at the top."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class Hexagram(Shape2D):
-    """Star of two triangles, six points, one of them up."""
+    """Star with six points made of two triangles; one point is at the top."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class Horseshoe(Shape2D):
-    """Part of a ring around the y axis, prolonged straight at both ends."""
+    """Arc of a ring, symmetric about the y axis, with a straight leg at each end."""
 
     def __init__(
         self,
@@ -1239,12 +1240,12 @@ class Horseshoe(Shape2D):
     ) -> None: ...
 
 class Hyperbola(Shape2D):
-    """All that lies beyond the two branches of a hyperbola, to the left and to the right."""
+    """Region outside of the two branches of a hyperbola, on the left and on the right."""
 
     def __init__(self, radius: Number = 0.4, steepness: Number = 1.0) -> None: ...
 
 class IWP(Shape):
-    """Schoen's I-WP surface: tubes along the diagonals of a cube."""
+    """I-WP surface (Schoen): tubes along the diagonals of a cube."""
 
     def __init__(
         self,
@@ -1255,12 +1256,12 @@ class IWP(Shape):
     ) -> None: ...
 
 class Icosahedron(Shape):
-    """Regular body of twenty triangles; beyond edges less than the distance."""
+    """Regular solid of twenty triangles; a lower bound beyond edges."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class ImageField(Shape2D):
-    """A shape whose distances are the texels of an image, in their first channel."""
+    """Shape from distances stored in the first channel of an image."""
 
     @overload
     def __init__(
@@ -1289,27 +1290,27 @@ class ImageField(Shape2D):
     ) -> None: ...
 
 class InfiniteCone(Shape):
-    """Cone without end, downward from its tip at the origin."""
+    """Infinite cone that opens downwards from its tip at the origin."""
 
     def __init__(self, angle: Number = 0.5) -> None: ...
 
 class InfiniteCylinder(Shape):
-    """Round bar along the y axis, without end."""
+    """Infinite cylinder around the y axis."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class IsoscelesTrapezoid(Shape2D):
-    """Trapezoid whose slanted sides mirror each other; halfway up at y = 0."""
+    """Isosceles trapezoid; y = 0 is at half of its height."""
 
     def __init__(self, bottom: Number = 1.0, top: Number = 0.6, height: Number = 0.7) -> None: ...
 
 class IsoscelesTriangle(Shape2D):
-    """Triangle with its tip up, halfway up at y = 0."""
+    """Isosceles triangle with its tip at the top; y = 0 is at half of its height."""
 
     def __init__(self, width: Number = 0.8, height: Number = 1.0) -> None: ...
 
 class Lidinoid(Shape):
-    """Lidin's surface, a twisted kin of the gyroid."""
+    """Lidinoid: a surface related to the gyroid, with more twisted labyrinths."""
 
     def __init__(
         self,
@@ -1320,12 +1321,12 @@ class Lidinoid(Shape):
     ) -> None: ...
 
 class Link(Shape):
-    """Link of a chain, upright, seen as a ring along the z axis."""
+    """Upright link of a chain; its hole faces the z axis."""
 
     def __init__(self, height: Number = 0.5, major: Number = 0.4, minor: Number = 0.15) -> None: ...
 
 class LogarithmicSpiral(Shape2D):
-    """A line that winds outwards by the same factor each turn, counterclockwise from the x axis."""
+    """Spiral line whose radius grows by a constant factor per turn."""
 
     def __init__(
         self,
@@ -1336,27 +1337,27 @@ class LogarithmicSpiral(Shape2D):
     ) -> None: ...
 
 class Mandelbox(Shape):
-    """The Mandelbox: points whose foldings at a cube and a ball stay."""
+    """Mandelbox: points that stay bounded under folds at a cube and a ball."""
 
     def __init__(self, size: Number = 1.5, scale: Number = 2.0, iterations: int = 8) -> None: ...
 
 class Mandelbulb(Shape):
-    """The Mandelbulb, around the y axis: points whose powers stay, in polar coordinates."""
+    """Mandelbulb around the y axis: points whose powers in spherical coordinates stay bounded."""
 
     def __init__(self, power: int = 8, iterations: int = 8) -> None: ...
 
 class MengerSponge(Shape):
-    """Menger's sponge: a cube without its middle cross, and so on for the 20 cubes that are left."""
+    """Menger sponge: a cube without its middle cross; the same is repeated in 20 smaller cubes."""
 
     def __init__(self, size: Number = 1.0, iterations: int = 4) -> None: ...
 
 class Metaballs(Shape):
-    """Balls that melt into each other; their order does not matter."""
+    """Balls that blend into each other; their order has no effect."""
 
     def __init__(self, balls: Points = ..., softness: Number = 0.1) -> None: ...
 
 class Moon(Shape2D):
-    """A disc around the origin less a second disc to its right."""
+    """Moon: a disc around the origin minus a second disc to its right."""
 
     def __init__(
         self,
@@ -1366,7 +1367,7 @@ class Moon(Shape2D):
     ) -> None: ...
 
 class Neovius(Shape):
-    """Neovius' surface: as Schwarz's primitive one, with tubes along the edges too."""
+    """Neovius surface: like Schwarz P, with additional tubes along the cell's edges."""
 
     def __init__(
         self,
@@ -1377,32 +1378,32 @@ class Neovius(Shape):
     ) -> None: ...
 
 class Octagon(Shape2D):
-    """Regular polygon with eight corners, one of them up."""
+    """Regular octagon with a corner at the top."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class OctagonPrism(Shape):
-    """Upright prism over a regular octagon; sides look along x and z."""
+    """Upright prism over a regular octagon; sides face along x and z."""
 
     def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class Octahedron(Shape):
-    """Regular octahedron."""
+    """Regular octahedron with its vertices on the axes."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class OctahedronCheap(Shape):
-    """Octahedron by its faces alone; beyond edges less than the distance."""
+    """Octahedron as the maximum of its faces' planes; a lower bound beyond edges."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class OctetLattice(Shape):
-    """The octet truss: the edges of octahedra and tetrahedra that fill space."""
+    """Infinite octet truss: struts along the edges of octahedra and tetrahedra that fill space."""
 
     def __init__(self, cell_size: Number = 0.75, radius: Number = 0.05) -> None: ...
 
 class OrientedRectangle(Shape2D):
-    """A bar with square ends between two points."""
+    """Bar with square ends between two points."""
 
     @overload
     def __init__(
@@ -1423,7 +1424,7 @@ class OrientedRectangle(Shape2D):
     ) -> None: ...
 
 class OrientedVesica(Shape2D):
-    """A lens between two points."""
+    """Lens with its tips at two given points."""
 
     @overload
     def __init__(self, start: Vector = ..., end: Vector = ..., width: Number = 0.5) -> None: ...
@@ -1439,47 +1440,47 @@ class OrientedVesica(Shape2D):
     ) -> None: ...
 
 class Parabola(Shape2D):
-    """All that lies above the parabola y = curvature x^2."""
+    """Region above the parabola y = curvature x^2."""
 
     def __init__(self, curvature: Number = 1.0) -> None: ...
 
 class ParabolaSegment(Shape2D):
-    """What a parabola cuts off above the x axis."""
+    """Region between a parabola that opens downwards and the x axis."""
 
     def __init__(self, width: Number = 1.0, height: Number = 0.8) -> None: ...
 
 class Parallelogram(Shape2D):
-    """Parallelogram with two sides along x."""
+    """Parallelogram with two horizontal sides, centred at the origin."""
 
     def __init__(self, width: Number = 0.8, height: Number = 0.6, skew: Number = 0.3) -> None: ...
 
 class Pentagon(Shape2D):
-    """Regular polygon with five corners, one of them up."""
+    """Regular pentagon with a corner at the top."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class Pentagram(Shape2D):
-    """Star drawn by the diagonals of a pentagon, five points, one of them up."""
+    """Star with five points made of the diagonals of a pentagon; one point is at the top."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class Pie(Shape2D):
-    """Sector of a disc around the y axis."""
+    """Sector of a disc, symmetric about the y axis."""
 
     def __init__(self, radius: Number = 1.0, angle: Number = 0.7) -> None: ...
 
 class Plane(Shape):
-    """Ground: everything up to a height."""
+    """Ground: the half space below a horizontal plane."""
 
     def __init__(self, y: Number = 0.0) -> None: ...
 
 class Polygon(Shape2D):
-    """Any polygon; where it crosses itself, inside is what it goes around an odd number of times."""
+    """Polygon through any points; if it crosses itself, the even-odd rule applies."""
 
     def __init__(self, points: Points = ...) -> None: ...
 
 class Polyline(Shape2D):
-    """A line through points, as wide as a disc drawn along it."""
+    """Line with a width through points, with round ends and joints."""
 
     def __init__(
         self,
@@ -1489,7 +1490,7 @@ class Polyline(Shape2D):
     ) -> None: ...
 
 class PolylineTube(Shape):
-    """A round tube through points, straight between them."""
+    """Round tube along straight lines between points."""
 
     def __init__(
         self,
@@ -1499,12 +1500,12 @@ class PolylineTube(Shape):
     ) -> None: ...
 
 class Prism(Shape):
-    """Upright prism over a regular polygon; one side looks along z."""
+    """Upright prism over a regular polygon; one side faces +z."""
 
     def __init__(self, count: int = 5, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class Pyramid(Shape):
-    """Upright pyramid over a square."""
+    """Upright pyramid with a square base."""
 
     def __init__(self, size: Number = 1.0, height: Number = 1.0) -> None: ...
 
@@ -1538,7 +1539,7 @@ class Quad(Shape):
     ) -> None: ...
 
 class QuadraticBezier(Shape2D):
-    """A line along a quadratic Bézier curve."""
+    """Line along a quadratic Bézier curve."""
 
     @overload
     def __init__(
@@ -1562,12 +1563,12 @@ class QuadraticBezier(Shape2D):
     ) -> None: ...
 
 class QuadraticCircle(Shape2D):
-    """Nearly a circle, of four parabolas: each joins two axes and leaves them at right angles."""
+    """Approximate circle made of four parabolas, each perpendicular to two axes at its ends."""
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
 class QuaternionJulia(Shape):
-    """A Julia set of quaternions, where their last part is 0."""
+    """Julia set of quaternions: the slice where the last component is 0."""
 
     @overload
     def __init__(self, c: Vector = ..., iterations: int = 10) -> None: ...
@@ -1593,7 +1594,7 @@ class QuaternionJulia(Shape):
     ) -> None: ...
 
 class Rectangle(Shape2D):
-    """Rectangle with sides along the axes."""
+    """Rectangle with sides along the axes, centred at the origin."""
 
     @overload
     def __init__(self, size: Vector | Number = ...) -> None: ...
@@ -1603,17 +1604,17 @@ class Rectangle(Shape2D):
     def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
 
 class RegularPolygon(Shape2D):
-    """Polygon with equal sides and angles, a corner up."""
+    """Regular polygon with a corner at the top."""
 
     def __init__(self, radius: Number = 0.5, count: int = 7) -> None: ...
 
 class RegularStar(Shape2D):
-    """Star with equal points, one of them up."""
+    """Star with equal points, one of them at the top."""
 
     def __init__(self, radius: Number = 0.5, inner: Number = 0.25, count: int = 7) -> None: ...
 
 class Rhombus(Shape):
-    """Upright prism over a rhombus with rounded upright edges."""
+    """Upright prism over a rhombus whose vertical edges are rounded."""
 
     @overload
     def __init__(
@@ -1652,7 +1653,7 @@ class Rhombus2(Shape2D):
     def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
 
 class Ring(Shape2D):
-    """Part of a ring with straight ends, around the y axis."""
+    """Arc of a ring with straight ends, symmetric about the y axis."""
 
     def __init__(
         self,
@@ -1662,7 +1663,7 @@ class Ring(Shape2D):
     ) -> None: ...
 
 class RoundBox(Shape):
-    """Box whose edges are rounded inward: the full size stays."""
+    """Box with rounded edges; the full size does not change."""
 
     @overload
     def __init__(self, size: Vector | Number = ..., rounding: Number = 0.1) -> None: ...
@@ -1686,12 +1687,12 @@ class RoundBox(Shape):
     ) -> None: ...
 
 class RoundCone(Shape):
-    """Two balls, one above the other, and the cone that touches both."""
+    """Cone with rounded ends: two balls, one above the other, and the cone tangent to both."""
 
     def __init__(self, bottom: Number = 0.5, top: Number = 0.25, height: Number = 1.0) -> None: ...
 
 class RoundConeBetween(Shape):
-    """Two balls around two points, and the cone that touches both."""
+    """Cone with rounded ends: balls around two points, and the cone tangent to both."""
 
     @overload
     def __init__(
@@ -1740,7 +1741,7 @@ class RoundFrame(Shape):
     ) -> None: ...
 
 class RoundedCylinder(Shape):
-    """Upright cylinder whose edges are rounded inward: the full size stays."""
+    """Upright cylinder with rounded edges; the full size does not change."""
 
     def __init__(
         self,
@@ -1750,12 +1751,12 @@ class RoundedCylinder(Shape):
     ) -> None: ...
 
 class RoundedPolygon(Shape2D):
-    """A polygon grown by a radius, so that its outer corners are round."""
+    """Polygon enlarged by a radius, so that its outer corners are round."""
 
     def __init__(self, points: Points = ..., radius: Number = 0.1) -> None: ...
 
 class RoundedRectangle(Shape2D):
-    """Rectangle whose corners are rounded, each by its own radius."""
+    """Rectangle with rounded corners, each with its own radius."""
 
     @overload
     def __init__(self, size: Vector | Number = ..., radii: Vector | Number = ...) -> None: ...
@@ -1772,12 +1773,12 @@ class RoundedRectangle(Shape2D):
     ) -> None: ...
 
 class RoundedX(Shape2D):
-    """Two bars with round ends along the diagonals."""
+    """X of two bars with round ends along the diagonals."""
 
     def __init__(self, span: Number = 1.2, thickness: Number = 0.25) -> None: ...
 
 class ScatteredBalls(Shape):
-    """Balls around scattered points, or all that is not in them: gravel, a sponge, without end."""
+    """Infinite set of balls around scattered points (gravel), or their complement (sponge)."""
 
     def __init__(
         self,
@@ -1789,7 +1790,7 @@ class ScatteredBalls(Shape):
     ) -> None: ...
 
 class SchwarzP(Shape):
-    """Schwarz's primitive surface: tubes along the axes that meet in every cell's middle."""
+    """Schwarz P (primitive) surface: tubes along the axes that meet in the middle of each cell."""
 
     def __init__(
         self,
@@ -1816,52 +1817,52 @@ class Segment(Shape2D):
     ) -> None: ...
 
 class SimplexNoiseSolid(Shape):
-    """Lumps of simplex noise, rounder and smaller than those of Perlin's."""
+    """Infinite lumps of simplex noise, rounder and smaller than those of gradient noise."""
 
     def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
 
 class Slab(Shape):
-    """Level slab without end, half of it above the origin."""
+    """Infinite horizontal slab, centred at y = 0."""
 
     def __init__(self, thickness: Number = 0.5) -> None: ...
 
 class SmoothDodecahedron(Shape):
-    """Between a ball and a dodecahedron; a bound with slope 1."""
+    """Shape between a ball and a dodecahedron; a bound with slope 1."""
 
     def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
 
 class SmoothIcosahedron(Shape):
-    """Between a ball and an icosahedron; a bound with slope 1."""
+    """Shape between a ball and an icosahedron; a bound with slope 1."""
 
     def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
 
 class SmoothOctahedron(Shape):
-    """Between a ball and an octahedron; a bound with slope 1."""
+    """Shape between a ball and an octahedron; a bound with slope 1."""
 
     def __init__(self, radius: Number = 0.6, exponent: Number = 12.0) -> None: ...
 
 class SmoothTruncatedIcosahedron(Shape):
-    """Between a ball and a football; a bound with slope 1."""
+    """Shape between a ball and a football; a bound with slope 1."""
 
     def __init__(self, radius: Number = 0.9, exponent: Number = 48.0) -> None: ...
 
 class SmoothTruncatedOctahedron(Shape):
-    """Between a ball and a truncated octahedron; a bound with slope 1."""
+    """Shape between a ball and a truncated octahedron; a bound with slope 1."""
 
     def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
 
 class SolidAngle(Shape):
-    """The part of a ball that lies within an angle of the y axis, its tip at the origin."""
+    """Sector of a ball: the part within an angle of the y axis, its tip at the origin."""
 
     def __init__(self, angle: Number = 0.6, radius: Number = 1.0) -> None: ...
 
 class Sphere(Shape):
-    """Ball."""
+    """Ball, centred at the origin."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class SplinePath(Shape2D):
-    """A smooth line through points, made of two parabolas between each two."""
+    """Smooth line through points, made of two parabolas between each two points."""
 
     def __init__(
         self,
@@ -1871,7 +1872,7 @@ class SplinePath(Shape2D):
     ) -> None: ...
 
 class SplitP(Shape):
-    """A surface between the gyroid and Schwarz's primitive one."""
+    """Split P surface: between the gyroid and Schwarz P."""
 
     def __init__(
         self,
@@ -1882,7 +1883,7 @@ class SplitP(Shape):
     ) -> None: ...
 
 class Spring(Shape):
-    """A coil spring around the y axis, its ends ground flat."""
+    """Coil spring around the y axis with flat ends."""
 
     def __init__(
         self,
@@ -1893,7 +1894,7 @@ class Spring(Shape):
     ) -> None: ...
 
 class Stairs(Shape2D):
-    """A flight of stairs that climbs to the right, with what is below it; starts at the origin."""
+    """Stairs that rise to the right from the origin, with the area below them."""
 
     @overload
     def __init__(self, step: Vector = ..., count: int = 4) -> None: ...
@@ -1903,7 +1904,7 @@ class Stairs(Shape2D):
     def __init__(self, *, x: Number = ..., y: Number = ..., count: int = 4) -> None: ...
 
 class Superellipsoid(Shape):
-    """Between a diamond, a ball and a box, by two exponents; a bound with slope 1."""
+    """Shape between a diamond, a ball and a box, set by two exponents; a bound with slope 1."""
 
     @overload
     def __init__(
@@ -1934,12 +1935,12 @@ class Superellipsoid(Shape):
     ) -> None: ...
 
 class TangentCam(Shape2D):
-    """A cam with straight flanks that turns about the origin, its nose up."""
+    """Cam with straight flanks that rotates about the origin, its nose at the top."""
 
     def __init__(self, base: Number = 0.4, nose: Number = 0.15, lift: Number = 0.3) -> None: ...
 
 class TaperedBezierTube(Shape):
-    """A round tube along a quadratic Bézier curve, its radius changing evenly; straight pieces."""
+    """Round tube along a quadratic Bézier curve, of linearly changing radius."""
 
     @overload
     def __init__(
@@ -1970,22 +1971,22 @@ class TaperedBezierTube(Shape):
     ) -> None: ...
 
 class TaperedPolylineTube(Shape):
-    """A round tube through points, with a radius for each: branches, tentacles."""
+    """Round tube along straight lines between points, with a radius for each point."""
 
     def __init__(self, points: Points = ...) -> None: ...
 
 class Tetrahedron(Shape):
-    """Regular tetrahedron on every other corner of a cube, (1, 1, 1) among them."""
+    """Regular tetrahedron on alternate corners of a cube, one of them along (1, 1, 1)."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class Torus(Shape):
-    """Ring around the y axis."""
+    """Torus (ring) around the y axis."""
 
     def __init__(self, major: Number = 0.75, minor: Number = 0.25) -> None: ...
 
 class TriPrism(Shape):
-    """Upright prism over an equilateral triangle; one side looks along z."""
+    """Upright prism over an equilateral triangle; one side faces +z."""
 
     def __init__(self, apothem: Number = 0.4, height: Number = 1.0) -> None: ...
 
@@ -2010,7 +2011,7 @@ class Triangle(Shape):
     ) -> None: ...
 
 class Triangle2(Shape2D):
-    """Triangle between three points of the plane."""
+    """Triangle with three given corners."""
 
     @overload
     def __init__(self, first: Vector = ..., second: Vector = ..., third: Vector = ...) -> None: ...
@@ -2027,37 +2028,37 @@ class Triangle2(Shape2D):
     ) -> None: ...
 
 class TruncatedIcosahedron(Shape):
-    """Football: twenty hexagons and twelve pentagons with equal edges."""
+    """Football: solid of twenty hexagons and twelve pentagons with equal edges."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class TruncatedOctahedron(Shape):
-    """Body of eight hexagons and six squares with equal edges; it fills space."""
+    """Solid of eight hexagons and six squares with equal edges; copies of it fill space."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
 
 class Tunnel(Shape2D):
-    """Half a disc on top of two walls; the disc's centre is the origin."""
+    """Tunnel profile: half a disc on top of a rectangle; the disc's centre is the origin."""
 
     def __init__(self, width: Number = 1.0, height: Number = 0.5) -> None: ...
 
 class UnevenCapsule(Shape2D):
-    """Two discs, one above the other, and all between their common tangents."""
+    """Two discs, one above the other, and the region between their common tangents."""
 
     def __init__(self, bottom: Number = 0.4, top: Number = 0.2, height: Number = 0.6) -> None: ...
 
 class ValueNoiseSolid(Shape):
-    """Lumps of value noise, in line with the axes."""
+    """Infinite lumps of value noise, aligned with the axes."""
 
     def __init__(self, cell_size: Number = 0.5, level: Number = 0.0, seed: int = 0) -> None: ...
 
 class Vesica(Shape2D):
-    """What two equal discs have in common: a lens with its tips on the y axis."""
+    """Lens: the intersection of two equal discs, with its tips on the y axis."""
 
     def __init__(self, width: Number = 0.6, height: Number = 1.0) -> None: ...
 
 class VesicaBetween(Shape):
-    """Body between two arcs that meet in two given points."""
+    """Solid of an arc rotated about its chord between two given points."""
 
     @overload
     def __init__(self, start: Vector = ..., end: Vector = ..., width: Number = 0.5) -> None: ...
@@ -2075,12 +2076,12 @@ class VesicaBetween(Shape):
     ) -> None: ...
 
 class VesicaSolid(Shape):
-    """Upright body between two arcs, with a tip at either end, like a grain of rice."""
+    """Upright solid of an arc rotated about its chord, with two tips, like a grain of rice."""
 
     def __init__(self, height: Number = 1.5, width: Number = 0.75) -> None: ...
 
 class VolumeField(Shape):
-    """A shape whose distances are the samples of a grid, in their first channel."""
+    """Shape from a grid of distance samples, in the first channel of a volume texture."""
 
     @overload
     def __init__(
@@ -2111,7 +2112,7 @@ class VolumeField(Shape):
     ) -> None: ...
 
 class VoronoiCells(Shape):
-    """The cells of scattered points, a gap between them: rubble, packed grains, without end."""
+    """Infinite rubble: the Voronoi cells of scattered points, with a gap between them."""
 
     def __init__(
         self,
@@ -2122,7 +2123,7 @@ class VoronoiCells(Shape):
     ) -> None: ...
 
 class VoronoiLines(Shape2D):
-    """The borders between the cells of points scattered in the plane, without end."""
+    """Infinite net: the borders between the Voronoi cells of points in the plane."""
 
     def __init__(
         self,
@@ -2133,7 +2134,7 @@ class VoronoiLines(Shape2D):
     ) -> None: ...
 
 class VoronoiWalls(Shape):
-    """The walls between the cells of scattered points: a closed foam, without end."""
+    """Infinite foam: the walls between the Voronoi cells of scattered points."""
 
     def __init__(
         self,
@@ -2144,7 +2145,7 @@ class VoronoiWalls(Shape):
     ) -> None: ...
 
 class Wedge(Shape):
-    """What lies between two planes that meet in the z axis, around the way down; without end."""
+    """Infinite wedge between two planes that meet in the z axis; it opens downwards."""
 
     def __init__(self, angle: Number = 1.0) -> None: ...
 

@@ -21,51 +21,51 @@ export const SPEEDS = [0.0625, 0.125, 0.25, 0.5, 1, 2, 4, 8, 16];
 export const POSITIONS = 200;
 export const POINT_STEP = 0.05;
 
-/** The nearest number within a range. */
+/** Return the nearest number within a range. */
 export function clamped(value: number, low: number, high: number): number {
   return Math.min(Math.max(value, low), high);
 }
 
-/** The nearest whole number; halves go up. */
+/** Return the nearest whole number; halves are rounded up. */
 export function whole(value: number): number {
   return Math.floor((value + 0.5));
 }
 
-/** The yaw after a drag to the right: the scene follows the hand, the eye goes against it. */
+/** Return the yaw after a drag to the right: the eye moves in the opposite direction. */
 export function turned(yaw: number, right: number): number {
   let moved = (yaw - (TURN_PER_HEIGHT * right));
   let full = (2 * Math.PI);
   return (moved - (full * whole((moved / full))));
 }
 
-/** The pitch after a drag downward; with the camera's own elevation it stays off the poles. */
+/** Return the pitch after a drag downwards. */
 export function raised(pitch: number, down: number, elevation: number): number {
   let low = Math.min(((-HIGHEST) - elevation), 0);
   let high = Math.max((HIGHEST - elevation), 0);
   return clamped((pitch + (TURN_PER_HEIGHT * down)), low, high);
 }
 
-/** One of pan's numbers after a drag along its axis. */
+/** Return one component of pan after a drag along its axis. */
 export function dragged(pan: number, way: number): number {
   return clamped((pan + (PAN_PER_HEIGHT * way)), (-FARTHEST_PAN), FARTHEST_PAN);
 }
 
-/** The zoom times a factor. */
+/** Return the zoom multiplied by a factor. */
 export function zoomed(zoom: number, factor: number): number {
   return clamped((zoom * factor), NEAREST, FARTHEST);
 }
 
-/** The zoom after so many notches of a wheel; farther where they are positive. */
+/** Return the zoom after a number of wheel notches; a positive number moves the camera away. */
 export function notched(zoom: number, notches: number): number {
   return zoomed(zoom, (ZOOM_PER_NOTCH ** clamped(notches, (-MOST_NOTCHES), MOST_NOTCHES)));
 }
 
-/** The notches of a wheel event: its way in pixels (unit 0), lines (1) or pages (2). */
+/** Return the notches of a wheel event whose unit is pixels (0), lines (1) or pages (2). */
 export function notchesOf(delta: number, unit: number, isPinch: boolean): number {
   return ((delta * NOTCHES_PER_UNIT[unit]!) * (isPinch ? NOTCHES_PER_PINCH : 1));
 }
 
-/** The time after so many seconds: a loop begins anew, an endless time ends at last. */
+/** Return the time after `passed` seconds. */
 export function advanced(time: number, passed: number, start: number, duration: number | null): number {
   if ((duration === null)) {
     return Math.min((time + passed), Math.max(time, LATEST_S));
@@ -74,12 +74,12 @@ export function advanced(time: number, passed: number, start: number, duration: 
   return (start + (past - (duration * Math.floor((past / duration)))));
 }
 
-/** The earliest time that a hand reaches: 0, or where the time starts before it, or the loop. */
+/** Return the earliest time that a person can choose: the smaller of 0 and `start`. */
 export function firstTime(start: number, duration: number | null): number {
   return ((duration === null) ? Math.min(start, 0) : start);
 }
 
-/** The right end of the time's strip: ten seconds, doubled until the time is on it. */
+/** Return the right end of the timeline: ten seconds, doubled until the time is within it. */
 export function lastTime(time: number, start: number, duration: number | null): number {
   if ((duration !== null)) {
     return (start + duration);
@@ -92,18 +92,18 @@ export function lastTime(time: number, start: number, duration: number | null): 
   return (low + span);
 }
 
-/** The nearest time that a hand reaches. */
+/** Return the nearest time that a person can choose. */
 export function jumped(time: number, start: number, duration: number | null): number {
   let high = ((duration === null) ? LATEST_S : (start + duration));
   return clamped(time, firstTime(start, duration), high);
 }
 
-/** The frame's number: by time, so that a paused one can be made again. */
+/** Return the frame number of a time, so that a paused frame can be reproduced. */
 export function indexAt(time: number): number {
   return whole((time * FRAMES_PER_S));
 }
 
-/** The speed so many of the offered ones up or down. */
+/** Return the speed some steps up or down in the list of speeds. */
 export function speedAfter(speed: number, steps: number): number {
   let at = 0;
   for (let i = 0; i < SPEEDS.length; i++) {
@@ -114,12 +114,12 @@ export function speedAfter(speed: number, steps: number): number {
   return SPEEDS[(clamped((at + steps), 0, (SPEEDS.length - 1)))]!;
 }
 
-/** The positions of a slider: it runs from 0 to this number. */
+/** Return the number of the last position of a slider, which starts at 0. */
 export function positionCount(low: number, high: number, step: number | null): number {
   return ((step === null) ? POSITIONS : (Math.ceil((((high - low) / step) - 1e-06))));
 }
 
-/** Where a slider stands for a value. */
+/** Return the position of a slider for a value. */
 export function positionOf(value: number, low: number, high: number, step: number | null, log: boolean): number {
   let count = positionCount(low, high, step);
   let inside = clamped(value, low, high);
@@ -132,7 +132,7 @@ export function positionOf(value: number, low: number, high: number, step: numbe
   return ((inside - low) / ((step === null) ? ((high - low) / count) : step));
 }
 
-/** The value for which a slider stands; the ends are the range's to the last bit. */
+/** Return the value at a position of a slider; the ends are exactly those of the range. */
 export function valueAt(position: number, low: number, high: number, step: number | null, log: boolean, usual: number): number {
   let count = positionCount(low, high, step);
   if ((position <= 0)) {
@@ -155,7 +155,7 @@ export function valueAt(position: number, low: number, high: number, step: numbe
   return clamped(rounded((low + (whole(position) * unit)), unit), low, high);
 }
 
-/** A number without the digits far below `unit`: 0.1 + 0.2 is 0.3. */
+/** Round away the digits far below `unit`: 0.1 + 0.2 becomes 0.3. */
 export function rounded(value: number, unit: number): number {
   return fixed(value, (clamped((3 - Math.floor(Math.log10(unit))), 0, 20)));
 }
