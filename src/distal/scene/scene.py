@@ -196,23 +196,24 @@ class Scene(Composed, Presentable):
 
         Args:
             size: Width and height in pixels.
-            time: Seconds; ``frame.time`` of an ``@image``.
+            time: Time in seconds; ``frame.time`` of an ``@image``.
             params: Values of parameters by name; the others have their defaults.
-            device: What renders: "auto" (a GPU in hardware, else the CPU), "cpu", "gpu",
-                "gpu-fragment" or "reference"; "gpu:NAME" picks the adapter.
-            threads: How many CPU threads to use; None for all that the process may use.
+            device: The device to render on: "auto" (a hardware GPU if there is one, else the CPU),
+                "cpu", "gpu", "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
+            threads: Number of CPU threads; None uses all that the process may use.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.
-            mouse: ``frame.mouse``: x and y in pixels from the lower left, then Shadertoy's clicks.
-            index: ``frame.index``, the frame's number; wraps at 32 bits.
-            seed: ``frame.seed``, where random numbers start; wraps at 32 bits.
+            mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
+                as in Shadertoy.
+            index: ``frame.index``, the frame number; wraps at 32 bits.
+            seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
             samples: Number of rays for each pixel.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
             transparent: Whether alpha is 0 where a ray hits nothing.
             plane: The plane that the view "slice" shows: its normal, of length 1, and its distance
                 from the origin along the normal.
-            freeze: Make constants of all numbers: slower to compile, a little faster to run.
+            freeze: Compile all numbers as constants: slower to compile, a little faster to run.
             steering: How a person has moved the camera; None if it was not moved.
             layers: Layers to compute at the middle of each pixel for ``Picture.layers``: "depth",
                 "normal", "albedo", "material".
