@@ -27,7 +27,7 @@ from distal import Box, Camera, DistantLight, HemisphereLight, Scene
 from distal.fields.guarantees import EXACT
 from distal.lang import Frame, image, slider, vec2, vec4
 from distal.render.views import isolines
-from distal.scene.lowering.slope_limit import check_slopes
+from distal.scene.lowering.slope_limit import check_slope
 
 FOLDER: Final = Path(__file__).parents[1] / "docs/pictures"
 ACROSS: Final = 10
@@ -57,7 +57,7 @@ def draw(cell: Cell, size_px: int, samples: int) -> Drawn:
     """The picture of one cell; a problem is shown in it, not raised."""
     try:
         shape = cell.make()
-        check_slopes(shape.node)
+        check_slope(shape.node)
         if shape.flat:
             pixels, took = _flat(shape, size_px)
         else:

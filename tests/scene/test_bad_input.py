@@ -350,9 +350,9 @@ def test_an_own_function_that_is_steeper_than_it_says_is_told():
     scene = Scene(Shape.from_function(steep))
     ((message, file),) = heard(lambda: scene.render(size=(8, 8)))
     assert file == __file__
-    assert message.startswith("'steep' changes by 5 for a unit of way near (")
+    assert message.startswith("'steep' changes by 5 per unit near (")
     assert message.endswith(
-        "and its slope promises 1 at most: rays may pass through it; give slope=5.2 or more"
+        "more than its declared slope 1: rays may pass through it; give slope=5.2 or more"
     )
     assert heard(lambda: scene.render(size=(8, 8))) == [], "once is enough"
 

@@ -58,23 +58,23 @@ def check(
         raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())
     shape = obj.shape if isinstance(obj, Scene) else obj
-    checkup = run_checks(shape, values, seconds, seed)
+    report = run_checks(shape, values, seconds, seed)
     if as_json:
-        answer(json.dumps({**checkup.as_json(), "name": obj.name}))
+        answer(json.dumps({**report.as_json(), "name": obj.name}))
     else:
-        answer("\n".join(report_lines(checkup)))
-    if not checkup.holds:
+        answer("\n".join(report_lines(report)))
+    if not report.holds:
         raise typer.Exit(1)
 
 
-def report_lines(checkup: ValidationReport) -> Iterator[str]:
+def report_lines(report: ValidationReport) -> Iterator[str]:
     """Yield the lines of the report."""
-    yield from _tree(checkup)
+    yield from _tree(report)
     yield ""
-    yield from _slope(checkup)
-    yield from _measurements(checkup)
+    yield from _slope(report)
+    yield from _measurements(report)
     # The source of the slope of the whole is already shown above.
-    said = [f for f in checkup.findings if f.code != "slope-raised" or not _is_in(f, checkup)]
+    said = [f for f in report.findings if f.code != "slope-raised" or not _is_in(f, report)]
     for finding, more in _gathered(said):
         yield ""
         yield str(finding)
@@ -82,8 +82,8 @@ def report_lines(checkup: ValidationReport) -> Iterator[str]:
             yield f"   = and {more} more like it from this line"
 
 
-def _tree(checkup: ValidationReport) -> Iterator[str]:
-    rows = list(_rows(checkup))
+def _tree(report: ValidationReport) -> Iterator[str]:
+    rows = list(_rows(report))
     shown = rows[:MOST_ROWS]
     widths = [max(len(row[column]) for row in shown) for column in range(3)]
     for row in shown:
@@ -93,13 +93,13 @@ def _tree(checkup: ValidationReport) -> Iterator[str]:
         yield f"… and {len(rows) - MOST_ROWS} more; --json lists all"
 
 
-def _rows(checkup: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
+def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
     """Yield a table row for each shape: name, slope, guarantees, box and line."""
     seen: set[int] = set()
     stack = [(0, 0)]
     while stack:
         i, depth = stack.pop()
-        row = checkup.shapes[i]
+        row = report.shapes[i]
         if i in seen or depth > DEEPEST:
             continue
         seen.add(i)
@@ -138,14 +138,14 @@ def _line(row: ShapeReport) -> str:
     return "" if place is None else f"{place.file}:{place.line}"
 
 
-def _slope(checkup: ValidationReport) -> Iterator[str]:
+def _slope(report: ValidationReport) -> Iterator[str]:
     """Yield the sources of the whole's slope: which shapes raised it, by how much, and where."""
     from distal.scene.checks.validation import described
 
-    whole = checkup.shapes[0]
+    whole = report.shapes[0]
     yield f"slope of '{whole.node.name}': {whole.promised.slope:.3g}"
-    for i in reversed(checkup.slope_from):
-        row = checkup.shapes[i]
+    for i in reversed(report.slope_from):
+        row = report.shapes[i]
         where = f" at {_line(row)}" if row.node.place else ""
         if row.children:
             yield (
@@ -156,22 +156,22 @@ def _slope(checkup: ValidationReport) -> Iterator[str]:
             yield f"  {described(row.node)} has the slope {row.promised.slope:.3g}{where}"
 
 
-def _measurements(checkup: ValidationReport) -> Iterator[str]:
-    measured = [row for row in checkup.shapes if row.measured is not None]
-    count, all_of_them = len(measured), len(checkup.shapes)
-    whole = checkup.shapes[0].measured
+def _measurements(report: ValidationReport) -> Iterator[str]:
+    measured = [row for row in report.shapes if row.measured is not None]
+    count, all_of_them = len(measured), len(report.shapes)
+    whole = report.shapes[0].measured
     assert whole is not None
     yield (
-        f"measured at {whole.points} points: |gradient| {whole.median:.3g} in the middle, "
-        f"99 % within {whole.most_of_99:.3g}, at most {whole.steepest:.3g}"
+        f"measured at {whole.points} points: |gradient| median {whole.median:.3g}, "
+        f"99 % at most {whole.most_of_99:.3g}, maximum {whole.steepest:.3g}"
     )
     yield f"between two points the value changes by at most {whole.largest_change:.3g} per unit"
     if count < all_of_them:
         yield f"{count} of {all_of_them} shapes were measured"
 
 
-def _is_in(finding: CheckFinding, checkup: ValidationReport) -> bool:
-    return finding.shape in checkup.slope_from
+def _is_in(finding: CheckFinding, report: ValidationReport) -> bool:
+    return finding.shape in report.slope_from
 
 
 def _gathered(findings: Sequence[CheckFinding]) -> list[tuple[CheckFinding, int]]:

@@ -229,7 +229,7 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
             Severity.ERROR, "undefined", message, "look for a division by 0, a root below 0"
         )
     if measured.slope > row.promised.slope * (1.0 + ROUNDING) + ROUNDING:
-        message = f"'{name}' promises the slope {row.promised.slope:.4g}, but rises by "
+        message = f"'{name}' declares the slope {row.promised.slope:.4g}, but its value changes by "
         if measured.steepest >= measured.largest_change:
             message += f"{measured.steepest:.4g} per unit at {shown_point(measured.steepest_at)}"
         else:
@@ -243,7 +243,7 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
         yield finding(Severity.ERROR, "outside-box", message, hint)
     if row.node.claims >= EXACT and measured.on_foot < ON_FOOT:
         share = f"{100.0 * (1.0 - measured.on_foot):.0f} %"
-        message = f"'{name}' claims to be the distance, but {share} of its values are not"
+        message = f"'{name}' is declared exact, but {share} of its values are not the distance"
         yield finding(Severity.ERROR, "not-exact", message, "exact=False" if own else None)
 
 
@@ -257,9 +257,9 @@ def _endless(row: ShapeReport, finding: Any) -> CheckFinding:
         hint = f"growth=1 for '{unknown.name}' if it is at least the distance to its bounds"
         grown: CheckFinding = finding(Severity.WARNING, "no-growth", message, hint)
         return grown
-    message = f"{described(row.node)} has no end: no box keeps rays from looking for it"
+    message = f"{described(row.node)} has no bounding box, so every ray has to look for it"
     if is_own(row.node):
-        hint = "bounds=((x, y, z), (x, y, z)) say where it ends"
+        hint = "give its corners: bounds=((x, y, z), (x, y, z))"
         found: CheckFinding = finding(Severity.WARNING, "no-box", message, hint)
     else:
         found = finding(Severity.NOTE, "no-box", message)

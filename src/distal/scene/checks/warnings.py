@@ -131,9 +131,9 @@ def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float)
     change = np.nan_to_num(np.abs(value(p + h * way) - here) / h, posinf=0.0)
     at = int(np.argmax(change))
     if change[at] > SLACK * claimed:
-        found = f"'{node.name}' changes by {change[at]:.3g} for a unit of way near {_shown(p[at])}"
+        found = f"'{node.name}' changes by {change[at]:.3g} per unit near {_shown(p[at])}"
         hint = f"rays may pass through it; give slope={1.05 * change[at]:.2g} or more"
-        _warn(f"{found}, and its slope promises {claimed:g} at most: {hint}", node)
+        _warn(f"{found}, more than its declared slope {claimed:g}: {hint}", node)
 
 
 def _box(node: Node) -> tuple[Points, Points]:
