@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from distal.images.metadata import ReadError, read
+from distal.images.metadata import ReadError
 from distal.images.picture import Picture
+from distal.images.picture_files import read
 from distal.images.png import decode, quantise
 
 

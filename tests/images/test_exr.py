@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from distal.images.atomic_files import SaveError
-from distal.images.metadata import ReadError, read
+from distal.images.metadata import ReadError
 from distal.images.picture import Picture
+from distal.images.picture_files import read
 
 OpenEXR = pytest.importorskip("OpenEXR", reason="OpenEXR is not installed")
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 import distal
 from distal.cli.application import application
-from distal.images.metadata import read
+from distal.images.picture_files import read
 from distal.lang.render_options import RenderOptions
 from distal.scene.rerender import difference, plan_rerender, rerender
 from distal.scene.steering import Steering

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import distal
-from distal.images.metadata import read
+from distal.images.picture_files import read
 from distal.lang.render_options import RenderOptions
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable

@@ -1,17 +1,15 @@
 """Metadata: how a picture was rendered, as texts in its file.
 
-Input: a ``Provenance``, or a file that ``Picture.save`` wrote. Output: texts by key, or a
-``Record``. Recognizes file formats by their first bytes only. Does not depend on pixels.
+Input: a ``Provenance``, or the texts of a file. Output: texts by key, or a ``Provenance``. Does not
+depend on pixels or file formats.
 """
 
 from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from distal.diagnostics import LONGEST_MESSAGE, printable
@@ -23,8 +21,6 @@ PREFIX: Final = "distal:"
 # Limits of a text's length and of the number of modules; distal never writes more.
 _LONGEST_TEXT: Final = 2**20
 _MOST_NEIGHBOURS: Final = 10_000
-_HEAD_PNG: Final = b"\x89PNG\r\n\x1a\n"
-_HEAD_EXR: Final = b"\x76\x2f\x31\x01"
 
 
 class ReadError(Exception):
@@ -83,27 +79,6 @@ class Provenance:
     layers: tuple[str, ...] = ()
     freeze: bool = False
     device: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Record:
-    """The metadata of a picture file.
-
-    Attributes:
-        provenance: How the picture was rendered.
-        size: Width and height in pixels when it was rendered.
-        stored_size: Width and height of the file; different if a program scaled or cropped it.
-        version: The version of distal that rendered it.
-        format: "png" or "exr".
-        bits: Bits of each channel: 8 or 16 in a PNG; 16 or 32 in an EXR.
-    """
-
-    provenance: Provenance
-    size: tuple[int, int]
-    stored_size: tuple[int, int]
-    version: str
-    format: str
-    bits: int
 
 
 def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
@@ -184,49 +159,6 @@ def provenance(found: Mapping[str, str]) -> Provenance:
         )
     except (ValueError, TypeError, LookupError, RecursionError, OverflowError):
         raise ReadError("what it says about itself is garbled") from None
-
-
-def read(path: Path) -> Record:
-    """Read the metadata of a picture file.
-
-    Raises:
-        ReadError: The file is missing, broken, not a picture, or has no metadata.
-    """
-    try:
-        with path.open("rb") as file:
-            head = file.read(8)
-    except OSError as error:
-        raise ReadError(f"cannot read {path}: {error.strerror or error}") from None
-    if head == _HEAD_PNG:
-        from distal.images.png import head_of as png_head  # noqa: PLC0415 (needs Pillow)
-
-        kind, (size, bits, found) = "png", png_head(path)
-    elif head[:4] == _HEAD_EXR:
-        from distal.images.exr import head_of as exr_head  # noqa: PLC0415 (knows this module)
-
-        kind, (size, bits, found) = "exr", exr_head(path)
-    else:
-        raise ReadError(f"{path} is neither a PNG nor an EXR")
-    if not found.get("distal:source-hash"):
-        raise ReadError(
-            f"{path} does not say how it was made: not a picture of distal's, or its metadata "
-            "was stripped"
-        )
-    try:
-        origin = provenance(found)
-        rendered = _size(found.get("distal:size"), size)
-    except ReadError as error:
-        raise ReadError(f"cannot rebuild {path}: {error}") from None
-    return Record(origin, rendered, size, found.get("distal:version", ""), kind, bits)
-
-
-def _size(text: str | None, otherwise: tuple[int, int]) -> tuple[int, int]:
-    if text is None:
-        return otherwise
-    found = re.fullmatch(r"([0-9]{1,6})x([0-9]{1,6})", text)
-    if found is None:
-        raise ReadError("what it says about itself is garbled")
-    return int(found[1]), int(found[2])
 
 
 def _number(given: Any) -> float:

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import LONGEST_MESSAGE, LoadError, printable
 from distal.images import exr, png
-from distal.images.metadata import Provenance, ReadError, Record, read
+from distal.images.metadata import Provenance, ReadError
 from distal.images.picture import Picture
+from distal.images.picture_files import Record, read
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import EXAMPLE_PREFIX, SceneCode, digest_of, load, split_source
 from distal.scene.rendering import render_scene
