@@ -1,4 +1,4 @@
-"""Course, step 1: a camera is a direction for every pixel; here the direction is the colour.
+"""Course, step 1: a camera is a direction for every pixel; here the direction is the color.
 
 Ported from "Learn Creative Coding 38: Raymarching", as are the five that follow.
 """

@@ -1,4 +1,4 @@
-"""Course, step 4: the scene also returns the nearest sphere, so that each has its own colour."""
+"""Course, step 4: the scene also returns the nearest sphere, so that each has its own color."""
 
 from distal.lang import Frame, dot, func, image, length, max, normalize, vec2, vec3
 

@@ -178,7 +178,7 @@ class EglShader:
 
 
 def to_bytes(picture: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Float colours as the 8-bit RGB that pictures are stored in: clamp, scale, round half up."""
+    """Float colors as the 8-bit RGB that pictures are stored in: clamp, scale, round half up."""
     rgb = np.nan_to_num(picture[..., :3], nan=0.0)
     rounded: NDArray[np.uint8] = np.floor(np.clip(rgb, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
     return rounded

@@ -121,7 +121,7 @@ def _function(made: Any) -> str:
     given, returns = _parameters(signature), signature.return_annotation
     if returns != "Pattern | Material":
         return _def(made.__name__, given, returns, doc=_doc(made))
-    # Two colours make a pattern; a material on either side makes a material.
+    # Two colors make a pattern; a material on either side makes a material.
     colors = [p.replace(" | Material", "") for p in given]
     first = _def(made.__name__, colors, "Pattern", overloaded=True)
     return f"{first}{_def(made.__name__, given, 'Material', doc=_doc(made), overloaded=True)}"

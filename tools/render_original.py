@@ -1,7 +1,7 @@
 """Render one GLSL fragment text to a PNG file: makes the pictures in tests/originals.
 
 Input: a shader text, a size, a time and further uniform values. Output: an 8-bit RGB picture, top
-row first, of exactly what the shader wrote (no colour conversion); with ``--record`` also an entry
+row first, of exactly what the shader wrote (no color conversion); with ``--record`` also an entry
 in the ``index.json`` next to it. Does not use distal: distal is compared with its pictures.
 
     python tools/render_original.py shader.frag out.png --time 1.7 --set u_blend=0.3

@@ -33,11 +33,11 @@ from distal.scene.objects.lights import Light as _Light
 __version__: str
 
 class GradientBackground(_DeclaredBackground):
-    """One colour straight down and another straight up, blended linearly by height.
+    """One color straight down and another straight up, blended linearly by height.
 
     Args:
-        bottom: Colour straight down.
-        top: Colour straight up.
+        bottom: Color straight down.
+        top: Color straight up.
 
     Raises:
         ValueError: A number is out of its range.
@@ -51,12 +51,12 @@ class Sky(_DeclaredSurroundings):
 
     Args:
         sun: Direction to the sun; of any length.
-        sun_color: The sun's colour.
+        sun_color: The sun's color.
         sun_intensity: The value that a white matte surface shows if it faces the sun.
         sun_angle: Angular size of the sun, in radians.
-        zenith: Colour overhead.
-        horizon: Colour along the horizon.
-        ground: Colour below.
+        zenith: Color overhead.
+        horizon: Color along the horizon.
+        ground: Color below.
         intensity: Brightness of everything but the sun.
         light: Whether it lights the scene whose background it is. Among a scene's lights it always
             does.
@@ -224,7 +224,7 @@ class AmbientLight(_Light):
 
     Args:
         intensity: Brightness; a white matte surface shows this value.
-        color: Its colour.
+        color: Its color.
 
     Raises:
         ValueError: A number is out of its range.
@@ -239,7 +239,7 @@ class DistantLight(_Light):
     Args:
         direction: Towards the light, of any length.
         intensity: The value that a white matte surface shows if it faces the light.
-        color: Its colour.
+        color: Its color.
         angle: Its angular size in radians, which softens shadows (the sun: 0.0093).
 
     Raises:
@@ -256,11 +256,11 @@ class DistantLight(_Light):
     ) -> None: ...
 
 class HemisphereLight(_Light):
-    """Light of one colour from the upper half of space and of another from the lower half.
+    """Light of one color from the upper half of space and of another from the lower half.
 
     Args:
-        sky: Colour of the upper half.
-        ground: Colour of the lower half.
+        sky: Color of the upper half.
+        ground: Color of the lower half.
         intensity: A factor on both.
         up: Direction of the upper half, of any length.
 
@@ -283,7 +283,7 @@ class PointLight(_Light):
     Args:
         position: Position of the light.
         intensity: The value that a white matte surface shows if it faces the light at distance 1.
-        color: Its colour.
+        color: Its color.
         radius: Radius of the light, which softens shadows.
 
     Raises:
@@ -306,9 +306,10 @@ class SpotLight(_Light):
         position: Position of the light.
         target: The point that it points at.
         intensity: As for a point light.
-        color: Its colour.
+        color: Its color.
         angle: The opening of the whole cone, in radians; below pi.
-        softness: Fraction of half the angle over which the rim fades; 0: sharp, 1: from the axis.
+        softness: Fraction of the half angle in which the light fades: 0 for a sharp rim, 1 to fade
+            from the axis on.
         radius: Radius of the light, which softens shadows.
 
     Raises:
@@ -331,8 +332,8 @@ def emissive(color: Color | Varying = ..., strength: Number | Varying = 1.0) -> 
     """A material that emits light and reflects none.
 
     Args:
-        color: Colour of the emitted light.
-        strength: Factor on the colour; may be above 1.
+        color: Color of the emitted light.
+        strength: Factor on the color; may be above 1.
 
     Raises:
         ValueError: A number is out of its range.
@@ -372,10 +373,10 @@ def matte(color: Color | Varying = ...) -> Material:
     """
 
 def metal(color: Color | Varying = ..., roughness: Number | Varying = 0.2) -> Material:
-    """A metal: it mirrors in its own colour, and white at grazing angles.
+    """A metal: it mirrors in its own color, and white at grazing angles.
 
     Args:
-        color: Colour of the mirrored light, seen straight on.
+        color: Color of the mirrored light, seen straight on.
         roughness: 0 mirrors sharply, 1 hardly mirrors.
 
     Raises:
@@ -387,7 +388,7 @@ def mirror(color: Color | Varying = ...) -> Material:
     """A perfect mirror.
 
     Args:
-        color: Colour of the mirrored light.
+        color: Color of the mirrored light.
 
     Raises:
         ValueError: A number is out of its range.
@@ -412,12 +413,12 @@ def plastic(
     """
 
 def by_cell(seed: Number | Varying = 0.0) -> Pattern:
-    """A different colour for each repetition of a shape that is painted first, then repeated.
+    """A different color for each repetition of a shape that is painted first, then repeated.
 
-    The colour has any hue, and is neither pale nor dark.
+    The color has any hue, and is neither pale nor dark.
 
     Args:
-        seed: Any number; another seed selects other colours.
+        seed: Any number; another seed selects other colors.
 
     Raises:
         ValueError: A number is out of its range.
@@ -436,10 +437,10 @@ def checker(
     b: Color | Varying | Material = "#222",
     size: Number | Varying = 1.0,
 ) -> Material:
-    """Cubes of two alternating colours or materials; squares on a flat floor.
+    """Cubes of two alternating colors or materials; squares on a flat floor.
 
     Args:
-        a: A colour, a pattern, or a material.
+        a: A color, a pattern, or a material.
         b: The other.
         size: The edge of one cube.
 
@@ -462,10 +463,10 @@ def gradient(
     start: Vector | Varying = ...,
     end: Vector | Varying = ...,
 ) -> Material:
-    """A blend from one colour or material to another along a line.
+    """A blend from one color or material to another along a line.
 
     Args:
-        a: A colour, a pattern, or a material: up to ``start``.
+        a: A color, a pattern, or a material: up to ``start``.
         b: The other: from ``end`` on.
         start: Where the blend starts.
         end: Where the blend is complete.
@@ -489,10 +490,10 @@ def noise(
     size: Number | Varying = 1.0,
     octaves: int = 4,
 ) -> Material:
-    """Clouds of two colours or materials.
+    """Clouds of two colors or materials.
 
     Args:
-        a: A colour, a pattern, or a material.
+        a: A color, a pattern, or a material.
         b: The other.
         size: Size of the largest clouds.
         octaves: Number of layers of clouds, each half as large and half as strong as the one
@@ -510,11 +511,11 @@ def palette(
     frequency: Vector | Varying = ...,
     phase: Vector | Varying = ...,
 ) -> Pattern:
-    """Colours along a number: ``base + amplitude * cos(2 pi (frequency * t + phase))``.
+    """Colors along a number: ``base + amplitude * cos(2 pi (frequency * t + phase))``.
 
     Args:
         t: A pattern that gives a number, or a number.
-        base: The mean colour.
+        base: The mean color.
         amplitude: Amplitude of each component.
         frequency: Number of periods of each component as t goes from 0 to 1.
         phase: Phase of each component, as a fraction of a period.
@@ -540,10 +541,10 @@ def radial_gradient(
     center: Vector | Varying = ...,
     radius: Number | Varying = 1.0,
 ) -> Material:
-    """A blend from one colour or material to another with the distance from a point.
+    """A blend from one color or material to another with the distance from a point.
 
     Args:
-        a: A colour, a pattern, or a material: at the centre.
+        a: A color, a pattern, or a material: at the centre.
         b: The other: from ``radius`` on.
         center: Where the blend starts.
         radius: Distance at which the blend is complete.
@@ -567,10 +568,10 @@ def stripes(
     size: Number | Varying = 1.0,
     direction: Vector | Varying = ...,
 ) -> Material:
-    """Layers of two alternating colours or materials.
+    """Layers of two alternating colors or materials.
 
     Args:
-        a: A colour, a pattern, or a material.
+        a: A color, a pattern, or a material.
         b: The other.
         size: Thickness of one layer.
         direction: Direction perpendicular to the layers.
@@ -594,10 +595,10 @@ def waves(
     size: Number | Varying = 1.0,
     direction: Vector | Varying = ...,
 ) -> Material:
-    """A smooth alternation between two colours or materials.
+    """A smooth alternation between two colors or materials.
 
     Args:
-        a: A colour, a pattern, or a material.
+        a: A color, a pattern, or a material.
         b: The other.
         size: Distance from one crest to the next.
         direction: Direction across the crests.

@@ -29,7 +29,7 @@ class Difference:
 
 
 def difference(a: NDArray[Any], b: NDArray[Any]) -> Difference:
-    """Compare the colours of two pictures of one size."""
+    """Compare the colors of two pictures of one size."""
     first, second = as_bytes(a).astype(int), as_bytes(b).astype(int)
     assert first.shape == second.shape, (first.shape, second.shape)
     off = np.abs(first - second)
@@ -37,7 +37,7 @@ def difference(a: NDArray[Any], b: NDArray[Any]) -> Difference:
 
 
 def as_bytes(pixels: NDArray[Any]) -> NDArray[np.uint8]:
-    """Colours as 8-bit values, the way a picture is written to a file."""
+    """Colors as 8-bit values, the way a picture is written to a file."""
     if pixels.dtype == np.uint8:
         return pixels[..., :3]
     clean = np.nan_to_num(pixels[..., :3], nan=0.0, posinf=1.0, neginf=0.0)

@@ -1,4 +1,4 @@
-"""Optics, lights, cameras, colours: values that are known without a program."""
+"""Optics, lights, cameras, colors: values that are known without a program."""
 
 from __future__ import annotations
 

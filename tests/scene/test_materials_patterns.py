@@ -1,4 +1,4 @@
-"""Patterns give the colours they say at places, and stand wherever colours and numbers do."""
+"""Patterns give the colors they say at places, and stand wherever colors and numbers do."""
 
 from __future__ import annotations
 

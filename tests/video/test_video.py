@@ -1,4 +1,4 @@
-"""mp4 and webm, decoded again: counts, times, pixels, colours, what the file says of itself."""
+"""mp4 and webm, decoded again: counts, times, pixels, colors, what the file says of itself."""
 
 import json
 from fractions import Fraction

@@ -27,7 +27,7 @@ def ambient_light(n: vec3, intensity: float = 0.1, color: vec3 = WHITE) -> vec3:
     Args:
         n: Unit normal; has no effect.
         intensity: Brightness; a white matte surface shows this value.
-        color: Its colour.
+        color: Its color.
     """
     return color * intensity
 
@@ -45,12 +45,12 @@ def hemisphere_light(
     intensity: float = 0.5,
     up: vec3 = UP,
 ) -> vec3:
-    """Light of one colour from the upper half of space and of another from the lower half.
+    """Light of one color from the upper half of space and of another from the lower half.
 
     Args:
         n: Unit normal.
-        sky: Colour of the upper half.
-        ground: Colour of the lower half.
+        sky: Color of the upper half.
+        ground: Color of the lower half.
         intensity: A factor on both.
         up: Direction of the upper half, of any length.
     """

@@ -1,6 +1,6 @@
 """The legend of the view of steps: a color bar with numbers at its ends.
 
-Input: a pixel's colour and place. Output: the same colour, or the legend's. Digits are drawn by
+Input: a pixel's color and place. Output: the same color, or the legend's. Digits are drawn by
 arithmetic, so that every target can draw them.
 """
 
@@ -57,7 +57,7 @@ def with_legend(color: vec4, coord: vec2, resolution: vec2, most: int) -> vec4:
     """Draw the legend over a pixel: a bar of ``views.heat`` from 0 to ``most`` at the lower edge.
 
     Args:
-        color: Display-ready colour.
+        color: Display-ready color.
         coord: Place of the pixel, from the lower left.
         resolution: Size of the picture.
         most: The number at the right end of the bar.

@@ -69,7 +69,7 @@ def distant_light(
         p: Point; has no effect.
         direction: Towards the light, of any length.
         intensity: The value that a white matte surface shows if it faces the light.
-        color: Its colour.
+        color: Its color.
         angle: Its angular size in radians, which softens shadows (the sun: 0.0093).
     """
     return LightSample(normalize(direction), FAR_AWAY, color * intensity, tan(0.5 * angle))
@@ -90,7 +90,7 @@ def point_light(
         p: Point.
         position: Position of the light.
         intensity: The value that a white matte surface shows if it faces the light at distance 1.
-        color: Its colour.
+        color: Its color.
         radius: Radius of the light, which softens shadows.
     """
     offset = position - p
@@ -120,9 +120,10 @@ def spot_light(
         position: Position of the light.
         target: The point that it points at.
         intensity: As for a point light.
-        color: Its colour.
+        color: Its color.
         angle: The opening of the whole cone, in radians; below pi.
-        softness: Fraction of half the angle over which the rim fades; 0: sharp, 1: from the axis.
+        softness: Fraction of the half angle in which the light fades: 0 for a sharp rim, 1 to fade
+            from the axis on.
         radius: Radius of the light, which softens shadows.
     """
     light = point_light(p, position, intensity, color, radius)

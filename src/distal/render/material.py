@@ -1,6 +1,6 @@
 """Materials: the optical properties of a surface at a point, and how it divides light.
 
-Input: colours, weights, optical constants. Output: a ``Surface``, and from it the scattered,
+Input: colors, weights, optical constants. Output: a ``Surface``, and from it the scattered,
 mirrored and transmitted fractions of a ray's light. Does not depend on geometry or lights.
 """
 
@@ -78,10 +78,10 @@ def glossy(
 @material("metal", reflects=True)
 @func
 def metal(color: vec3 = SILVER, roughness: float = 0.2) -> Surface:
-    """A metal: it mirrors in its own colour, and white at grazing angles.
+    """A metal: it mirrors in its own color, and white at grazing angles.
 
     Args:
-        color: Colour of the mirrored light, seen straight on.
+        color: Color of the mirrored light, seen straight on.
         roughness: 0 mirrors sharply, 1 hardly mirrors.
     """
     return Surface(
@@ -95,7 +95,7 @@ def mirror(color: vec3 = WHITE) -> Surface:
     """A perfect mirror.
 
     Args:
-        color: Colour of the mirrored light.
+        color: Color of the mirrored light.
     """
     return Surface(color=color, diffuse=0.0, specular=1.0, metal=1.0)
 
@@ -131,8 +131,8 @@ def emissive(color: vec3 = WHITE, strength: float = 1.0) -> Surface:
     """A material that emits light and reflects none.
 
     Args:
-        color: Colour of the emitted light.
-        strength: Factor on the colour; may be above 1.
+        color: Color of the emitted light.
+        strength: Factor on the color; may be above 1.
     """
     return Surface(color=BLACK, diffuse=0.0, emission=color * strength)
 
@@ -174,7 +174,7 @@ def fresnel_dielectric(cosine: float, eta: float) -> float:
 
 @func
 def fresnel_metal(cosine: float, color: vec3) -> vec3:
-    """Return the fraction that a metal mirrors: its colour straight on, white at grazing angles.
+    """Return the fraction that a metal mirrors: its color straight on, white at grazing angles.
 
     Source: Christophe Schlick, "An Inexpensive BRDF Model for Physically-based Rendering" (1994).
     """

@@ -1,8 +1,8 @@
-"""Patterns: numbers and colours that vary over a surface.
+"""Patterns: numbers and colors that vary over a surface.
 
 Input: ``p``, the point in the coordinates of the painted shape, ``n``, the normal there, ``cell``,
 the index of the repetition that contains the point, and the numbers of a pattern. Output: a weight
-from 0 (the first colour or material) to 1 (the second), or a linear colour. Does not depend on
+from 0 (the first color or material) to 1 (the second), or a linear color. Does not depend on
 shapes or lights.
 """
 
@@ -46,9 +46,9 @@ THIRDS = vec3(0.0, 0.33, 0.67)
 
 
 def _sides(
-    first: str = "A colour, a pattern, or a material.", second: str = "The other."
+    first: str = "A color, a pattern, or a material.", second: str = "The other."
 ) -> tuple[ExtraParameter, ExtraParameter]:
-    """Return the parameters for the two colours or materials of a pattern that returns a weight."""
+    """Return the parameters for the two colors or materials of a pattern that returns a weight."""
     annotation = "Color | Varying | Material"
     return (
         ExtraParameter("a", "#fff", annotation, first),
@@ -67,7 +67,7 @@ def _has_a_way(start: tuple[float, ...], end: tuple[float, ...]) -> str | None:
 @pattern("checker", extras=_sides())
 @func
 def checker(p: vec3, size: float = 1.0) -> float:
-    """Cubes of two alternating colours or materials; squares on a flat floor.
+    """Cubes of two alternating colors or materials; squares on a flat floor.
 
     Args:
         p: Point.
@@ -92,7 +92,7 @@ def checker2(p: vec3, size: float = 1.0) -> float:
 @pattern("stripes", extras=_sides(), requires=_has_layers)
 @func
 def stripes(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
-    """Layers of two alternating colours or materials.
+    """Layers of two alternating colors or materials.
 
     Args:
         p: Point.
@@ -105,13 +105,13 @@ def stripes(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
 @pattern(
     "gradient",
     extras=_sides(
-        "A colour, a pattern, or a material: up to ``start``.", "The other: from ``end`` on."
+        "A color, a pattern, or a material: up to ``start``.", "The other: from ``end`` on."
     ),
     requires=_has_a_way,
 )
 @func
 def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
-    """A blend from one colour or material to another along a line.
+    """A blend from one color or material to another along a line.
 
     Args:
         p: Point.
@@ -125,12 +125,12 @@ def linear_gradient(p: vec3, start: vec3 = BELOW, end: vec3 = ABOVE) -> float:
 @pattern(
     "radial_gradient",
     extras=_sides(
-        "A colour, a pattern, or a material: at the centre.", "The other: from ``radius`` on."
+        "A color, a pattern, or a material: at the centre.", "The other: from ``radius`` on."
     ),
 )
 @func
 def radial_gradient(p: vec3, center: vec3 = CENTER, radius: float = 1.0) -> float:
-    """A blend from one colour or material to another with the distance from a point.
+    """A blend from one color or material to another with the distance from a point.
 
     Args:
         p: Point.
@@ -150,7 +150,7 @@ def cell_number(cell: vec3, seed: float, salt: int) -> float:
 @pattern("noise", extras=_sides())
 @func
 def clouds(p: vec3, size: float = 1.0, octaves: int = 4) -> float:
-    """Clouds of two colours or materials.
+    """Clouds of two colors or materials.
 
     Args:
         p: Point.
@@ -170,11 +170,11 @@ def palette(
     frequency: vec3 = ONCE,
     phase: vec3 = THIRDS,
 ) -> vec3:
-    """Colours along a number: ``base + amplitude * cos(2 pi (frequency * t + phase))``.
+    """Colors along a number: ``base + amplitude * cos(2 pi (frequency * t + phase))``.
 
     Args:
         t: A pattern that gives a number, or a number.
-        base: The mean colour.
+        base: The mean color.
         amplitude: Amplitude of each component.
         frequency: Number of periods of each component as t goes from 0 to 1.
         phase: Phase of each component, as a fraction of a period.
@@ -187,13 +187,13 @@ def palette(
 @pattern("by_cell")
 @func
 def by_cell(cell: vec3, seed: float = 0.0) -> vec3:
-    """A different colour for each repetition of a shape that is painted first, then repeated.
+    """A different color for each repetition of a shape that is painted first, then repeated.
 
-    The colour has any hue, and is neither pale nor dark.
+    The color has any hue, and is neither pale nor dark.
 
     Args:
         cell: Index of the repetition.
-        seed: Any number; another seed selects other colours.
+        seed: Any number; another seed selects other colors.
     """
     hue = cell_number(cell, seed, 0)
     depth = cell_number(cell, seed, 1)
@@ -287,7 +287,7 @@ def cube_map(p: vec3, image: TextureCube) -> vec3:
 @pattern("waves", extras=_sides(), requires=_has_layers)
 @func
 def waves(p: vec3, size: float = 1.0, direction: vec3 = ALONG_X) -> float:
-    """A smooth alternation between two colours or materials.
+    """A smooth alternation between two colors or materials.
 
     Args:
         p: Point.

@@ -20,7 +20,7 @@ DIAGONAL = vec3(1.0, 1.0, 1.0)
 
 @func
 def plain_background(direction: vec3, color: vec3 = BLACK) -> vec3:
-    """The same colour in every direction."""
+    """The same color in every direction."""
     return color
 
 
@@ -31,12 +31,12 @@ def gradient_background(
     bottom: vec3 = PALE,
     top: vec3 = BLUE,
 ) -> vec3:
-    """One colour straight down and another straight up, blended linearly by height.
+    """One color straight down and another straight up, blended linearly by height.
 
     Args:
         direction: Unit direction.
-        bottom: Colour straight down.
-        top: Colour straight up.
+        bottom: Color straight down.
+        top: Color straight up.
     """
     return mix(bottom, top, 0.5 + 0.5 * direction.y)
 
@@ -80,12 +80,12 @@ def sky(
     Args:
         direction: Unit direction.
         sun: Direction to the sun; of any length.
-        sun_color: The sun's colour.
+        sun_color: The sun's color.
         sun_intensity: The value that a white matte surface shows if it faces the sun.
         sun_angle: Angular size of the sun, in radians.
-        zenith: Colour overhead.
-        horizon: Colour along the horizon.
-        ground: Colour below.
+        zenith: Color overhead.
+        horizon: Color along the horizon.
+        ground: Color below.
         intensity: Brightness of everything but the sun.
     """
     air = mix(horizon, zenith, clamp(direction.y, 0.0, 1.0))

@@ -31,7 +31,7 @@ count = slider("Count", 3.0, low=1.0, high=9.0)
 
 @image
 def flat(frame: Frame) -> vec4:
-    """The same colour everywhere, by way of a loop whose end is known at run time only."""
+    """The same color everywhere, by way of a loop whose end is known at run time only."""
     total = 0.0
     for i in range(int(count)):
         total = total * 0.5 + float(i) * frame.time

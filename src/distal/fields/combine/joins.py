@@ -44,7 +44,7 @@ def cutter_shows(a: float, b: float) -> float:
 
 @func
 def first_box(bounds_a: Boxes, bounds_b: Boxes) -> Boxes:
-    """Return the first shape's box, because nothing is added to it."""
+    """Return the first shape's box: the operator adds nothing outside it."""
     return bounds_a
 
 

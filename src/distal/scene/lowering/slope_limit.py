@@ -21,7 +21,7 @@ Box: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
 
 
 def check_slope(node: Node) -> None:
-    """Refuse an operator that has no bound on its slope for its children.
+    """Raise an error if the slope of an operator, applied to its children, has no bound.
 
     Raises:
         SceneValueError: At the operator's line.

@@ -1,6 +1,6 @@
 """Backgrounds: the light of rays that hit nothing. Skies and environments can also be lights.
 
-Input: a colour, the numbers of a sky, a picture of an environment, or the author's own function of
+Input: a color, the numbers of a sky, a picture of an environment, or the author's own function of
 a direction. Output: a ``Background``, which computes the light from a direction. Only the camera
 and mirrors see it, unless it is declared a light (by ``light=True``, or by adding it to the
 lights): no light is counted twice.
@@ -47,7 +47,7 @@ class Background(CalledObject):
     A background never changes after construction.
 
     Args:
-        what: A colour, or a ``@func`` of ``direction: vec3`` (a unit vector) and of numbers that
+        what: A color, or a ``@func`` of ``direction: vec3`` (a unit vector) and of numbers that
             returns linear light.
         numbers: The function's numbers, by name.
 
@@ -97,7 +97,7 @@ class Surroundings(Light):
 
     Attributes:
         background: ``(direction) -> vec3``, the light of rays that hit nothing.
-        light: Whether it also lights a scene when it is only the scene's background.
+        light: Whether it also lights the scene when it is used as the background.
     """
 
     __slots__ = ("background", "light")
@@ -131,7 +131,7 @@ class Environment(Surroundings):
             (height, width, 3 or 4) of linear light; a ``Picture``; a ``Texture2D``.
         intensity: Factor on the light.
         turn: Rotation to the left about the y axis, in radians.
-        light: Whether it also lights a scene when it is only the background. In a scene's list of
+        light: Whether it also lights the scene when it is used as the background. In a list of
             lights it always does.
 
     Raises:
@@ -189,7 +189,7 @@ def environment_light(
 def as_background(
     value: Any, lights: Iterable[Light] = (), place: Span | None = None
 ) -> Background:
-    """Return the background of a value: a colour, a sky, a ``@func`` of a direction.
+    """Return the background of a value: a color, a sky, a ``@func`` of a direction.
 
     Args:
         value: The author's value. None selects a sky among the lights, else a plain gradient.
@@ -198,7 +198,7 @@ def as_background(
 
     Raises:
         TypeError: The value is none of these.
-        ValueError: The value is not a valid colour.
+        ValueError: The value is not a valid color.
     """
     place = place or author_place()
     if value is None:

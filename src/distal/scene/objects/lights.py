@@ -1,7 +1,7 @@
 """Lights of a scene.
 
 Input: the lights declared in ``render``. Output: a class for each. Its arguments are positions,
-directions, colours and intensities; all may be parameters or change with time. A light illuminates
+directions, colors and intensities; all may be parameters or change with time. A light illuminates
 a point from a position or direction (``sample``), or a surface by its normal from all sides
 (``ambient``). A point light of intensity 1 at distance 1, perpendicular to a white matte surface,
 makes it appear white (radiance 1).

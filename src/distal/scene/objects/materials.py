@@ -1,6 +1,6 @@
 """Materials of shapes.
 
-Input: colours, weights and numbers, each a constant, a parameter, an expression, or a pattern.
+Input: colors, weights and numbers, each a constant, a parameter, an expression, or a pattern.
 Output: a ``Material``, which computes the ``Surface`` at a place of the shape that it paints. The
 formulas are scene code of ``render.material``; this module checks the values and records what the
 choice of a renderer depends on: whether the material reflects or refracts rays.
@@ -44,19 +44,19 @@ class Material(CalledObject):
     """The appearance of a shape. A material never changes after construction.
 
     ``diffuse``, ``specular`` and ``transmission`` are shares of the incoming light and add up to at
-    most 1. Each argument is a number (or a colour), a parameter, an expression, or a pattern.
+    most 1. Each argument is a number (or a color), a parameter, an expression, or a pattern.
 
     Args:
-        color: Colour of scattered light, and of a metal's reflections: "#rrggbb", or linear red,
+        color: Color of scattered light, and of a metal's reflections: "#rrggbb", or linear red,
             green, blue.
         diffuse: Share of light that is scattered in all directions.
         specular: Share of light that is reflected.
         transmission: Share of light that is transmitted.
         ior: Index of refraction.
         roughness: From 0 for sharp reflections to 1 for very blurred ones.
-        metal: From 0 for white reflections to 1 for reflections with the material's colour.
-        emission: Emitted light, a colour.
-        absorption: Absorption coefficient inside per scene unit, for each colour channel.
+        metal: From 0 for white reflections to 1 for reflections with the material's color.
+        emission: Emitted light, a color.
+        absorption: Absorption coefficient inside per scene unit, for each color channel.
         fresnel: Whether reflection increases towards grazing angles as in glass; False keeps the
             weights constant.
 
@@ -136,7 +136,7 @@ class Material(CalledObject):
         All numbers are interpolated.
 
         Args:
-            other: A material or a colour.
+            other: A material or a color.
             t: From 0 to 1; may be a pattern.
         """
         return mixed(self, as_material(other), t, "mix", author_place())
@@ -172,7 +172,7 @@ def surface(
 
 @func
 def grey(amount: float) -> vec3:
-    """Return an amount as a grey colour."""
+    """Return an amount as a grey color."""
     return vec3(amount)
 
 
@@ -250,11 +250,11 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
 
 
 def as_material(value: Any, place: Span | None = None) -> Material:
-    """Return the material of a value: a material, a colour, a pattern, a ``@func`` of a place.
+    """Return the material of a value: a material, a color, a pattern, a ``@func`` of a place.
 
     Raises:
         TypeError: The value is none of these.
-        ValueError: The value is not a valid colour.
+        ValueError: The value is not a valid color.
     """
     place = place or author_place()
     if isinstance(value, Func):
@@ -300,8 +300,8 @@ def glass(
 
     Args:
         ior: Index of refraction: 1.33 water, 1.5 glass, 2.42 diamond.
-        color: Colour of white light after one scene unit inside; instead of ``absorption``.
-        absorption: Absorption coefficient inside per scene unit, for each colour channel.
+        color: Color of white light after one scene unit inside; instead of ``absorption``.
+        absorption: Absorption coefficient inside per scene unit, for each color channel.
 
     Raises:
         ValueError: The index is not above 0, or a number is out of its range.
@@ -322,7 +322,7 @@ def glass(
 
 
 def _absorption(color: Any, place: Span | None) -> Any:
-    """Return the absorption that turns white light into a colour in one unit (Beer-Lambert)."""
+    """Return the absorption that turns white light into a color in one unit (Beer-Lambert)."""
     asked = Asked("color", "glass", VEC3, Limit.FRACTION, is_color=True, place=place)
     left: Any = number(color, asked).value
     if not isinstance(left, Expression):

@@ -1,8 +1,8 @@
-"""Patterns: colours and amounts that vary over a surface.
+"""Patterns: colors and amounts that vary over a surface.
 
-Input: the patterns declared in ``render.patterns``; colours, materials, numbers, pictures, other
+Input: the patterns declared in ``render.patterns``; colors, materials, numbers, pictures, other
 patterns, authors' own functions of a place. Output: a ``Pattern``, which a material accepts instead
-of a colour or a number; a ``Material`` if one of a pattern's two sides is a material; an amount if
+of a color or a number; a ``Material`` if one of a pattern's two sides is a material; an amount if
 both are numbers. A place is ``p`` (the point in the local space of the painted shape), ``n`` (the
 normal there) and ``cell`` (the index of the repetition that contains it). The formulas are scene
 code.
@@ -40,7 +40,7 @@ _MAPPINGS: Final[Mapping[str, Func]] = {
 
 @func
 def mix_colors(a: vec3, b: vec3, t: float) -> vec3:
-    """Interpolate two colours: ``a`` at t = 0, ``b`` at t = 1."""
+    """Interpolate two colors: ``a`` at t = 0, ``b`` at t = 1."""
     return mix(a, b, t)
 
 
@@ -55,7 +55,7 @@ def pattern(function: Func, *args: Any, **kwargs: Any) -> Any:
 
     Args:
         function: A function of any of ``p: vec3``, ``n: vec3``, ``cell: vec3``, and of numbers. It
-            returns a float, a vec3 (a linear colour) or a ``Surface``, which makes a material.
+            returns a float, a vec3 (a linear color) or a ``Surface``, which makes a material.
         args: The function's numbers by position.
         kwargs: The function's numbers by name.
 
@@ -149,7 +149,7 @@ globals().update(FUNCTIONS)
 
 
 def is_amount(value: Any) -> bool:
-    """Return whether a side of a pattern is a number or a pattern of numbers, not a colour."""
+    """Return whether a side of a pattern is a number or a pattern of numbers, not a color."""
     return value.result is FLOAT if isinstance(value, Pattern) else is_scalar(value)
 
 

@@ -1,6 +1,6 @@
 """Calls of scene functions with their arguments: patterns, materials, lights, cameras.
 
-Input: a function and checked values, which may be such calls themselves (a material whose colour is
+Input: a function and checked values, which may be such calls themselves (a material whose color is
 a pattern). Output: on request, the call as an expression of the IR. Does not depend on what the
 function computes.
 """
@@ -134,9 +134,9 @@ def _identifier(what: str) -> str:
 
 
 class Pattern(FunctionCall):
-    """A colour (vec3) or an amount (float) that varies over a surface.
+    """A color (vec3) or an amount (float) that varies over a surface.
 
-    A material accepts it instead of a colour or a number.
+    A material accepts it instead of a color or a number.
     """
 
     __slots__ = ()

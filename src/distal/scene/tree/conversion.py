@@ -1,6 +1,6 @@
 """Conversion of an author's values to ``Number``s; errors are reported at the author's line.
 
-Input: Python and NumPy numbers, tuples, lists, arrays, vectors, ``"#hex"`` colours, parameters and
+Input: Python and NumPy numbers, tuples, lists, arrays, vectors, ``"#hex"`` colors, parameters and
 expressions, also mixed. Output: checked plain numbers, or one expression. Checks limits
 (``fields.guarantees``); does not depend on the functions that take the numbers.
 """
