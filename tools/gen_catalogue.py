@@ -239,6 +239,7 @@ def _box(row: Operator) -> str:
 
 def _first_line(func: Func) -> str:
     line = docstring(func).partition("\n")[0].rstrip(".").replace("``", "`").replace("|", "\\|")
+    line = line.removeprefix("Return ")  # a column of the page says what is returned
     return line[:1].lower() + line[1:]
 
 
