@@ -21,7 +21,6 @@ from distal.lang import abs, exp, exp2, func, length, log2, max, min, pow, selec
 
 # Lower limit of the width, which is used as a divisor; a smaller blend is a crease.
 SHARP = 1e-12
-LN2 = 0.6931471805599453
 # Distance of the quarter circle's corner from the middle of the arc, as a fraction of the radius.
 CORNER = 0.2928932188134524  # 1 - sqrt(1/2)
 

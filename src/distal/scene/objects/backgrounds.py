@@ -8,7 +8,6 @@ lights): no light is counted twice.
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -17,6 +16,7 @@ from distal.ir.types import VEC3
 from distal.lang import Buffer, func, vec3
 from distal.lang.expressions import Symbolic
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer as BufferData
 from distal.lang.resources import Texture2D
 from distal.render import ambient as ambient_library
@@ -38,7 +38,10 @@ from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
+    from distal.scene.objects import images as image_files
     from distal.scene.objects.argument_types import Color, Image, Number
+else:
+    image_files = LazyModule("distal.scene.objects.images")  # needs NumPy
 
 
 class Background(CalledObject):
@@ -148,7 +151,7 @@ class Environment(Surroundings):
         self, image: Image, intensity: Number = 1.0, turn: Number = 0.0, *, light: bool = False
     ) -> None:
         place = author_place()
-        texture = _images().light_texture(image, "Environment", place)
+        texture = image_files.light_texture(image, "Environment", place)
         given = {"image": texture, "intensity": intensity, "turn": turn}
         environment = environment_library.environment
         whole = scene_call(BACKGROUNDS, environment, given, "Environment", place)
@@ -161,7 +164,7 @@ class Environment(Surroundings):
         """``(n) -> vec3``, the diffuse light that a surface with normal n receives."""
         if self._ambient is None:
             whole = self.background
-            pixels = _images().texture_light(self._texture, "Environment", whole.place)
+            pixels = image_files.texture_light(self._texture, "Environment", whole.place)
             harmonics = BufferData(environment_library.harmonics(pixels))
             values = {**whole.values, "harmonics": harmonics}
             call = FunctionCall(whole.what, environment_light, values, whole.place)
@@ -243,8 +246,3 @@ def _part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
     taken = {slot.name for slot in slots_of(function)}
     values = {name: value for name, value in whole.values.items() if name in taken}
     return FunctionCall(whole.what, function, values, whole.place)
-
-
-def _images() -> Any:
-    """Import the module that decodes pictures; the compile path must not need NumPy."""
-    return importlib.import_module("distal.scene.objects.images")

@@ -7,16 +7,22 @@ only when such a shape is made.
 
 from __future__ import annotations
 
-import importlib
 import os
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from distal.diagnostics import Span
 from distal.fields.flats.outlines import OUTLINE
+from distal.lang.lazy_module import LazyModule
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.scene.objects import lettering, outlines
+else:
+    lettering = LazyModule("distal.scene.objects.lettering")  # needs fonts and NumPy
+    outlines = LazyModule("distal.scene.objects.outlines")  # needs NumPy
 
 
 class Text(Shape2D):
@@ -43,8 +49,7 @@ class Text(Shape2D):
         line_spacing: float = 1.2,
     ) -> None:
         place = author_place()
-        module = importlib.import_module("distal.scene.objects.lettering")
-        outline = module.text_outline(
+        outline = lettering.text_outline(
             text, font=font, size=size, align=align, line_spacing=line_spacing, place=place
         )
         BaseShape.__init__(self, _node(outline, place, even_odd=False))
@@ -64,8 +69,7 @@ class SvgPath(Shape2D):
 
     def __init__(self, path: str, *, size: float | None = None, even_odd: bool = False) -> None:
         place = author_place()
-        module = importlib.import_module("distal.scene.objects.outlines")
-        outline = module.svg_path(path, size=size, place=place)
+        outline = outlines.svg_path(path, size=size, place=place)
         BaseShape.__init__(self, _node(outline, place, even_odd=bool(even_odd)))
 
 

@@ -10,7 +10,6 @@ code.
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
@@ -18,6 +17,7 @@ from distal.diagnostics import Span
 from distal.ir.types import FLOAT
 from distal.lang import func, mix, vec3
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.render import patterns as library
 from distal.render.declarations import PATTERNS, Declaration
 from distal.scene.objects.declared import declared_call, declared_function, scene_call
@@ -28,7 +28,10 @@ from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
+    from distal.scene.objects import images as image_files
     from distal.scene.objects.argument_types import Image, Images, Number, Varying
+else:
+    image_files = LazyModule("distal.scene.objects.images")  # needs NumPy
 
 _MAPPINGS: Final[Mapping[str, Func]] = {
     "planar": library.image_planar,
@@ -94,7 +97,7 @@ def image_pattern(image: Image, mapping: str = "planar", size: Number | Varying 
     if mapping not in _MAPPINGS:
         hint = f"one of {', '.join(_MAPPINGS)}"
         refuse(f"there is no mapping {mapping!r:.40} for an image_pattern", hint, place)
-    texture = _images().light_texture(image, "image_pattern", place)
+    texture = image_files.light_texture(image, "image_pattern", place)
     given = {"image": texture, "size": size}
     return _pattern("image_pattern", _MAPPINGS[mapping], given, place)
 
@@ -111,7 +114,7 @@ def cube_map(images: Images) -> Pattern:
         TypeError: An argument has the wrong type.
     """
     place = author_place()
-    texture = _images().cube_texture(images, "cube_map", place)
+    texture = image_files.cube_texture(images, "cube_map", place)
     return _pattern("cube_map", library.cube_map, {"image": texture}, place)
 
 
@@ -151,8 +154,3 @@ globals().update(FUNCTIONS)
 def is_amount(value: Any) -> bool:
     """Return whether a side of a pattern is a number or a pattern of numbers, not a color."""
     return value.result is FLOAT if isinstance(value, Pattern) else is_scalar(value)
-
-
-def _images() -> Any:
-    """Import the module that decodes pictures; the compile path must not need NumPy."""
-    return importlib.import_module("distal.scene.objects.images")

@@ -135,7 +135,7 @@ def arguments(
             type.
         SceneValueError: A number is not finite, is beyond its limit, or contradicts others.
     """
-    binding = _ArgumentBinding(_number_slots(functions, reserved), what, place, accept is not None)
+    binding = _ArgumentBinding(_number_slots(functions, reserved), what, place)
     binding.take_keywords(kwargs)
     binding.take_positional(args)
     values: dict[str, Given] = {}
@@ -212,7 +212,6 @@ class _ArgumentBinding:
     slots: tuple[FunctionParameter, ...]
     what: str
     place: Span | None
-    takes_objects: bool
     given: dict[str, Any] = field(default_factory=dict)
 
     def _wrong(self, message: str, hint: str | None = None) -> NoReturn:
