@@ -31,6 +31,7 @@ from distal.render.ambient import hemisphere_light
 from distal.render.bounce import seen_plain
 from distal.render.camera import look_at
 from distal.render.lights import LightSample, distant_light
+from distal.render.march import march
 from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
 from distal.render.settings import march_numbers
@@ -97,17 +98,19 @@ def picture(frame: Frame) -> vec4:
     eye = vec3(3.0 * cos(angle), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(angle))
     uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
     ray = look_at(uv, eye, vec3(0.0), vec3(0.0, 1.0, 0.0), fov=2.0 * atan(1.0 / 1.6), mirror=True)
+    bounds = Bounds(-EVERYWHERE, EVERYWHERE)
+    numbers = march_numbers(1.0, 0.001, 60.0, frame.resolution)
     seen = seen_plain(
         ray,
+        lambda ray: march(lambda p: min(blob(p, time), floor(p)), ray, bounds, numbers, 160),
         lambda p: min(blob(p, time), floor(p)),
         lambda p: material(p, time),
         lambda i, p: sun(p),
         lambda n: hemisphere_light(n, vec3(0.5), vec3(0.25), 1.0),
         sky,
-        Bounds(-EVERYWHERE, EVERYWHERE),
-        march_numbers(1.0, 0.001, 60.0, frame.resolution),
+        bounds,
+        numbers,
         Look(0.4, FOG, 0.06),
-        steps=160,
         light_count=1,
         shadow_steps=64,
     )

@@ -79,11 +79,16 @@ def everywhere() -> Bounds:
     return Bounds(vec3(-1e18), vec3(1e18))
 
 
+@func
+def first_hit(ray: Ray) -> march.Hit:
+    return march.march(field, ray, everywhere(), numbers(), STEPS)
+
+
 @image
 def plain(frame: Frame) -> vec4:
     seen = bounce.seen_plain(
-        ray_of(frame), field, surface, lights, ambient, background,
-        everywhere(), numbers(), shade.Look(0.4, vec3(0.5), 0.02), STEPS, 2, 48,
+        ray_of(frame), first_hit, field, surface, lights, ambient, background,
+        everywhere(), numbers(), shade.Look(0.4, vec3(0.5), 0.02), 2, 48,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
 
@@ -91,8 +96,8 @@ def plain(frame: Frame) -> vec4:
 @image
 def mirrored(frame: Frame) -> vec4:
     seen = bounce.seen_mirrored(
-        ray_of(frame), field, surface, lights, ambient, background,
-        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 4,
+        ray_of(frame), first_hit, field, surface, lights, ambient, background,
+        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), 2, 48, 4,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
 
@@ -100,8 +105,8 @@ def mirrored(frame: Frame) -> vec4:
 @image
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
-        ray_of(frame), field, surface, lights, ambient, background,
-        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), STEPS, 2, 48, 6,
+        ray_of(frame), first_hit, field, surface, lights, ambient, background,
+        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), 2, 48, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 
@@ -158,11 +163,14 @@ def true_sea(frame: Frame) -> vec4:
     return vec4(sea_color(hit.t, hit.found), 1.0)
 
 
+@func
+def first_wave(ray: Ray) -> march.Hit:
+    stride = heightfield_march.Stride(0.13, 0.01, 1.05)
+    return heightfield_march.march_heightfield(sea, ray, everywhere(), sea_numbers(), stride, 64)
+
+
 @image
 def cost(frame: Frame) -> vec4:
     """The steps of the hybrid march, under a legend."""
-    stride = heightfield_march.Stride(0.13, 0.01, 1.05)
-    seen = views.view_steps(
-        sea_ray(frame), sea, everywhere(), sea_numbers(), 64, hybrid=True, stride=stride
-    )
+    seen = views.view_steps(sea_ray(frame), first_wave, 64)
     return legend.with_legend(seen, frame.coord, frame.resolution, 64)

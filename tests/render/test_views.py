@@ -13,7 +13,7 @@ from distal.lang import func, length, vec2, vec3, vec4
 from distal.lang.runtime_access import executor
 from distal.render import camera, film, layers, legend, local_views, settings, views
 from distal.render.camera import Ray
-from distal.render.march import March
+from distal.render.march import Hit, March, march
 from distal.render.material import Surface
 
 AHEAD = (0.0, 0.0, -1.0)
@@ -103,27 +103,37 @@ def march_of(divisor: float) -> March:
 
 
 @func
+def ball_hit(ray: Ray) -> Hit:
+    return march(ball, ray, everywhere(), march_of(1.0), 100)
+
+
+@func
+def steep_hit(ray: Ray) -> Hit:
+    return march(steep_ball, ray, everywhere(), march_of(2.0), 100)
+
+
+@func
 def view_of(name: int, origin: vec3, direction: vec3) -> vec4:
     ray = Ray(origin, direction)
     if name == 0:
-        return views.view_normal(ray, ball, everywhere(), march_of(1.0), 100)
+        return views.view_normal(ray, ball_hit, ball, march_of(1.0))
     if name == 1:
-        return views.view_depth(ray, ball, everywhere(), march_of(1.0), 100)
+        return views.view_depth(ray, ball_hit)
     if name == 2:
-        return views.view_coordinate(ray, ball, everywhere(), march_of(1.0), 100)
+        return views.view_coordinate(ray)
     if name == 3:
-        return views.view_signal(ray, ball, everywhere(), march_of(1.0), 100)
+        return views.view_signal(ray, ball_hit)
     if name == 4:
-        return views.view_slope(ray, steep_ball, everywhere(), march_of(2.0), 100, 4.0)
+        return views.view_slope(ray, steep_hit, steep_ball, march_of(2.0), 4.0)
     if name == 5:
-        return views.view_slope(ray, steep_ball, everywhere(), march_of(2.0), 100, 1.5)
+        return views.view_slope(ray, steep_hit, steep_ball, march_of(2.0), 1.5)
     if name == 6:
-        return views.view_material(ray, ball, shiny, everywhere(), march_of(1.0), 100)
+        return views.view_material(ray, ball_hit, shiny)
     if name == 7:
-        return views.view_distance(ray, ball, everywhere(), march_of(1.0), 100)
+        return views.view_distance(ray, ball)
     if name == 8:
         return views.view_slice(ray, ball, vec3(0.6, 0.0, 0.8), 0.5, 30.0)
-    return views.view_steps(ray, ball, everywhere(), march_of(1.0), 100)
+    return views.view_steps(ray, ball_hit, 100)
 
 
 VIEWS = ("normal", "depth", "coordinate", "signal", "slope", "too steep", "material")

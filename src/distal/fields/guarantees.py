@@ -168,6 +168,7 @@ class Primitive:
         signed: False for surfaces and curves without an inside.
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
+        linear: Whether the value is linear in p, as for a plane: rays meet it in closed form.
     """
 
     name: str
@@ -182,6 +183,7 @@ class Primitive:
     signed: bool = True
     estimate: bool = False
     tier: int = 1
+    linear: bool = False
 
     @property
     def flat(self) -> bool:
@@ -229,6 +231,7 @@ class Operator:
             …", shown if the slope's rule returns ``UNBOUNDED``. None if it never does.
         cuts: Whether the second shape is subtracted, so that its ``cut_material`` is shown.
         local: Whether it changes the shapes only where they meet.
+        linear: Whether the value is linear in p if that of the child is.
     """
 
     name: str
@@ -250,6 +253,7 @@ class Operator:
     needs: str | None = None
     cuts: bool = False
     local: bool = True
+    linear: bool = False
 
     @property
     def number_functions(self) -> tuple[Func, ...]:
@@ -324,6 +328,7 @@ def primitive(
     signed: bool = True,
     estimate: bool = False,
     tier: int = 1,
+    linear: bool = False,
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -339,6 +344,7 @@ def primitive(
         signed: Whether the shape has an inside.
         estimate: Whether the slope is an estimate.
         tier: The tier in the catalogue.
+        linear: Whether the value is linear in p.
     """
 
     def declare(distance: F) -> F:
@@ -356,6 +362,7 @@ def primitive(
             signed,
             estimate,
             tier,
+            linear,
         )
         return distance
 

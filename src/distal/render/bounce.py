@@ -12,13 +12,12 @@ from collections.abc import Callable
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, exp, func, reflect, refract, vec3, vec4
 from distal.render.camera import Ray
-from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.lights import LightSample
-from distal.render.march import March
+from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
 from distal.render.shade import Look, direct_light
-from distal.render.trace import first_surface, ray_offset, surface_point
+from distal.render.trace import ray_offset, surface_point
 
 # Alpha of a ray that starts inside a solid and does not leave it.
 ALL_INSIDE = -1.0
@@ -29,6 +28,7 @@ DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display ar
 @func
 def seen_plain(
     ray: Ray,
+    first_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3], Surface],
     lights: Callable[[int, vec3], LightSample],
@@ -37,18 +37,17 @@ def seen_plain(
     bounds: Bounds,
     numbers: March,
     look: Look,
-    steps: int,
     light_count: int,
     shadow_steps: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
     hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """Return the direct light at the first surface.
 
     Args:
         ray: Ray.
+        first_hit: The first surface along a ray.
         field: Signed distance.
         surface: The material at a point.
         lights: The light with a given index, from 0, at a point.
@@ -57,19 +56,17 @@ def seen_plain(
         bounds: Box around the surface.
         numbers: The parameters of the march.
         look: Ambient occlusion and fog.
-        steps: Maximum number of steps of a ray.
         light_count: How many lights there are.
         shadow_steps: Maximum number of steps of a shadow ray; 0 for no shadows.
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
-        hybrid: Whether to use the march for terrain and water; a constant.
-        stride: The steps of that march.
+        hybrid: Whether the march for terrain and water finds the hits; a constant.
 
     Returns:
         Linear light; alpha is 1 on a surface, 0 if there is none, ``ALL_INSIDE`` if the ray does
         not leave a solid.
     """
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     if not hit.found:
         return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
     point = surface_point(ray, hit, field, surface, numbers, normals, normal_step)
@@ -82,6 +79,7 @@ def seen_plain(
 @func
 def seen_mirrored(
     ray: Ray,
+    first_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3], Surface],
     lights: Callable[[int, vec3], LightSample],
@@ -90,14 +88,12 @@ def seen_mirrored(
     bounds: Bounds,
     numbers: March,
     look: Look,
-    steps: int,
     light_count: int,
     shadow_steps: int,
     bounces: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
     hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """As ``seen_plain``, with mirrors: one ray continues, at most ``bounces`` times."""
     color = vec3(0.0)
@@ -107,7 +103,7 @@ def seen_mirrored(
     direction = ray.direction
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
-        hit = first_surface(field, here, bounds, numbers, steps, hybrid, stride)
+        hit = first_hit(here)
         if hit.side < 0.0 and alpha > 0.0:
             break  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
@@ -135,6 +131,7 @@ def seen_mirrored(
 @func
 def seen_refracted(
     ray: Ray,
+    first_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3], Surface],
     lights: Callable[[int, vec3], LightSample],
@@ -143,7 +140,6 @@ def seen_refracted(
     bounds: Bounds,
     numbers: March,
     look: Look,
-    steps: int,
     light_count: int,
     shadow_steps: int,
     bounces: int,
@@ -167,7 +163,7 @@ def seen_refracted(
         throughput = throughputs[waiting]
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
-        hit = first_surface(field, here, bounds, numbers, steps, False, STRIDE)
+        hit = first_hit(here)
         if hit.side < 0.0 and not insides[waiting]:
             continue  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:

@@ -16,7 +16,7 @@ from __future__ import annotations
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
-from distal.render.march import Hit, March, crossing
+from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March, crossing
 
 UPRIGHT = 1e-6
 # A step goes to where the line through the last two values is 0, times this factor, so that the
@@ -170,4 +170,6 @@ def march_heightfield(
             t = select(t < end, min(t + max(safe, guess, step), end), 2.0 * end + 1.0)
             step *= stride.growth
     # If the steps run out between two probes, the current estimate is the best known place.
-    return Hit(t, found or bracket.value_below < 0.0, taken, 1.0)
+    found = found or bracket.value_below < 0.0
+    lost = select(found or t > end, PASSED, OUT_OF_STEPS)
+    return Hit(t, found, taken, 1.0, lost)

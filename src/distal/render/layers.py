@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, dot, func, gradient, vec2, vec3, vec4
 from distal.render.camera import Ray
-from distal.render.heightfield_march import STRIDE, Stride
 from distal.render.march import FORGIVING, Hit, March
 from distal.render.material import Surface
 from distal.render.normals import EXACT
-from distal.render.trace import facing_normal, first_surface, hit_point
+from distal.render.trace import facing_normal, hit_point
 
 NOTHING = vec4(0.0)
 # The largest error of a depth of 4 (a sphere, 160x120, without grazing rays) after 0, 1 and 2
@@ -68,15 +66,12 @@ def refined(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
 @func
 def layer_depth(
     ray: Ray,
+    first_hit: Callable[[Ray], Hit],
     field: Field3,
-    bounds: Bounds,
     numbers: March,
-    steps: int,
-    hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """Return the distance along the ray to the first surface, in scene units."""
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     if not hit.found:
         return NOTHING
     return vec4(refined(field, ray, hit, numbers), 0.0, 0.0, 1.0)
@@ -85,17 +80,14 @@ def layer_depth(
 @func
 def layer_normal(
     ray: Ray,
+    first_hit: Callable[[Ray], Hit],
     field: Field3,
-    bounds: Bounds,
     numbers: March,
-    steps: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
-    hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """Return the unit normal that the shading uses, in world space, facing the ray's origin."""
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     if not hit.found:
         return NOTHING
     return vec4(facing_normal(field, ray, hit, numbers, normals, normal_step), 1.0)
@@ -104,16 +96,11 @@ def layer_normal(
 @func
 def layer_albedo(
     ray: Ray,
-    field: Field3,
+    first_hit: Callable[[Ray], Hit],
     surface: Callable[[vec3], Surface],
-    bounds: Bounds,
-    numbers: March,
-    steps: int,
-    hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """Return the material's color, linear and without light."""
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     if not hit.found:
         return NOTHING
     return vec4(surface(hit_point(ray, hit)).color, 1.0)
@@ -122,16 +109,11 @@ def layer_albedo(
 @func
 def layer_material(
     ray: Ray,
-    field: Field3,
+    first_hit: Callable[[Ray], Hit],
     identity: Callable[[vec3], float],
-    bounds: Bounds,
-    numbers: March,
-    steps: int,
-    hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """Return the number of the material with the largest weight."""
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     if not hit.found:
         return NOTHING
     return vec4(identity(hit_point(ray, hit)), 0.0, 0.0, 1.0)

@@ -11,11 +11,10 @@ from collections.abc import Callable
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, func, gradient, length, struct, vec2, vec3
 from distal.render.camera import Ray
-from distal.render.heightfield_march import Stride
-from distal.render.march import March, crossing
+from distal.render.march import Hit, March, crossing
 from distal.render.material import Surface
 from distal.render.normals import exact_normal
-from distal.render.trace import first_surface, hit_point, point_before
+from distal.render.trace import hit_point, point_before
 
 
 @struct
@@ -33,6 +32,7 @@ class Seen:
     t: float
     steps: int
     side: float
+    lost: int
     p: vec3
     value: float
     normal: vec3
@@ -47,19 +47,17 @@ def look_along(
     coord: vec2,
     resolution: vec2,
     camera: Callable[[vec2], Ray],
+    first_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3], Surface],
     part: Callable[[vec3], float],
     paint: Callable[[vec3], float],
     bounds: Bounds,
     numbers: March,
-    steps: int,
-    hybrid: bool,
-    stride: Stride,
 ) -> Seen:
     """Return what the ray through a place in a picture hits."""
     ray = camera((2.0 * coord - resolution) / resolution.y)
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     p = hit_point(ray, hit)
     return Seen(
         ray.origin,
@@ -69,6 +67,7 @@ def look_along(
         hit.t,
         hit.steps,
         hit.side,
+        hit.lost,
         p,
         field(p),
         exact_normal(field, point_before(ray, hit, numbers)),

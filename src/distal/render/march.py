@@ -20,6 +20,11 @@ LONGEST = 8.0
 # When steps run out, the closest approach is a hit if it came within this many thresholds.
 FORGIVING = 4.0
 
+# Why a ray has found no surface.
+PASSED = 0  # it left the box, or moved away from the surfaces
+OUT_OF_STEPS = 1
+TOO_FAR = 2  # the far limit ended it on its way towards a surface
+
 
 @struct
 class March:
@@ -48,12 +53,14 @@ class Hit:
         found: Whether there is a surface.
         steps: Number of evaluations of the field.
         side: -1 if the ray began inside a solid, else 1.
+        lost: PASSED, OUT_OF_STEPS or TOO_FAR; PASSED if a surface was found.
     """
 
     t: float
     found: bool
     steps: int
     side: float
+    lost: int = PASSED
 
 
 @func
@@ -93,6 +100,7 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
     best = UNBOUNDED
     best_t = t
     found = False
+    nearing = False
     for i in range(steps):
         if t > end:
             break
@@ -121,6 +129,7 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
                 best_t = t + clamp(beyond, 0.0, FORGIVING * numbers.threshold * t)
                 break
             # The ball that would touch this one if the surface ahead were flat.
+            nearing = d < free
             touching = d * (step - free + d) / max(step + free - d, 1e-9)
             step = d + select(step > 0.0, RELAXATION * clamp(touching, 0.0, LONGEST * d), 0.0)
             free = d
@@ -133,4 +142,8 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
     ran_out = taken == steps and not found and t < end and best_t > 0.7 * t
     if ran_out and best < FORGIVING * numbers.threshold:
         found = True
-    return Hit(best_t, found, taken, side)
+    lost = PASSED
+    if not found:
+        cut_short = t > end and numbers.far < span.y and nearing
+        lost = select(t > end, select(cut_short, TOO_FAR, PASSED), OUT_OF_STEPS)
+    return Hit(best_t, found, taken, side, lost)

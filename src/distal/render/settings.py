@@ -6,11 +6,19 @@ shading.
 
 from __future__ import annotations
 
-from distal.fields.guarantees import Bounds
-from distal.lang import clamp, func, max, vec2, vec3
+from collections.abc import Callable
+
+from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds
+from distal.lang import clamp, dot, func, max, min, select, vec2, vec3
+from distal.render.camera import Ray
 from distal.render.heightfield_march import Stride
 from distal.render.march import March
 from distal.render.shade import Look
+from distal.render.steer import pivot_within
+
+# Rays through an infinite scene end at this distance, and at this many distances to the subject.
+FAR = 200.0
+FAR_DISTANCES = 40.0
 
 
 @func
@@ -57,3 +65,25 @@ def grown_bounds(bounds: Bounds) -> Bounds:
     """Return a box with a margin for 32-bit rounding errors."""
     room = 1e-3 + 1e-4 * max(bounds.high - bounds.low, 0.0)
     return Bounds(bounds.low - room, bounds.high + room)
+
+
+@func
+def no_box() -> Bounds:
+    """Return a box that no ray enters."""
+    return Bounds(vec3(UNBOUNDED), vec3(-UNBOUNDED))
+
+
+@func
+def automatic_far(bounds: Bounds, camera: Callable[[vec2], Ray]) -> float:
+    """Return the distance at which rays end: beyond every surface if the scene's box is finite.
+
+    Args:
+        bounds: Box around the surfaces.
+        camera: Ray of a place in the picture.
+    """
+    low = min(bounds.low.x, min(bounds.low.y, bounds.low.z))
+    high = max(bounds.high.x, max(bounds.high.y, bounds.high.z))
+    eye = camera(vec2(0.0))
+    depth = dot(pivot_within(bounds, camera) - eye.origin, eye.direction)
+    finite = max(-low, high) < ENDLESS
+    return select(finite, UNBOUNDED, max(FAR, FAR_DISTANCES * depth))

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.guarantees import Bounds
-from distal.lang import Field3, dot, func, max, struct, vec3
+from distal.fields.boxes import everywhere
+from distal.fields.guarantees import UNBOUNDED, Bounds
+from distal.lang import Field3, dot, func, gradient, max, min, select, struct, vec3
 from distal.render.camera import Ray
 from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
 from distal.render.march import Hit, March, march
@@ -64,6 +65,64 @@ def first_surface(
     if hybrid:
         return march_heightfield(field, ray, bounds, numbers, stride, steps)
     return march(field, ray, bounds, numbers, steps)
+
+
+@func
+def plane_crossing(plane: Field3, ray: Ray) -> float:
+    """Return the distance along a ray to a plane; ``UNBOUNDED`` if it is not ahead.
+
+    Args:
+        plane: A field that is linear in the point; positive at the ray's origin.
+        ray: Ray.
+    """
+    height = plane(ray.origin)
+    fall = -dot(gradient(plane, ray.origin), ray.direction)
+    return select(fall > 0.0, min(height / max(fall, 1e-30), UNBOUNDED), UNBOUNDED)
+
+
+@func
+def first_surface_or_plane(
+    field: Field3,
+    planes: Field3,
+    nearest_plane: Callable[[Ray], float],
+    ray: Ray,
+    bounds: Bounds,
+    numbers: March,
+    farthest_plane: float,
+    steps: int,
+) -> Hit:
+    """March to the first surface along a ray; planes are met in closed form.
+
+    A plane is met at any distance, so that it ends at the true horizon, and rays that pass close to
+    it take no more steps than others.
+
+    Args:
+        field: Signed distance without the planes.
+        planes: Signed distance of the planes' union.
+        nearest_plane: Distance along a ray that starts above all planes to the first of them.
+        ray: Ray.
+        bounds: Box around the surface without the planes.
+        numbers: The parameters of the march.
+        farthest_plane: Planes farther along the ray are not seen.
+        steps: Maximum number of steps.
+    """
+    below = planes(ray.origin) <= 0.0
+    # A ray from below a plane starts inside a solid; it is marched through all surfaces.
+    met = UNBOUNDED
+    if not below:
+        met = nearest_plane(ray)
+
+    def nearest(p: vec3) -> float:
+        d = field(p)
+        return select(below, min(d, planes(p)), d)
+
+    box = everywhere() if below else bounds
+    far = min(numbers.far, met)
+    limited = March(numbers.divisor, numbers.near, far, numbers.threshold)
+    hit = march(nearest, ray, box, limited, steps)
+    if hit.found or met >= farthest_plane:
+        return hit
+    return Hit(met, True, hit.steps, 1.0, hit.lost)
 
 
 @func

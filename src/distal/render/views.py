@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.guarantees import Bounds
 from distal.lang import (
     Field3,
     abs,
@@ -26,11 +25,10 @@ from distal.lang import (
 )
 from distal.lang.srgb import encode_srgb
 from distal.render.camera import Ray
-from distal.render.heightfield_march import STRIDE, Stride
-from distal.render.march import March, march
+from distal.render.march import Hit, March
 from distal.render.material import Surface
 from distal.render.normals import EXACT
-from distal.render.trace import facing_normal, first_surface, hit_point, point_before
+from distal.render.trace import facing_normal, hit_point, point_before
 
 EMPTY = vec3(0.08, 0.08, 0.1)
 
@@ -55,18 +53,18 @@ def isolines(d: float, spacing: float) -> vec3:
 
 
 @func
-def view_normal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+def view_normal(ray: Ray, first_hit: Callable[[Ray], Hit], field: Field3, numbers: March) -> vec4:
     """Show the normal's x, y, z as red, green, blue."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_hit(ray)
     if not hit.found:
         return vec4(EMPTY, 0.0)
     return vec4(0.5 + 0.5 * facing_normal(field, ray, hit, numbers, EXACT, 0.0), 1.0)
 
 
 @func
-def view_depth(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+def view_depth(ray: Ray, first_hit: Callable[[Ray], Hit]) -> vec4:
     """Show the distance: near is bright; the brightness halves at 20/3 units."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_hit(ray)
     if not hit.found:
         return vec4(vec3(0.0), 0.0)
     return vec4(vec3(1.0 / (1.0 + 0.15 * hit.t)), 1.0)
@@ -75,37 +73,33 @@ def view_depth(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: i
 @func
 def view_steps(
     ray: Ray,
-    field: Field3,
-    bounds: Bounds,
-    numbers: March,
+    first_hit: Callable[[Ray], Hit],
     steps: int,
-    hybrid: bool = False,
-    stride: Stride = STRIDE,
 ) -> vec4:
     """Show the cost of a ray: the number of field evaluations as a fraction of the limit."""
-    hit = first_surface(field, ray, bounds, numbers, steps, hybrid, stride)
+    hit = first_hit(ray)
     return vec4(heat(float(hit.steps) / float(steps)), 1.0)
 
 
 @func
-def view_coordinate(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+def view_coordinate(ray: Ray) -> vec4:
     """Show the direction of the ray as a color."""
     return vec4(0.5 + 0.5 * ray.direction, 1.0)
 
 
 @func
-def view_signal(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+def view_signal(ray: Ray, first_hit: Callable[[Ray], Hit]) -> vec4:
     """Show the distance along the ray as a gray value."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_hit(ray)
     return vec4(vec3(exp(-0.2 * hit.t) if hit.found else 0.0), 1.0)
 
 
 @func
 def view_slope(
-    ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int, slope: float
+    ray: Ray, first_hit: Callable[[Ray], Hit], field: Field3, numbers: March, slope: float
 ) -> vec4:
     """Show |gradient| on the surface, relative to the Lipschitz bound (slope); magenta above it."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_hit(ray)
     if not hit.found:
         return vec4(EMPTY, 0.0)
     steep = length(gradient(field, point_before(ray, hit, numbers)))
@@ -117,14 +111,11 @@ def view_slope(
 @func
 def view_material(
     ray: Ray,
-    field: Field3,
+    first_hit: Callable[[Ray], Hit],
     surface: Callable[[vec3], Surface],
-    bounds: Bounds,
-    numbers: March,
-    steps: int,
 ) -> vec4:
     """Show the material's color plus its emission, without light."""
-    hit = march(field, ray, bounds, numbers, steps)
+    hit = first_hit(ray)
     if not hit.found:
         return vec4(EMPTY, 0.0)
     found = surface(hit_point(ray, hit))
@@ -132,7 +123,7 @@ def view_material(
 
 
 @func
-def view_distance(ray: Ray, field: Field3, bounds: Bounds, numbers: March, steps: int) -> vec4:
+def view_distance(ray: Ray, field: Field3) -> vec4:
     """Show the field on the plane through the origin that faces the camera."""
     t = -dot(ray.origin, ray.direction) / max(dot(ray.direction, ray.direction), 1e-6)
     return vec4(isolines(field(ray.origin + t * ray.direction), 0.1), 1.0)

@@ -81,9 +81,12 @@ class Scene(Composed, Presentable):
             of distance.
         stride_growth: For the "heightfield" march: the factor by which ``stride`` grows from step
             to step.
-        steps: The maximum number of steps of a ray.
+        steps: The maximum number of steps of a ray. None: 160, and more where the Lipschitz bound
+            (slope) of a field is above 1.
         near: The distance at which rays begin, in scene units.
-        far: The distance at which rays end, in scene units.
+        far: The distance at which rays end, in scene units. None: rays end beyond the last surface;
+            in an infinite scene at 40 times the distance to the camera's target, at least 200.
+            Planes have no limit.
         name: The name in messages and emitted texts.
 
     Raises:
@@ -114,9 +117,9 @@ class Scene(Composed, Presentable):
         march: str = "sphere",
         stride: Number = 0.03,
         stride_growth: Number = 1.05,
-        steps: int = 160,
+        steps: int | None = None,
         near: Number = 0.001,
-        far: Number = 200.0,
+        far: Number | None = None,
         name: str = "scene",
     ) -> None:
         place = self.place = author_place()
@@ -133,7 +136,7 @@ class Scene(Composed, Presentable):
         self.march = one_of("march", march, ("sphere", "heightfield"), place)
         self.shadows = bool(shadows)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
-        self.steps = whole("steps", steps, Limit.POSITIVE, place)
+        self.steps = None if steps is None else whole("steps", steps, Limit.POSITIVE, place)
         self.numbers = checked_numbers(
             place,
             exposure=exposure,

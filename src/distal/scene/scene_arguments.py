@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from distal import Camera, DistantLight, HemisphereLight
 from distal.diagnostics import Span
-from distal.fields.guarantees import Limit
+from distal.fields.guarantees import UNBOUNDED, Limit
 from distal.ir.types import FLOAT, INT
 from distal.lang import func, vec3
 from distal.scene.objects.cameras import BaseCamera
@@ -39,26 +39,33 @@ def scene_numbers(
     fog_density: float,
     ambient_occlusion: float,
     near: float,
-    far: float,
     stride: float,
     stride_growth: float,
+    far: float = UNBOUNDED,
 ) -> float:
     """Declare the names, types and order of a scene's numbers; never called."""
     return exposure
 
 
 def checked_numbers(place: Span | None, **given: Any) -> Mapping[str, Any]:
-    """Return a scene's numbers by name; ``given`` are the arguments of ``scene_numbers``."""
-    return arguments(
+    """Return a scene's numbers by name; those that are None are left out.
+
+    Args:
+        place: The author's line.
+        given: The arguments of ``scene_numbers``.
+    """
+    asked = {name: value for name, value in given.items() if value is not None}
+    found = arguments(
         scene_numbers,
         (),
-        given,
+        asked,
         what="Scene",
         limits=_LIMITS,
         requires=_ends,
         colors=("fog",),
         place=place,
     )
+    return {name: value for name, value in found.items() if name in asked}
 
 
 def checked_exposure(exposure: Any, place: Span | None) -> Any:

@@ -23,7 +23,7 @@ CORNER_C: Final = vec3(0.5, 0.0, -0.5)
 CORNER_D: Final = vec3(-0.5, 0.0, -0.5)
 
 
-@primitive("Plane", EXACT)
+@primitive("Plane", EXACT, linear=True)
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
     """Ground: the half space below a horizontal plane.
@@ -42,7 +42,7 @@ def plane(p: vec3, y: float = 0.0) -> float:
     return p.y - y
 
 
-@primitive("HalfSpace", EXACT)
+@primitive("HalfSpace", EXACT, linear=True)
 @func
 def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     """Half space on one side of a plane.

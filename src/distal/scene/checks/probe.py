@@ -18,6 +18,7 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
+from distal.render.march import OUT_OF_STEPS, PASSED
 from distal.scene.checks.validation import guarantee_names, place_json
 from distal.scene.lowering.attributes import AttributePoint, Part, SurfaceAttribute
 from distal.scene.lowering.picture import SceneLowering
@@ -123,16 +124,16 @@ def probe(
     if seen.found:
         path = _path(scene.shape.node, program.parts[round(seen.part)])
         material = program.paints[round(seen.paint)]
-    return Probed(pixel, size, seen, _ended(scene, seen), path, material, slope)
+    return Probed(pixel, size, seen, _ended(seen), path, material, slope)
 
 
-def _ended(scene: Scene, seen: Any) -> str:
+def _ended(seen: Any) -> str:
     if seen.found:
         return "hit"
+    if seen.lost != PASSED:
+        return "ran out of steps" if seen.lost == OUT_OF_STEPS else "ended at far"
     if seen.span.x > seen.span.y or seen.span.y < 0.0:
         return "passed the box"
-    if seen.steps >= scene.steps:
-        return "ran out of steps"
     return "left the box" if seen.span.y < 1e9 else "left the scene"
 
 

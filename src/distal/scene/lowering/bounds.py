@@ -203,7 +203,7 @@ class BoundsComposer:
         b: ShapeBounds,
         own: Mapping[str, Expr],
     ) -> ShapeBounds:
-        larger = body.let("slope", builtin("max", a.slope, b.slope))
+        larger = _larger(body, "slope", a.slope, b.slope)
         side_growth = _larger(body, "side_growth", a.side_growth, b.side_growth)
         given = {**own, **_named(a, b), "side_growth": side_growth}
         given["growth"] = _larger(body, "growth", a.growth, b.growth)
@@ -213,7 +213,7 @@ class BoundsComposer:
         bounds = body.let("bounds", self._call(around, given))
         divisor = slope
         if Guarantee.LOWER_BOUND in rule.keeps:
-            divisor = body.let("divisor", builtin("max", a.divisor, b.divisor))
+            divisor = _larger(body, "divisor", a.divisor, b.divisor)
         growth, side_growth = self._growth(body, rule, (a, b), bounds, given)
         return ShapeBounds(slope, divisor, bounds, growth, side_growth)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from distal.fields.guarantees import UNBOUNDED
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
 from distal.ir.nodes import CompareOp, Expr, FunctionRef, If, Param, Read, Return
@@ -25,6 +26,7 @@ from distal.scene.lowering.attributes import (
     SurfaceAttribute,
     attribute,
 )
+from distal.scene.lowering.first_hit import FirstHit, shadow_step_limit, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.calls import expression_of
 from distal.scene.tree.values import StatementList
@@ -75,15 +77,15 @@ class SceneLowering:
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
             "resolution": resolution,
-            "camera": self._steered(resolution) if steered else self._camera(resolution),
-            "radiance": self._radiance(self._shown(view), resolution),
+            "camera": self._camera_of(resolution, steered=steered),
             "transparent": boolean(transparent),
             "samples": self._assembly.number("Samples", INT, 1) if sampled else integer(1),
         }
+        given["radiance"] = self._radiance(self._shown(view), resolution, steered=steered)
         color = body.let("color", self.composer.call(film.exposed, given))
         if view == "steps":
             given["color"] = color
-            given["most"] = integer(self._scene.steps)
+            given["most"] = self._steps(body)
             color = body.let("color", self.composer.call(legend.with_legend, given))
         if encoded:
             color = self.displayed(color)
@@ -101,8 +103,8 @@ class SceneLowering:
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
             "resolution": resolution,
-            "camera": self._steered(resolution) if steered else self._camera(resolution),
-            "radiance": self._radiance(LAYERS[name], resolution),
+            "camera": self._camera_of(resolution, steered=steered),
+            "radiance": self._radiance(LAYERS[name], resolution, steered=steered),
         }
         value = self.composer.call(layers.through_middle, given)
         params = (Param("frame", FRAME),)
@@ -117,8 +119,16 @@ class SceneLowering:
         }
         return self.composer.call(tonemap.display, given)
 
-    def given(self, body: StatementList, resolution: Expr) -> dict[str, Expr]:
-        """Return all values that a renderer may take, by name."""
+    def given(
+        self, body: StatementList, resolution: Expr, *, steered: bool = False
+    ) -> dict[str, Expr]:
+        """Return all values that a renderer may take, by name.
+
+        Args:
+            body: The statements to add to.
+            resolution: Size of the picture in pixels.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
         composer, scene, node = self.composer, self._scene, self._node
         values = composer.values.all(node)
         bounds_of_scene = composer.bounds.of(body, node, values)
@@ -132,20 +142,40 @@ class SceneLowering:
             "lights": self._lights(),
             "ambient": self._ambient(),
             "background": self._background(),
-            "camera": self._camera(resolution),
-            "steps": integer(scene.steps),
+            "camera": self._camera_of(resolution, steered=steered),
             "bounces": integer(scene.bounces),
-            "hybrid": boolean(scene.march == "heightfield"),
+            "hybrid": boolean(self._hybrid),
             "normals": integer(NORMALS.index(scene.normals)),
             "light_count": integer(len(self._samples())),
-            "shadow_steps": integer(max(64, 2 * scene.steps // 5) if scene.shadows else 0),
         }
+        given["steps"] = self._steps(body)
+        given["shadow_steps"] = integer(0)
+        if scene.shadows:
+            given["shadow_steps"] = body.let("shadow_steps", shadow_step_limit(given["steps"]))
         room = {"bounds": bounds_of_scene.bounds}
         given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
+        given["farthest_plane"] = self._numbers.get("far", number(UNBOUNDED))
+        if "far" not in self._numbers:
+            given["far"] = body.let("far", composer.call(settings.automatic_far, given))
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))
+        first_hit = FirstHit(composer, node, self._function)
+        given["first_hit"] = first_hit.function(body, given, hybrid=self._hybrid)
         return given
+
+    @property
+    def _hybrid(self) -> bool:
+        """Whether the march for terrain and water is used; it does not follow rays inside glass."""
+        return self._scene.march == "heightfield" and self._scene.renderer != "refracted"
+
+    def _steps(self, body: StatementList) -> Expr:
+        """Return the maximum number of steps of a ray."""
+        if self._scene.steps is not None:
+            return integer(self._scene.steps)
+        values = self.composer.values.all(self._node)
+        divisor = self.composer.bounds.of(body, self._node, values).divisor
+        return body.let("steps", step_limit(divisor))
 
     def _function(
         self,
@@ -170,9 +200,9 @@ class SceneLowering:
         """Return the library function that computes a view along a ray."""
         return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
 
-    def _radiance(self, shown: Func, resolution: Expr) -> FunctionRef:
+    def _radiance(self, shown: Func, resolution: Expr, *, steered: bool) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            asked = {**self.given(body, given["resolution"]), **given}
+            asked = {**self.given(body, given["resolution"], steered=steered), **given}
             if shown is views.view_slice:
                 asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
                 asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
@@ -267,6 +297,9 @@ class SceneLowering:
         values = self.composer.values.all(self._node)
         bounds = self.composer.bounds.of(body, self._node, values).bounds
         return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
+
+    def _camera_of(self, resolution: Expr, *, steered: bool) -> FunctionRef:
+        return self._steered(resolution) if steered else self._camera(resolution)
 
     def _camera(self, resolution: Expr) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:

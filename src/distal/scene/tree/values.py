@@ -12,7 +12,7 @@ from typing import Any
 
 from distal.fields.guarantees import Operator
 from distal.frontend import Assembly
-from distal.ir.nodes import Expr, Let, Read, Stmt
+from distal.ir.nodes import Const, Expr, Let, Read, Stmt
 from distal.ir.types import BOOL, INT
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.tree.calls import expression_of
@@ -28,7 +28,7 @@ class StatementList:
 
     def let(self, stem: str, value: Expr) -> Expr:
         """Add a named value and return the expression that reads it."""
-        if isinstance(value, Read):
+        if isinstance(value, Read | Const):
             return value
         name, n = stem, 2
         while name in self.taken:

@@ -1,0 +1,163 @@
+"""The function that finds the first surface along a ray, for one scene.
+
+Input: the scene's tree and the values of its march. Output: a function ``(ray) -> Hit`` that all
+renderers, views and layers call. Planes that the scene is united with are met in closed form; the
+other shapes are marched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Final, TypeAlias
+
+from distal.fields.combine.joins import UNION
+from distal.fields.guarantees import UNBOUNDED, Primitive
+from distal.ir.build import builtin, cast, multiply
+from distal.ir.build import number as constant_number
+from distal.ir.nodes import Const, Expr, FunctionRef
+from distal.ir.types import VEC3, Kind, Type
+from distal.lang.functions import Func
+from distal.passes.fold.fold import fold_expression
+from distal.render import settings, trace
+from distal.render.camera import Ray
+from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import StatementList
+
+# The number of steps of a ray through an exact field; a field that grows faster needs more.
+STEPS: Final = 160
+MOST_STEPS: Final = 4096
+# A shadow ray takes this share of the steps of other rays, and at least this many.
+SHADOW_SHARE: Final = 0.4
+LEAST_SHADOW_STEPS: Final = 64
+
+# What the marches take besides the ray and the fields.
+_TAKEN: Final = ("bounds", "numbers", "steps", "hybrid", "stride", "farthest_plane")
+
+# Adds a function to the program: its name, its parameters, its body, captured values.
+Make: TypeAlias = "Callable[[StatementList, Mapping[str, Expr]], Expr]"
+Define: TypeAlias = "Callable[[str, list[tuple[str, Type]], Make, list[Expr]], FunctionRef]"
+
+
+def step_limit(divisor: Expr) -> Expr:
+    """Return the number of steps for a field whose values are divided by a number."""
+    least, most = float(STEPS), float(MOST_STEPS)
+    wanted = builtin("max", multiply(divisor, constant_number(least)), constant_number(least))
+    return _whole(builtin("min", wanted, constant_number(most)))
+
+
+def shadow_step_limit(steps: Expr) -> Expr:
+    """Return the number of steps of a shadow ray, given that of other rays."""
+    share = multiply(cast(steps, Kind.FLOAT), constant_number(SHADOW_SHARE))
+    return _whole(builtin("max", share, constant_number(float(LEAST_SHADOW_STEPS))))
+
+
+def _whole(value: Expr) -> Expr:
+    """Return a number rounded up; a constant if it is one."""
+    return fold_expression(cast(builtin("ceil", value), Kind.INT), 32)
+
+
+def split_planes(root: Node) -> tuple[list[Node], list[Node]]:
+    """Return the planes that a tree is united with, and the other shapes of this union."""
+    planes: list[Node] = []
+    others: list[Node] = []
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        if node.rule is UNION:
+            stack.extend(reversed(node.children))
+        else:
+            (planes if is_linear(node) else others).append(node)
+    return planes, others
+
+
+def is_linear(node: Node) -> bool:
+    """Return whether a subtree's distance is linear in the point."""
+    if isinstance(node.rule, Primitive) or not node.children:
+        return node.rule.linear
+    return node.rule.linear and is_linear(node.children[0])
+
+
+def united(root: Node, nodes: list[Node]) -> Node:
+    """Return the union of several parts of a tree."""
+    return nodes[0] if len(nodes) == 1 else replace(root, rule=UNION, children=tuple(nodes))
+
+
+class FirstHit:
+    """Makes the function ``(ray) -> Hit`` of a scene."""
+
+    def __init__(self, composer: ShapeComposer, root: Node, define: Define) -> None:
+        self._composer = composer
+        self._root = root
+        self._define = define
+
+    def function(
+        self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool
+    ) -> FunctionRef:
+        """Return the function.
+
+        Args:
+            body: The statements of the function that calls it.
+            given: The values of the march, by name.
+            hybrid: Whether the march for terrain and water is used.
+        """
+        planes, others = split_planes(self._root)
+        if hybrid or not planes:
+            return self._bound(trace.first_surface, given, {"field": self._field(self._root)})
+        values = {**given, **self._without_planes(body, others)}
+        functions = {
+            "field": self._field(united(self._root, others)) if others else self._nothing(),
+            "planes": self._field(united(self._root, planes)),
+            "nearest_plane": self._nearest_plane(planes),
+        }
+        return self._bound(trace.first_surface_or_plane, values, functions)
+
+    def _field(self, node: Node) -> FunctionRef:
+        return self._composer.field(node, self._composer.values.all(node), ZERO_CELL)
+
+    def _nothing(self) -> FunctionRef:
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            return constant_number(UNBOUNDED)
+
+        return self._define("nothing", [("p", VEC3)], make, [])
+
+    def _without_planes(self, body: StatementList, others: list[Node]) -> dict[str, Expr]:
+        """Return the box and the parameters of the march without the planes."""
+        composer = self._composer
+        if not others:
+            return {"bounds": composer.call(settings.no_box, {})}
+        node = united(self._root, others)
+        found = composer.bounds.of(body, node, composer.values.all(node))
+        return {
+            "bounds": body.let(
+                "other_bounds", composer.call(settings.grown_bounds, {"bounds": found.bounds})
+            )
+        }
+
+    def _nearest_plane(self, planes: list[Node]) -> FunctionRef:
+        fields = [self._field(plane) for plane in planes]
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            nearest: Expr = constant_number(UNBOUNDED)
+            for plane in fields:
+                met = self._composer.call(trace.plane_crossing, {**given, "plane": plane})
+                nearest = body.let("t", builtin("min", nearest, met))
+            return nearest
+
+        ray = self._composer.assembly.struct(Ray)
+        return self._define("nearest_plane", [("ray", ray)], make, [])
+
+    def _bound(
+        self, function: Func, values: Mapping[str, Expr], functions: Mapping[str, FunctionRef]
+    ) -> FunctionRef:
+        """Return a march as a function of the ray alone; it captures values that vary."""
+        constants = {n: values[n] for n in _TAKEN if n in values and isinstance(values[n], Const)}
+        captured = {n: values[n] for n in _TAKEN if n in values and n not in constants}
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            return self._composer.call(function, {**constants, **functions, **given})
+
+        params: list[tuple[str, Type]] = [("ray", self._composer.assembly.struct(Ray))]
+        params += [(name, value.type) for name, value in captured.items()]
+        return self._define("first_hit", params, make, list(captured.values()))
