@@ -126,7 +126,8 @@ def _operator_module(row: Operator) -> str:
 
 
 def _shape_cells(row: Primitive) -> tuple[str, ...]:
-    numbers = ", ".join(_number(s, row.limits.get(s.name)) for s in slots_of(row.distance))
+    slots = (s for s in slots_of(row.distance) if s.name not in row.measured)
+    numbers = ", ".join(_number(s, row.limits.get(s.name)) for s in slots)
     return (
         f"**{row.name}**" + ("" if row.signed else " (no inside)"),
         numbers or "-",

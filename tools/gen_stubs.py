@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import distal
+from distal.fields.guarantees import Primitive
 from distal.ir.types import Vector
-from distal.lang.functions import Func
 from distal.scene.objects import backgrounds, cameras, lights, materials, patterns, shapes
 from distal.scene.objects.declared import annotation_of
 from distal.scene.tree.arguments import RESERVED_OF_SHAPES, SPLATTED, FunctionParameter, slots_of
@@ -108,7 +108,7 @@ def _entry(made: Any) -> str:
     doc = _doc(made) if hasattr(made, "declaration") else _first_sentence(made)
     signatures = [["self", *_parameters(inspect.signature(made))]]
     if issubclass(made, shapes.BaseShape):
-        signatures = [["self", *found] for found in _shape_signatures(made.row.distance)]
+        signatures = [["self", *found] for found in _shape_signatures(made.row)]
     body = "".join(
         textwrap.indent(_def("__init__", s, "None", overloaded=len(signatures) > 1), "    ")
         for s in signatures
@@ -172,8 +172,9 @@ def _first_sentence(made: Any) -> str:
 # Shapes: three numbers may replace a vector, and a lone vector may be passed by its parts.
 
 
-def _shape_signatures(function: Func) -> list[list[str]]:
-    slots = [s for s in slots_of(function) if s.name not in RESERVED_OF_SHAPES]
+def _shape_signatures(row: Primitive) -> list[list[str]]:
+    hidden = RESERVED_OF_SHAPES | {*row.measured}
+    slots = [s for s in slots_of(row.distance) if s.name not in hidden]
     vectors = [i for i, slot in enumerate(slots) if slot.is_vector]
     found = [[_given(slot) for slot in slots]]
     if vectors:

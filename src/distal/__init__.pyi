@@ -1186,7 +1186,6 @@ class Heightfield(Shape):
         image: Image = ...,
         size: Vector | Number = ...,
         height: Number = 1.0,
-        steepness: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -1196,7 +1195,6 @@ class Heightfield(Shape):
         size_y: Number,
         /,
         height: Number = 1.0,
-        steepness: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -1206,7 +1204,6 @@ class Heightfield(Shape):
         x: Number = ...,
         y: Number = ...,
         height: Number = 1.0,
-        steepness: Number = 1.0,
     ) -> None: ...
 
 class Helix(Shape):

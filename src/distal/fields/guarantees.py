@@ -165,6 +165,9 @@ class Primitive:
         side_growth: The same for the sides alone, if it is less; None: ``growth``.
         limits: The limits of numbers, by name; other numbers must only be finite.
         requires: Returns why numbers contradict each other, or None.
+        measured: Numbers that authors do not pass, because they follow from the shape's data: the
+            name of a vec2, and the name of the texture whose largest differences of neighbouring
+            texels (first channel, along each axis) it holds. Measured once, on construction.
         signed: False for surfaces and curves without an inside.
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
@@ -184,6 +187,7 @@ class Primitive:
     estimate: bool = False
     tier: int = 1
     linear: bool = False
+    measured: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def flat(self) -> bool:
@@ -329,6 +333,7 @@ def primitive(
     estimate: bool = False,
     tier: int = 1,
     linear: bool = False,
+    measured: Mapping[str, str] | None = None,
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -345,6 +350,7 @@ def primitive(
         estimate: Whether the slope is an estimate.
         tier: The tier in the catalogue.
         linear: Whether the value is linear in p.
+        measured: The numbers that are measured from the shape's data.
     """
 
     def declare(distance: F) -> F:
@@ -363,6 +369,7 @@ def primitive(
             estimate,
             tier,
             linear,
+            measured or {},
         )
         return distance
 

@@ -11,6 +11,7 @@ from typing import Final
 from distal.fields.constants import HALF_ROOT, TINY
 from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, inside_both, nearer, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.ordering import larger_first
 from distal.lang import abs, clamp, dot, floor, func, length, max, min, round, select, vec2, vec4
 
 UP: Final = vec2(0.0, 1.0)
@@ -137,8 +138,7 @@ def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2)
         chamfered_rectangle((1.5, 1.5), (4.0, 4.0), 1.0) = 0.0
         chamfered_rectangle((5.0, 5.0), (4.0, 4.0), 1.0) = 4.949747468305833
     """
-    q = abs(p) - 0.5 * size
-    q = vec2(max(q.x, q.y), min(q.x, q.y))
+    q = larger_first(abs(p) - 0.5 * size)
     from_corner = vec2(q.x, q.y + chamfer)
     cut = HALF_ROOT * (from_corner.x + from_corner.y)
     beyond_side = select(from_corner.y > from_corner.x, cut, length(from_corner))
@@ -209,7 +209,7 @@ def cross_shape(p: vec2, span: float = 1.0, thickness: float = 0.3) -> float:
     """
     arm = 0.5 * span
     side = 0.5 * thickness
-    q = vec2(max(abs(p.x), abs(p.y)), min(abs(p.x), abs(p.y)))
+    q = larger_first(abs(p))
     from_end = vec2(q.x - arm, max(q.y - side, 0.0))
     from_side = vec2(q.x - clamp(q.x, side, arm), q.y - side)
     d = length(nearer(from_end, from_side))

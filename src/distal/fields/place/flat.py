@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from distal.fields.extents import at_least_one, hull_of, rectangle_distance, turned_flat
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds2, Growth, Limit, operator
+from distal.fields.ordering import larger_first
 from distal.fields.place.mirrors import count_requirement, folded
 from distal.fields.place.solid import scaled_value
 from distal.lang import abs, cos, dot, func, length, mat2, max, min, sin, sqrt, vec2
@@ -148,7 +149,7 @@ def symmetric_flat_bounds(bounds: Bounds2, x: bool, y: bool) -> Bounds2:
 @func
 def diagonal_flat(p: vec2) -> vec2:
     """Mirror a point to the side of the line x = y where x is larger."""
-    return vec2(max(p.x, p.y), min(p.x, p.y))
+    return larger_first(p)
 
 
 @func
@@ -160,8 +161,7 @@ def diagonal_flat_bounds(bounds: Bounds2) -> Bounds2:
 @func
 def octant_flat(p: vec2) -> vec2:
     """Mirror a point to the eighth of a turn between the x axis and the diagonal."""
-    q = abs(p)
-    return vec2(max(q.x, q.y), min(q.x, q.y))
+    return larger_first(abs(p))
 
 
 @func

@@ -14,6 +14,7 @@ from __future__ import annotations
 from distal.fields.constants import PI
 from distal.fields.extents import hull_of, turned
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Growth, Limit, operator
+from distal.fields.ordering import larger_first
 from distal.lang import abs, atan2, cos, dot, func, length, mat3, max, min, round, sin, vec2, vec3
 
 
@@ -66,7 +67,8 @@ def symmetric_bounds(bounds: Bounds, x: bool, y: bool, z: bool) -> Bounds:
 @func
 def diagonal(p: vec3) -> vec3:
     """Mirror a point to the side of the plane x = z where x is larger."""
-    return vec3(max(p.x, p.z), p.y, min(p.x, p.z))
+    q = larger_first(p.xz)
+    return vec3(q.x, p.y, q.y)
 
 
 @func
@@ -78,8 +80,8 @@ def diagonal_bounds(bounds: Bounds) -> Bounds:
 @func
 def octant(p: vec3) -> vec3:
     """Mirror a point to the eighth of a turn about the y axis from the x axis to the diagonal."""
-    q = abs(p.xz)
-    return vec3(max(q.x, q.y), p.y, min(q.x, q.y))
+    q = larger_first(abs(p.xz))
+    return vec3(q.x, p.y, q.y)
 
 
 @func

@@ -17,7 +17,7 @@ from distal.fields.guarantees import (
     Limit,
     primitive,
 )
-from distal.lang import abs, func, length, max, min, sqrt, vec3
+from distal.lang import abs, func, length, max, min, select, sqrt, vec3
 
 UNIT_CUBE: Final = vec3(1.0)
 
@@ -183,7 +183,9 @@ def box_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
     # Inside, the nearest of the outer faces and of the inner edges of the three openings.
     inward = max(hollow, 0.0) * max(hollow, 0.0)
     window = min(inward.x + inward.y, inward.y + inward.z, inward.z + inward.x)
-    return outside + min(max(q.x, q.y, q.z, -sqrt(window)), 0.0)
+    inside = max(q.x, q.y, q.z, -sqrt(window))
+    # On the surface only one of the two has a gradient.
+    return select(outside > 0.0, outside, min(inside, 0.0))
 
 
 def round_frame_requires(size: vec3, thickness: float) -> str | None:

@@ -27,6 +27,7 @@ from distal.lang import (
     func,
     inversesqrt,
     ivec2,
+    length,
     max,
     min,
     mix,
@@ -37,6 +38,8 @@ from distal.lang import (
 from distal.lang import size as size_of
 
 GROUND_SIZE: Final = vec2(4.0)
+# Neighbouring texels of a picture, whose values are between 0 and 1, differ by at most this.
+ANY_RISE: Final = vec2(1.0)
 
 
 @func
@@ -60,8 +63,9 @@ def above_height(y: float, height: float, steepness: float) -> float:
 @primitive(
     "Heightfield",
     LOWER_BOUND,
-    limits={"height": Limit.NOT_ZERO, "steepness": Limit.NOT_NEGATIVE},
+    limits={"height": Limit.NOT_ZERO, "rise": Limit.NOT_NEGATIVE},
     tier=2,
+    measured={"rise": "image"},
 )
 @func
 def heightfield(
@@ -69,31 +73,33 @@ def heightfield(
     image: Texture2D,
     size: vec2 = GROUND_SIZE,
     height: float = 1.0,
-    steepness: float = 1.0,
+    rise: vec2 = ANY_RISE,
 ) -> float:
     """Terrain from the first channel of an image; its border heights continue without end.
 
-    The bound holds if the ground rises nowhere by more than ``steepness``. Compute this number from
-    the data: the largest difference of neighbouring texels times ``height``, divided by their
-    distance, along each of the two axes; then the root of the sum of both squares.
+    The bound follows from the data. Between four texels, the derivative of the bilinear
+    interpolation along an axis is a weighted mean of the differences of two pairs of neighbours, so
+    it is at most the largest difference of neighbours along this axis, divided by their distance.
+    The vertical distance is divided by the steepness that follows for both axes together.
 
     Args:
         p: Point.
         image: The heights. The image lies in the xz plane, its upper side at the smallest z.
         size: Size of the image along x and z, centred at the origin.
         height: Height of a texel of value 1.
-        steepness: Largest rise of the ground per unit of horizontal distance.
+        rise: The largest differences of neighbouring texels along x and z.
 
     Source: John C. Hart, "Sphere tracing" (1996), for the bound.
 
     Measured:
-        heightfield((0.0, 3.0, 0.0), Texture2D([[0.5, 0.5]]), (2.0, 2.0), 2.0, 0.0) = 2.0
-        heightfield((0.0, 3.0, 0.0), Texture2D([[0.0, 1.0]]), (4.0, 4.0), 2.0, 0.75) = 1.6
-        heightfield((9.0, 3.0, 9.0), Texture2D([[0.0, 1.0]]), (4.0, 4.0), 1.0, 0.75) = 1.6
+        heightfield((0.0, 3.0, 0.0), Texture2D([[0.5, 0.5]]), (2.0, 2.0), 2.0, (0.0, 0.0)) = 2.0
+        heightfield((0.0, 3.0, 0.0), Texture2D([[0.0, 1.0]]), (4.0, 4.0), 1.5, (1.0, 0.0)) = 1.8
+        heightfield((9.0, 3.0, 9.0), Texture2D([[0.0, 1.0]]), (4.0, 4.0), 1.5, (1.0, 0.0)) = 1.2
     """
     texels = vec2(size_of(image))
     share = vec2(p.x, -p.z) / size + 0.5
     place = clamp(share * texels - 0.5, vec2(0.0), texels - 1.0)
+    steepness = height * length(rise * texels / size)
     return above_height(p.y, height * interpolated(image, place), steepness)
 
 

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from distal.fields.constants import HALF_ROOT, ROOT_THREE
 from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, primitive
+from distal.fields.ordering import larger_first, largest_first
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
 from distal.fields.solids.boxes import UNIT_CUBE, box_bounds
 from distal.fields.solids.regular import DIAGONAL
@@ -70,15 +71,12 @@ def octahedron(p: vec3, radius: float = 1.0) -> float:
         octahedron((2.0, 2.0, 2.0), 3.0) = 1.7320508075688772
         octahedron((0.0, 4.0, 0.0), 1.0) = 3.0
     """
-    q = abs(p)
     # The nearest edge belongs to the two largest components.
-    smallest = min(q.x, q.y, q.z)
-    largest = max(q.x, q.y, q.z)
-    both = q.x + q.y + q.z - smallest
+    q = largest_first(abs(p))
     return face_edge(
-        (both + smallest - radius) * DIAGONAL,
-        (both - 2.0 * smallest - radius) * (DIAGONAL * HALF_ROOT),
-        (2.0 * largest - both - radius) * HALF_ROOT,
+        (q.x + q.y + q.z - radius) * DIAGONAL,
+        (q.x + q.y - 2.0 * q.z - radius) * (DIAGONAL * HALF_ROOT),
+        (q.x - q.y - radius) * HALF_ROOT,
     )
 
 
@@ -100,16 +98,13 @@ def tetrahedron(p: vec3, radius: float = 1.0) -> float:
         tetrahedron((3.0, 3.0, 3.0), 1.7320508075688772) = 3.4641016151377544
     """
     # An even number of signs may change: the two larger components become positive.
-    q = abs(p)
-    low = min(q.x, q.y, q.z)
-    high = max(q.x, q.y, q.z)
-    middle = q.x + q.y + q.z - low - high
-    z = select(p.x * p.y * p.z < 0.0, -low, low)
+    q = largest_first(abs(p))
+    z = select(p.x * p.y * p.z < 0.0, -q.z, q.z)
     corner = radius * DIAGONAL
     return face_edge(
-        (high + middle - z - corner) * DIAGONAL,
-        (2.0 * (high - corner) - middle + z) * (DIAGONAL * HALF_ROOT),
-        (middle + z) * HALF_ROOT - corner / HALF_ROOT,
+        (q.x + q.y - z - corner) * DIAGONAL,
+        (2.0 * (q.x - corner) - q.y + z) * (DIAGONAL * HALF_ROOT),
+        (q.y + z) * HALF_ROOT - corner / HALF_ROOT,
     )
 
 
@@ -140,8 +135,9 @@ def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
     """
     half = 0.5 * size
     # The nearest side faces +x; z runs along its base.
-    x = max(abs(p.x), abs(p.z)) - half
-    z = min(abs(p.x), abs(p.z))
+    q = larger_first(abs(p.xz))
+    x = q.x - half
+    z = q.y
     y = p.y + 0.5 * height
     # Coordinates up along the side's plane, and above the plane.
     slope_length = length(vec2(half, height))

@@ -12,7 +12,8 @@ from typing import Final
 from distal.fields.constants import PI
 from distal.fields.flats.edges import fold_past, fold_sectors, inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
-from distal.lang import abs, cos, dot, func, length, max, min, sin, vec2, vec3
+from distal.fields.ordering import larger_first
+from distal.lang import abs, cos, dot, func, length, max, min, select, sin, vec2, vec3
 
 DIAGONALS: Final = vec2(1.0, 0.6)
 
@@ -27,8 +28,10 @@ OCTAGON_HALF_SIDE: Final = math.tan(math.pi / 8.0)
 def prism_side(q: vec2, y: float, half_side: float, apothem: float, height: float) -> float:
     """Return the distance to a prism whose nearest side faces q's y axis."""
     beyond = vec3(abs(q.x) - half_side, q.y - apothem, abs(y) - 0.5 * height)
-    # Past the outline's corner the upright edge is nearest; inside, q.x is always within the side.
-    return length(max(beyond, 0.0)) + min(max(beyond.y, beyond.z), 0.0)
+    inside = max(beyond.y, beyond.z)
+    # Past the outline's corner the upright edge is nearest. Inside, q.x is always within the side,
+    # except by rounding: then its distance must not be added to that of the side.
+    return select(inside > 0.0, length(max(beyond, 0.0)), inside)
 
 
 @func
@@ -113,9 +116,8 @@ def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
         octagon_prism((4.0, 6.0, 0.0), 1.0, 4.0) = 5.0
         octagon_prism((2.0, 0.0, 2.0), 1.0, 4.0) = 1.8284271247461903
     """
-    q = abs(p.xz)
-    q = vec2(min(q.x, q.y), max(q.x, q.y))
-    return prism_side(fold_past(q, PI / 8.0), p.y, OCTAGON_HALF_SIDE * apothem, apothem, height)
+    q = larger_first(abs(p.xz))
+    return prism_side(fold_past(q.yx, PI / 8.0), p.y, OCTAGON_HALF_SIDE * apothem, apothem, height)
 
 
 @func

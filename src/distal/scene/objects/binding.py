@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from distal.diagnostics import Span
 from distal.fields import boxes
@@ -16,11 +16,17 @@ from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive
 from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.tree.calls import result_of
 from distal.scene.tree.conversion import Number, shown
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node, Rule
+
+if TYPE_CHECKING:
+    from distal.scene.objects import measuring
+else:
+    measuring = LazyModule("distal.scene.objects.measuring")
 
 
 def bound(
@@ -38,16 +44,23 @@ def bound(
         SceneTypeError: An argument is unknown, missing or of another type.
         SceneValueError: A number is beyond its limit.
     """
+    if isinstance(rule, Primitive):
+        functions, reserved = (rule.distance,), RESERVED_OF_SHAPES | {*rule.measured}
+    else:
+        functions, reserved = rule.number_functions, RESERVED | {*rule.fixed}
     given = arguments(
-        rule.distance if isinstance(rule, Primitive) else rule.number_functions,
+        functions,
         args,
         kwargs,
         what=rule.name,
         limits=rule.limits,
         requires=rule.requires,
         place=place,
-        reserved=RESERVED_OF_SHAPES if isinstance(rule, Primitive) else RESERVED | {*rule.fixed},
+        reserved=reserved,
     )
+    if isinstance(rule, Primitive):
+        for name, texture in rule.measured.items():
+            given[name] = Number(VEC2, measuring.largest_rise(given[texture], rule.name, place))
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
     constants = {name: value for name, value in given.items() if name not in numbers}
     return numbers, constants

@@ -27,8 +27,9 @@ def _make(primitive: Primitive) -> type[BaseShape]:
         numbers, constants = bound(primitive, args, kwargs, place)
         BaseShape.__init__(self, Node(primitive, primitive.flat, (), numbers, constants, place))
 
+    hidden = {"p", "cell", *primitive.measured}
     python = inspect.signature(primitive.distance.python_function)
-    own = [p for name, p in python.parameters.items() if name not in ("p", "cell")]
+    own = [p for name, p in python.parameters.items() if name not in hidden]
     body = {
         "__init__": initialise,
         "__doc__": primitive.distance.__doc__,
