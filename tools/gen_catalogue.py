@@ -49,6 +49,9 @@ What a field promises:
 - **lower bound**: outside, the value is never more than the distance.
 - **slope**: no two points' values differ by more than this times their distance. A marcher is safe
   by this alone. *by its numbers* means that it is computed from them; the value is the defaults'.
+- **approximates**: the shape replaces a curve by simpler pieces, and the other guarantees are about
+  these pieces. The number is the largest distance between the curve and the pieces, in percent of
+  the shape's size, measured at the shape's own numbers.
 - **box**: whether the shape has an end; its box then holds all of it.
 
 What was measured, by the checks that the tests run too (`make sweep-fields` runs more of them), at
@@ -131,7 +134,7 @@ def _shape_cells(row: Primitive) -> tuple[str, ...]:
     return (
         f"**{row.name}**" + ("" if row.signed else " (no inside)"),
         numbers or "-",
-        _claims(row.claims),
+        _claims(row.claims) + _approximation(row),
         _slope(row),
         "yes" if row.bounds is not None else "no",
         _source(row.distance),
@@ -158,6 +161,11 @@ def _claims(claims: frozenset[Guarantee]) -> str:
     if Guarantee.EXACT_OUTSIDE in claims:
         named = [n for n in named if n != Guarantee.LOWER_BOUND.value]  # goes without saying
     return ", ".join(named) or "slope only"
+
+
+def _approximation(row: Primitive | Operator) -> str:
+    found = row.approximates
+    return "" if found is None else f"; approximates {found.of} to {100.0 * found.error:.2g} %"
 
 
 def _slope(row: Primitive) -> str:
@@ -216,7 +224,8 @@ def _operator_cells(row: Operator) -> tuple[str, ...]:
     added = row.keeps_exact - row.keeps
     if added:
         kept += f"{'; ' if kept else ''}of exact shapes {_claims(row.keeps | row.keeps_exact)}"
-    return f"**{row.name}**", numbers or "-", kept or "slope only", _operator_slope(row), _box(row)
+    kept = (kept or "slope only") + _approximation(row)
+    return f"**{row.name}**", numbers or "-", kept, _operator_slope(row), _box(row)
 
 
 def _operator_number(slot: Slot, row: Operator) -> str:

@@ -148,6 +148,20 @@ Requirement: TypeAlias = "Callable[..., str | None]"
 Rule: TypeAlias = "float | Func"
 
 
+@dataclass(frozen=True, slots=True)
+class Approximation:
+    """What a shape replaces by simpler pieces; its other guarantees are about these pieces.
+
+    Attributes:
+        of: What is replaced: "a cubic Bézier curve".
+        error: The largest distance between the curve and the pieces that replace it, as a fraction
+            of the shape's size, for default numbers (measured).
+    """
+
+    of: str
+    error: float
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Primitive:
     """A shape of the library.
@@ -168,6 +182,7 @@ class Primitive:
         measured: Numbers that authors do not pass, because they follow from the shape's data: the
             name of a vec2, and the name of the texture whose largest differences of neighbouring
             texels (first channel, along each axis) it holds. Measured once, on construction.
+        approximates: What the shape replaces by simpler pieces, or None.
         signed: False for surfaces and curves without an inside.
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
@@ -188,6 +203,7 @@ class Primitive:
     tier: int = 1
     linear: bool = False
     measured: Mapping[str, str] = field(default_factory=dict)
+    approximates: Approximation | None = None
 
     @property
     def flat(self) -> bool:
@@ -236,6 +252,7 @@ class Operator:
         cuts: Whether the second shape is subtracted, so that its ``cut_material`` is shown.
         local: Whether it changes the shapes only where they meet.
         linear: Whether the value is linear in p if that of the child is.
+        approximates: What the operator replaces by simpler pieces, or None.
     """
 
     name: str
@@ -258,6 +275,7 @@ class Operator:
     cuts: bool = False
     local: bool = True
     linear: bool = False
+    approximates: Approximation | None = None
 
     @property
     def number_functions(self) -> tuple[Func, ...]:
@@ -334,6 +352,7 @@ def primitive(
     tier: int = 1,
     linear: bool = False,
     measured: Mapping[str, str] | None = None,
+    approximates: Approximation | None = None,
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -351,6 +370,7 @@ def primitive(
         tier: The tier in the catalogue.
         linear: Whether the value is linear in p.
         measured: The numbers that are measured from the shape's data.
+        approximates: What the shape replaces by simpler pieces.
     """
 
     def declare(distance: F) -> F:
@@ -370,6 +390,7 @@ def primitive(
             tier,
             linear,
             measured or {},
+            approximates,
         )
         return distance
 

@@ -14,7 +14,14 @@ from distal.fields.constants import PI
 from distal.fields.flats.curves import from_arc_pair
 from distal.fields.flats.edges import centred_bounds, disc_bounds, from_segment, nearer
 from distal.fields.flats.round import from_arc
-from distal.fields.guarantees import EXACT_OUTSIDE, UNBOUNDED, Bounds2, Limit, primitive
+from distal.fields.guarantees import (
+    EXACT_OUTSIDE,
+    UNBOUNDED,
+    Approximation,
+    Bounds2,
+    Limit,
+    primitive,
+)
 from distal.lang import (
     abs,
     clamp,
@@ -176,6 +183,7 @@ def from_spiral(p: vec2, turns: int, radius_at: Callable[[float], vec2]) -> vec2
     bounds=spiral_bounds,
     limits={"inner": Limit.NOT_NEGATIVE, "outer": Limit.POSITIVE},
     requires=_turns_once,
+    approximates=Approximation("a spiral", 1.2e-4),
 )
 @func
 def archimedean_spiral(
@@ -212,6 +220,7 @@ def archimedean_spiral(
     bounds=spiral_bounds,
     limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE},
     requires=_turns_once,
+    approximates=Approximation("a spiral", 1.7e-4),
 )
 @func
 def logarithmic_spiral(

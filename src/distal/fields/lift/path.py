@@ -17,7 +17,15 @@ from collections.abc import Callable
 from typing import Final
 
 from distal.fields.constants import TINY
-from distal.fields.guarantees import ENDLESS, LOWER_BOUND, UNBOUNDED, Bounds, Bounds2, operator
+from distal.fields.guarantees import (
+    ENDLESS,
+    LOWER_BOUND,
+    UNBOUNDED,
+    Approximation,
+    Bounds,
+    Bounds2,
+    operator,
+)
 from distal.fields.lift.extrude import circle_around
 from distal.lang import (
     Buffer,
@@ -333,4 +341,5 @@ SWEEP_BEZIER = operator(
     requires=bezier_requirement,
     needs=FOLLOWS,
     growth=swept_bezier_growth,
+    approximates=Approximation("a quadratic Bézier curve", 3e-3),
 )

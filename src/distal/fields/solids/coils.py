@@ -6,7 +6,7 @@ Input: a point and the numbers of a coil. Output: a lower bound of the distance.
 from __future__ import annotations
 
 from distal.fields.constants import PI, TAU
-from distal.fields.guarantees import LOWER_BOUND, Bounds, primitive
+from distal.fields.guarantees import LOWER_BOUND, Approximation, Bounds, primitive
 from distal.lang import abs, atan2, func, length, max, round, sqrt, vec2, vec3
 
 
@@ -39,7 +39,9 @@ def coil(p: vec3, major: float, minor: float, pitch: float) -> float:
     return (length(vec2(out - major, height)) - minor) / coil_steepest(major, pitch)
 
 
-@primitive("Helix", LOWER_BOUND, tier=2)
+@primitive(
+    "Helix", LOWER_BOUND, tier=2, approximates=Approximation("a tube with a round section", 7e-5)
+)
 @func
 def helix(p: vec3, major: float = 0.5, minor: float = 0.1, pitch: float = 0.4) -> float:
     """Infinite tube that winds around the y axis and crosses the x axis, rising towards z.
@@ -86,6 +88,7 @@ def spring_growth(major: float, pitch: float) -> float:
     tier=2,
     growth=spring_growth,
     side_growth=spring_side_growth,
+    approximates=Approximation("a tube with a round section", 3.3e-5),
 )
 @func
 def spring(

@@ -12,7 +12,7 @@ from typing import Final
 from distal.fields.constants import TINY
 from distal.fields.flats.curves import from_bezier
 from distal.fields.flats.edges import from_segment, nearer
-from distal.fields.guarantees import EXACT_OUTSIDE, Bounds, Limit, primitive
+from distal.fields.guarantees import EXACT_OUTSIDE, Approximation, Bounds, Limit, primitive
 from distal.fields.solids.cones import round_cone_between
 from distal.lang import Buffer, abs, clamp, func, length, max, min, select, size, vec3, vec4
 
@@ -162,6 +162,7 @@ def _has_pieces(pieces: int) -> str | None:
     "CubicBezierTube",
     EXACT_OUTSIDE,
     bounds=cubic_tube_bounds,
+    approximates=Approximation("a cubic Bézier curve", 4.4e-3),
     limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
     requires=_has_pieces,
     tier=2,
@@ -226,6 +227,7 @@ def tapered_bezier_bounds(
     "TaperedBezierTube",
     EXACT_OUTSIDE,
     bounds=tapered_bezier_bounds,
+    approximates=Approximation("a quadratic Bézier curve", 2.4e-3),
     limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
     requires=_has_pieces,
     tier=2,
