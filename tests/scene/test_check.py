@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from distal import Box, Hexagon, Plane, Shape, Sphere
+from distal import Box, Hexagon, Plane, Scene, Shape, Sphere
 from distal.lang import func, length, max, sin, slider, vec3
 from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.checks.measuring import measure
@@ -92,6 +92,61 @@ def test_parameters_and_time_are_those_asked_for():
     own = Shape.from_function(wobbly, slope=1.2, bounds=BOX, depth=depth)
     assert check(own).holds
     assert not check(own, {"depth": 0.1}).holds
+
+
+@func
+def steep_outside(p: vec3) -> float:
+    """Slope 1 within 11 of the origin, 4 beyond."""
+    away = length(p)
+    return away - 3.0 + 3.0 * max(away - 11.0, 0.0)
+
+
+@func
+def steep_far_away(p: vec3) -> float:
+    """Slope 3 only near (40, 0, 0)."""
+    return 0.5 * p.y + 3.0 * max(0.0, 1.0 - length(p - vec3(40.0, 0.0, 0.0)))
+
+
+def test_points_lie_within_the_declared_bounds():
+    own = Shape.from_function(steep_outside, bounds=((-3.0,) * 3, (3.0,) * 3))
+    found = check(own)
+    assert found.holds
+    assert codes(found, Severity.WARNING) == []
+    assert found.shapes[0].measured.slope == pytest.approx(1.0, abs=1e-6)
+    # Around its bounds too, where rays come from; there it is only a warning.
+    own = Shape.from_function(steep_outside, bounds=((-6.0,) * 3, (6.0,) * 3))
+    found = check(own)
+    assert found.holds
+    assert codes(found, Severity.WARNING) == [("slope-outside-box", "steep_outside")]
+    assert "outside its bounds, more than its declared slope 1" in str(found.findings[0])
+    assert "slope=4.2 if rays come through there" in str(found.findings[0])
+    # Within them, it is an error.
+    large = Shape.from_function(steep_outside, bounds=((-9.0,) * 3, (9.0,) * 3))
+    assert codes(check(large)) == [("slope-exceeded", "steep_outside")]
+
+
+def test_a_function_without_bounds_is_measured_where_it_is_used():
+    own = Shape.from_function(steep_far_away, slope=0.6)
+    assert check(own).holds  # nothing tells where to look
+    assert codes(check(own & Box(4.0).translate(40.0, 0.0, 0.0))) == [
+        ("slope-exceeded", "steep_far_away")
+    ]
+    assert codes(check(own | Sphere().translate(40.0, 3.0, 0.0) | Box(1.0))) == [
+        ("slope-exceeded", "steep_far_away")
+    ]
+
+
+def test_bounds_that_depend_on_parameters_are_measured(recwarn):
+    reach = slider("Reach", 3.0, low=1.0, high=9.0)
+    low, high = (-reach, -reach, -reach), (reach, reach, reach)
+    own = Shape.from_function(steep_outside, bounds=(low, high))
+    assert check(own).holds
+    assert not check(own, {"Reach": 8.0}).holds
+    Scene(own).render((4, 4))
+    assert not recwarn.list
+    own = Shape.from_function(steep_outside, bounds=(low, high))
+    Scene(own).render((4, 4), params={"Reach": 8.0})
+    assert "more than its declared slope 1" in str(recwarn.list[0].message)
 
 
 def test_a_box_that_is_too_small_is_an_error():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from distal import (
+    Box,
     Camera,
     CompileError,
     Ellipsoid,
@@ -24,7 +25,7 @@ from distal import (
     matte,
     time,
 )
-from distal.lang import func, vec3
+from distal.lang import func, slider, vec3
 
 BALLS = [Sphere(0.3).translate(i, 0, 0) for i in range(3)]
 
@@ -50,6 +51,32 @@ def test_what_does_not_fit_its_cell_is_told_how_large_it_is():
     with pytest.raises(ValueError, match="no bound on its slope") as raised:
         Scene(petal.repeat(1.0))
     assert "its box goes from (0.2, -0.1, -0.2) to (1.2, 0.1, 0.2)" in str(raised.value)
+
+
+SPACING = slider("Spacing", 4.0, low=0.5, high=8.0)
+# It has a bound on its slope only if the spacing is larger than the box.
+TOO_NARROW = Box(1.0).repeat(SPACING, count=(3, 1, 1))
+TWISTED = TOO_NARROW.twist(0.3)
+BENT = TOO_NARROW.translate(1.0, 0.0, 0.0).bend(0.2)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        TWISTED,
+        TOO_NARROW | TWISTED,
+        TWISTED | TOO_NARROW,
+        BENT | TWISTED | TOO_NARROW,
+        (TOO_NARROW.paint("#f00") | TWISTED).twist(0.1) | BENT,
+        Sphere().union(TWISTED, TOO_NARROW, smooth=0.1).scale(2.0),
+    ],
+)
+def test_the_operator_that_loses_the_slope_is_named_where_a_part_is_shared(shape):
+    scene = Scene(shape)
+    scene.render((4, 4))
+    with pytest.raises(ValueError, match="repeat limited gives this shape no bound") as raised:
+        scene.render((4, 4), params={"Spacing": 0.6})
+    assert "TOO_NARROW = Box(1.0).repeat(SPACING" in str(raised.value)
 
 
 def test_shapes_and_lights_come_in_any_row():

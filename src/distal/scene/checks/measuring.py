@@ -1,7 +1,8 @@
 """Measurements of a field at random points: its slope, and whether it stays within its box.
 
-Input: a shape, its box, a seed. Output: figures. A measurement finds mistakes but proves nothing: a
-steep place that is too small to be sampled is not found.
+Input: a shape, its box, the region to measure where it has none, a seed. Output: figures. A
+measurement finds mistakes but proves nothing: a steep place that is too small to be sampled is not
+found.
 """
 
 from __future__ import annotations
@@ -23,10 +24,15 @@ POINTS: Final = 4096
 SEARCHED: Final = 32
 AROUND: Final = 24
 ROUNDS: Final = 4
-# How far outside its box a shape is measured, as a fraction of the box's size.
+# How far outside its box a shape is measured, as a fraction of the box's size. In space only an
+# eighth of the enlarged box is inside, so half of the points are drawn inside.
 MARGIN: Final = 0.5
-# An infinite shape is measured up to this distance from its finite side, or from the origin.
+# An infinite shape in a tree without boxes is measured up to this distance from its finite side, or
+# from the origin.
 REACH: Final = 4.0
+
+# A low and a high corner.
+Region: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
 # Tolerance for a point on the surface, as a fraction of the box's size.
 FOOT: Final = 2e-3
 
@@ -39,8 +45,10 @@ class Measured:
         points: Number of evaluated points.
         median: The median of |gradient|.
         most_of_99: The 99th percentile of |gradient|.
-        steepest: The largest |gradient|.
+        steepest: The largest |gradient|, within the box if there is one.
         steepest_at: The point of the largest |gradient|.
+        steepest_around: The largest |gradient| outside the box.
+        steepest_around_at: Its point, or None.
         largest_change: The largest |f(p) - f(q)| / |p - q|.
         change_between: The points p and q of the largest change.
         on_foot: Share of points p for which p - f * gradient lies on the surface: 1 if f is the
@@ -54,6 +62,8 @@ class Measured:
     most_of_99: float
     steepest: float
     steepest_at: tuple[float, ...]
+    steepest_around: float
+    steepest_around_at: tuple[float, ...] | None
     largest_change: float
     change_between: tuple[tuple[float, ...], tuple[float, ...]]
     on_foot: float
@@ -62,7 +72,7 @@ class Measured:
 
     @property
     def slope(self) -> float:
-        """The largest slope found by either method."""
+        """The largest slope found by either method, within the box if there is one."""
         return max(self.steepest, self.largest_change)
 
 
@@ -84,9 +94,14 @@ class _EvaluatedShape:
 
 
 def measure(
-    shape: BaseShape, promised: NodeBounds, params: Mapping[str, Any], time: float, seed: int = 0
+    shape: BaseShape,
+    promised: NodeBounds,
+    params: Mapping[str, Any],
+    time: float,
+    seed: int = 0,
+    region: Region | None = None,
 ) -> Measured:
-    """Measure a shape in and around its box.
+    """Measure a shape in its box, and around it.
 
     Args:
         shape: The shape.
@@ -94,14 +109,17 @@ def measure(
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
         seed: Seed of the random points.
+        region: Where to measure along axes without an end; None for ``REACH``.
     """
     asked = _EvaluatedShape(shape, params, time)
     n = asked.dimensions
     random = np.random.default_rng(seed)
-    low, high = _looked_at(promised, n)
+    low, high = _looked_at(promised, n, region)
     size = float(np.max(high - low))
     grown = MARGIN * np.maximum(high - low, 0.1 * size)
-    p = random.uniform(low - grown, high + grown, (POINTS, n))
+    within = random.uniform(low, high, (POINTS // 2, n))
+    around = random.uniform(low - grown, high + grown, (POINTS // 2, n))
+    p = np.concatenate([within, around])
     values, slopes = asked.value(p), asked.gradient(p)
     fine = np.isfinite(values) & np.isfinite(slopes).all(axis=1)
     undefined = None if fine.all() else _point(p[~fine][0])
@@ -109,7 +127,7 @@ def measure(
     if not len(p):
         nowhere = (0.0,) * n
         pair = (nowhere, nowhere)
-        return Measured(0, 0.0, 0.0, 0.0, nowhere, 0.0, pair, 0.0, None, undefined)
+        return Measured(0, 0.0, 0.0, 0.0, nowhere, 0.0, None, 0.0, pair, 0.0, None, undefined)
     # Half of the points are moved to the surface, where marchers evaluate most.
     steep = np.linalg.norm(slopes, axis=1)
     foot = p - values[:, None] * slopes / np.maximum(steep**2, 1e-12)[:, None]
@@ -117,8 +135,15 @@ def measure(
     near = near[(np.abs(near) < 10.0 * REACH + 10.0 * np.abs(high).max() + size).all(axis=1)]
     asked_at = np.concatenate([p, near])
     steepness = np.concatenate([steep, _finite(asked.steepness(near))])
-    at, steepest = _steepest(asked, asked_at, steepness, size, random)
-    pair, change = _largest_change(asked, np.concatenate([asked_at, at[None]]), size, random)
+    box = (low, high) if promised.finite else (low - np.inf, high + np.inf)
+    inside = _is_in(asked_at, box)
+    at, steepest = _steepest(asked, asked_at[inside], steepness[inside], size, random, box)
+    steepest_around, around_at = 0.0, None
+    if not inside.all():
+        place = int(np.argmax(np.where(inside, 0.0, steepness)))
+        steepest_around, around_at = float(steepness[place]), _point(asked_at[place])
+    held = np.concatenate([asked_at[inside], at[None]])
+    pair, change = _largest_change(asked, held, size, random, box)
     beyond = ((asked_at < low - 1e-3 * size) | (asked_at > high + 1e-3 * size)).any(axis=1)
     outside = beyond & (np.concatenate([values, asked.value(near)]) < 0.0)
     return Measured(
@@ -127,6 +152,8 @@ def measure(
         float(np.quantile(steepness, 0.99)),
         steepest,
         _point(at),
+        steepest_around,
+        around_at,
         change,
         pair,
         _on_foot(asked, p, values, slopes, size),
@@ -135,16 +162,30 @@ def measure(
     )
 
 
-def _looked_at(promised: NodeBounds, n: int) -> tuple[Points, Points]:
+def _looked_at(promised: NodeBounds, n: int, region: Region | None) -> tuple[Points, Points]:
     low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
+    if region is not None:
+        # Where the region lies beyond a finite side, this side decides.
+        least, most = np.array(region[0][:n]), np.array(region[1][:n])
+        low = np.where(np.isfinite(low), low, np.where(least < high, least, low))
+        high = np.where(np.isfinite(high), high, np.where(most > low, most, high))
     ends_below, ends_above = np.isfinite(low), np.isfinite(high)
     cut = np.where(ends_below, low, np.minimum(np.where(ends_above, high, 0.0), 0.0) - REACH)
     top = np.where(ends_above, high, np.maximum(np.where(ends_below, low, 0.0), 0.0) + REACH)
     return cut, np.maximum(top, cut + 1e-6)
 
 
+def _is_in(p: Points, box: tuple[Points, Points]) -> NDArray[np.bool_]:
+    return np.asarray(((p >= box[0]) & (p <= box[1])).all(axis=-1))
+
+
 def _steepest(
-    asked: _EvaluatedShape, p: Points, steepness: Points, size: float, random: np.random.Generator
+    asked: _EvaluatedShape,
+    p: Points,
+    steepness: Points,
+    size: float,
+    random: np.random.Generator,
+    box: tuple[Points, Points],
 ) -> tuple[Points, float]:
     """Return the steepest place near the steepest points found, by a search in shrinking steps."""
     for round in range(ROUNDS):
@@ -152,14 +193,18 @@ def _steepest(
         reach = 0.1 * size * 0.2**round
         around = random.normal(0.0, reach, (len(best), AROUND, p.shape[1]))
         more = (best[:, None] + around).reshape(-1, p.shape[1])
-        p = np.concatenate([best, more])
+        p = np.clip(np.concatenate([best, more]), *box)
         steepness = _finite(asked.steepness(p))
     at = int(np.argmax(steepness))
     return p[at], float(steepness[at])
 
 
 def _largest_change(
-    asked: _EvaluatedShape, p: Points, size: float, random: np.random.Generator
+    asked: _EvaluatedShape,
+    p: Points,
+    size: float,
+    random: np.random.Generator,
+    box: tuple[Points, Points],
 ) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], float]:
     """Return the points with the largest change of value per distance, and this change.
 
@@ -171,8 +216,8 @@ def _largest_change(
     away /= np.maximum(np.linalg.norm(away, axis=1), 1e-12)[:, None]
     # From a ten-thousandth of the box, where 64 bits still resolve differences, to a tenth.
     reach = size * 10.0 ** random.uniform(-4.0, -1.0, (len(p), 1))
-    q = p + reach * away
-    apart = np.linalg.norm(q - p, axis=1)
+    q = np.clip(p + reach * away, *box)
+    apart = np.maximum(np.linalg.norm(q - p, axis=1), 1e-5 * size)
     change = _finite(np.abs(asked.value(q) - asked.value(p)) / apart)
     at = int(np.argmax(change))
     return (_point(p[at]), _point(q[at])), float(change[at])

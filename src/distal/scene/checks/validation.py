@@ -16,7 +16,7 @@ from distal.diagnostics import Diagnostic, Span
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
-from distal.scene.checks.measuring import Measured, measure
+from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
 
@@ -125,18 +125,44 @@ def check(
     numbers = {id(node): i for i, node in enumerate(nodes)}
     promised = bounds_of_nodes(shape.node, given, time)
     chosen = {id(n) for n in _worth_measuring(nodes, promised)}
+    regions = _regions(nodes, promised)
     rows = []
     for node in nodes:
         own = promised[id(node)]
         measured = None
         if id(node) in chosen:
-            measured = measure(BaseShape._of(node), own, given, time, seed)
+            measured = measure(BaseShape._of(node), own, given, time, seed, regions[id(node)])
         children = tuple(numbers[id(c)] for c in node.children)
         rows.append(ShapeReport(node, children, own, _raised(node, promised), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
     return ValidationReport(tuple(rows), _slope_from(rows), tuple(found))
+
+
+def _regions(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> dict[int, Region | None]:
+    """Return where to measure each shape that has no box, by the id of its node.
+
+    That is the box of the smallest whole that it is a part of and that has one, otherwise the box
+    around all shapes that have one. Coordinates of moved parts differ, so this is only where values
+    probably matter.
+    """
+    found: dict[int, Region | None] = {}
+    boxes = [promised[id(n)] for n in nodes if promised[id(n)].finite and not n.flat]
+    found[id(nodes[0])] = None
+    if boxes:
+        low = tuple(min(box.low[i] for box in boxes) for i in range(3))
+        high = tuple(max(box.high[i] for box in boxes) for i in range(3))
+        found[id(nodes[0])] = (low, high)
+    for node in nodes:  # parents before at least one path to each child
+        own = promised[id(node)]
+        held = (own.low, own.high) if own.finite else found[id(node)]
+        for child in node.children:
+            if child.flat == node.flat:
+                found.setdefault(id(child), held)
+            else:
+                found.setdefault(id(child), None)
+    return found
 
 
 def _at_their_roots(
@@ -228,7 +254,7 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
         yield finding(
             Severity.ERROR, "undefined", message, "look for a division by 0, a root below 0"
         )
-    if measured.slope > row.promised.slope * (1.0 + ROUNDING) + ROUNDING:
+    if _exceeds(measured.slope, row.promised.slope):
         message = f"'{name}' declares the slope {row.promised.slope:.4g}, but its value changes by "
         if measured.steepest >= measured.largest_change:
             message += f"{measured.steepest:.4g} per unit at {shown_point(measured.steepest_at)}"
@@ -237,6 +263,18 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
             message += f"{measured.largest_change:.4g} per unit from {p} to {q}"
         hint = f"slope={_rounded_up(measured.slope)}" if own else None
         yield finding(severity, "slope-exceeded", message, hint)
+    elif measured.steepest_around_at is not None and _exceeds(
+        measured.steepest_around, row.promised.slope
+    ):
+        at = shown_point(measured.steepest_around_at)
+        message = (
+            f"'{name}' changes by {measured.steepest_around:.4g} per unit at {at}, outside its "
+            f"bounds, more than its declared slope {row.promised.slope:.4g}"
+        )
+        hint = f"slope={_rounded_up(measured.steepest_around)} if rays come through there"
+        # The author's slope may be about the declared bounds only; the library's is everywhere.
+        around = Severity.WARNING if own else severity
+        yield finding(around, "slope-outside-box", message, hint if own else None)
     if measured.outside_box is not None:
         message = f"'{name}' reaches outside its box, to {shown_point(measured.outside_box)}"
         hint = "bounds=(low, high) hold all of it" if own else None
@@ -245,6 +283,10 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
         share = f"{100.0 * (1.0 - measured.on_foot):.0f} %"
         message = f"'{name}' is declared exact, but {share} of its values are not the distance"
         yield finding(Severity.ERROR, "not-exact", message, "exact=False" if own else None)
+
+
+def _exceeds(measured: float, declared: float) -> bool:
+    return measured > declared * (1.0 + ROUNDING) + ROUNDING
 
 
 def _endless(row: ShapeReport, finding: Any) -> CheckFinding:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import Span
 from distal.fields.boxes import given_slope
-from distal.fields.guarantees import ENDLESS, Primitive
+from distal.fields.guarantees import Primitive
 from distal.frontend import Assembly
 from distal.ir.build import field as field_of
 from distal.ir.build import number
@@ -28,7 +28,7 @@ from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.lowering.shapes import ZERO_CELL
-from distal.scene.lowering.slope_limit import may_be_endless, refuse_steepness
+from distal.scene.lowering.slope_limit import loses_slope, may_be_endless, refuse_steepness
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
@@ -75,17 +75,17 @@ def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> No
         time: Time in seconds.
 
     Raises:
-        SceneValueError: At the line of the innermost such operator.
+        SceneValueError: At the line of the first operator whose children still have a bound.
     """
     risky = [n for n in shape.node.walk() if may_be_endless(n) and _moves(n)]
     if not risky:
         return
     promised = bounds_of_nodes(shape.node, _read(shape, params), time)
-    # Parents come first, so the last one is the innermost.
-    for node in reversed(risky):
-        if not promised[id(node)].slope < ENDLESS:
-            boxes = [promised[id(child)] for child in node.children]
-            refuse_steepness(node, [(box.low, box.high) for box in boxes])
+    for node in risky:
+        own = promised[id(node)].slope
+        inner = [promised[id(child)] for child in node.children]
+        if loses_slope(own, [box.slope for box in inner]):
+            refuse_steepness(node, [(box.low, box.high) for box in inner])
 
 
 def _moves(node: Node) -> bool:
@@ -101,7 +101,7 @@ def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
         found = executor().call(shape, (p,), {}, params=known, time=time, device="reference")
         return np.asarray(found, np.float64)
 
-    low, high = _box(node)
+    low, high = _box(node, known, time)
     p = np.random.default_rng(0).uniform(low, high, (PLACES, len(low)))
     values = value(p)
     if not np.isfinite(values).any():
@@ -136,12 +136,14 @@ def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float)
         _warn(f"{found}, more than its declared slope {claimed:g}: {hint}", node)
 
 
-def _box(node: Node) -> tuple[Points, Points]:
-    n = 2 if node.flat else 3
-    corners = [node.numbers[c].plain if c in node.numbers else None for c in ("low", "high")]
-    if corners[0] is None or corners[1] is None:
+def _box(node: Node, params: Mapping[str, Any], time: float) -> tuple[Points, Points]:
+    """Return the declared box, whose corners may depend on parameters and the time."""
+    if "low" not in node.numbers:
+        n = 2 if node.flat else 3
         return np.full(n, -REACH), np.full(n, REACH)
-    return np.array(corners[0], np.float64), np.array(corners[1], np.float64)
+    promised = bounds_of_nodes(node, params, time)[id(node)]
+    n = 2 if node.flat else 3
+    return np.array(promised.low[:n]), np.array(promised.high[:n])
 
 
 def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:

@@ -42,6 +42,19 @@ def may_be_endless(node: Node) -> bool:
     return isinstance(node.rule, Operator) and node.rule.needs is not None
 
 
+def loses_slope(slope: float, inner: Sequence[float]) -> bool:
+    """Return whether an operator itself has no bound on its slope, although its children have.
+
+    A shape that is used several times comes before and after the operators around it in any order
+    of the tree, so the operator to report is found by its children, not by its place in this order.
+
+    Args:
+        slope: The operator's slope.
+        inner: The slopes of its children.
+    """
+    return not slope < ENDLESS and all(of_child < ENDLESS for of_child in inner)
+
+
 def refuse_steepness(node: Node, boxes: Sequence[Box]) -> NoReturn:
     """Raise the error for an operator on children with these boxes, at its line."""
     assert isinstance(node.rule, Operator)
