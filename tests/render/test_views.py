@@ -11,7 +11,7 @@ import pytest
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, vec2, vec3, vec4
 from distal.lang.runtime_access import executor
-from distal.render import camera, film, layers, legend, local_views, settings, views
+from distal.render import camera, layers, legend, local_views, settings, views
 from distal.render.camera import Ray
 from distal.render.march import Hit, March, march
 from distal.render.material import Surface
@@ -22,56 +22,6 @@ AHEAD = (0.0, 0.0, -1.0)
 def asked(function: Any, *args: Any) -> Any:
     """A scene function's values by the reference."""
     return executor().call(function, args, {}, device="reference")
-
-
-# Samples of a pixel
-
-
-def test_samples_lie_under_a_tent():
-    """The tent's share up to an offset is the number that it was made of."""
-    u = np.linspace(0.001, 0.999, 41)
-    x = asked(film.tent, u)
-    below = np.where(x < 0.0, 0.5 * (1.0 + x) ** 2, 1.0 - 0.5 * (1.0 - x) ** 2)
-    assert below == pytest.approx(u, abs=1e-9)
-
-
-@pytest.mark.parametrize("count", [2, 5])
-def test_samples_are_a_stratified_lattice_of_the_golden_ratio(count):
-    """Middles of equal strata across, steps of the golden ratio from the middle along."""
-    index = np.arange(count)
-    found = np.stack([asked(film.sample_offset, int(i), count) for i in index])
-    across = asked(film.tent, (index + 0.5) / count)
-    along = asked(film.tent, (0.5 + index * (math.sqrt(5.0) - 1.0) / 2.0) % 1.0)
-    assert found == pytest.approx(np.stack([across, along], axis=1), abs=1e-6)
-    assert tuple(asked(film.sample_offset, 0, 1)) == (0.0, 0.0)
-
-
-@func
-def pixel(coord: vec2, samples: int, transparent: bool) -> vec4:
-    """A camera that shows its direction, a picture that begins right of 0.1 and glows by y."""
-    return film.exposed(
-        coord,
-        vec2(30.0, 20.0),
-        lambda uv: Ray(vec3(uv, 0.0), vec3(AHEAD)),
-        lambda ray: vec4(ray.origin.x, ray.origin.y, 1.0, 0.75 if ray.origin.x > 0.1 else -1.0),
-        samples,
-        transparent,
-    )
-
-
-@pytest.mark.parametrize("samples", [1, 7])
-def test_a_pixel_is_the_mean_of_what_is_there(samples):
-    """Straight alpha: weighted by it. Opaque: all count but rays that found no way out."""
-    for coord in ((16.4, 12.3), (20.0, 3.0), (2.0, 3.0)):
-        offsets = [asked(film.sample_offset, i, samples) for i in range(samples)]
-        uv = (2.0 * (np.array(coord) + offsets) - [30.0, 20.0]) / 20.0
-        seen = np.concatenate([uv, np.ones((samples, 1))], axis=1)
-        there = uv[:, 0] > 0.1
-        for transparent, weight in ((True, 0.75), (False, 1.0)):
-            found = asked(pixel, np.array([coord]), samples, transparent)[0]
-            mean = seen[there].mean(0) if there.any() else np.zeros(3)
-            assert found[:3] == pytest.approx(mean, abs=1e-5)
-            assert found[3] == pytest.approx(weight * there.mean(), abs=1e-6)
 
 
 # Views

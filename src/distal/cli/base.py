@@ -120,6 +120,15 @@ SetOption = Annotated[
 ThreadsOption = Annotated[
     int | None, typer.Option(min=1, max=1024, help="CPU threads; one per core if not given.")
 ]
+SamplesOption = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        max=65536,
+        help="Samples in each pixel; if not given, one of an @image; one of a scene, and eight "
+        "more where the pixel differs from its neighbours.",
+    ),
+]
 DeviceOption = Annotated[
     Device, typer.Option("--device", help="What renders; auto: a GPU, else the CPU.")
 ]

@@ -19,6 +19,7 @@ from distal.cli.base import (
     AdapterOption,
     Device,
     DeviceOption,
+    SamplesOption,
     SceneArgument,
     SetOption,
     SizeOption,
@@ -44,7 +45,6 @@ class ViewArguments:
 
     view: str
     plane: tuple[tuple[float, float, float], float] | None
-    samples: int | None
     transparent: bool
     exposure: float | None
     tone_map: str | None
@@ -57,7 +57,6 @@ class ViewArguments:
         """
         given = {
             "--slice": self.plane,
-            "--samples": self.samples,
             "--transparent": self.transparent or None,
             "--exposure": self.exposure,
             "--tone-map": self.tone_map,
@@ -81,9 +80,7 @@ def render(
     size: SizeOption = "640x480",
     at: TimeOption = "0",
     assignments: SetOption = None,
-    samples: Annotated[
-        int | None, typer.Option(min=1, max=65536, help="Rays for each pixel.")
-    ] = None,
+    samples: SamplesOption = None,
     view: Annotated[
         str | None,
         typer.Option(
@@ -133,7 +130,7 @@ def render(
     from distal.scene.viewing.viewable import viewable
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
-    arguments = read_view(view, plane, samples, transparent, exposure, tone_map)
+    arguments = read_view(view, plane, transparent, exposure, tone_map)
     suffix, _ = check_savable(output, bits)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
@@ -149,6 +146,7 @@ def render(
             params=values,
             device=device_name,
             threads=threads,
+            samples=samples,
             progress=progress,
         )
         picture = rendered_picture(seen, arguments, wanted, options)
@@ -171,7 +169,6 @@ def render(
 def read_view(
     view: str | None,
     plane: str | None,
-    samples: int | None,
     transparent: bool,
     exposure: float | None,
     tone_map: str | None,
@@ -181,7 +178,6 @@ def read_view(
     Args:
         view: The name of the view; None for the default.
         plane: AXIS=OFFSET for the view "slice".
-        samples: Rays per pixel.
         transparent: Whether alpha is 0 where a ray hits nothing.
         exposure: Factor on all light.
         tone_map: The name of a tone map.
@@ -199,7 +195,7 @@ def read_view(
         raise UsageError(f"an exposure is finite, not {exposure}")
     seen = view or ("color" if plane is None else "slice")
     wanted = None if plane is None else read_plane(plane)
-    return ViewArguments(seen, wanted, samples, transparent, exposure, tone_map)
+    return ViewArguments(seen, wanted, transparent, exposure, tone_map)
 
 
 def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
@@ -263,7 +259,6 @@ def rendered_picture(
         return seen.render(options, view=arguments.view)
     scene = seen.scene.developed(exposure=arguments.exposure, tone_map=arguments.tone_map)
     view = ViewOptions(
-        samples=arguments.samples or 1,
         view=arguments.view,
         transparent=arguments.transparent,
         layers=layers,

@@ -47,7 +47,7 @@ def rerender(
         str | None, typer.Option("--size", metavar="WxH", help="Another size.", show_default=False)
     ] = None,
     samples: Annotated[
-        int | None, typer.Option(min=1, max=65536, help="Another number of rays for each pixel.")
+        int | None, typer.Option(min=1, max=65536, help="Another number of samples in each pixel.")
     ] = None,
     bits: Annotated[
         int | None, typer.Option(help="Of each channel; as it was without.", show_default=False)

@@ -16,6 +16,7 @@ from distal.cli.base import (
     AdapterOption,
     Device,
     DeviceOption,
+    SamplesOption,
     SceneArgument,
     SetOption,
     SizeOption,
@@ -51,7 +52,7 @@ def video(
     start: Annotated[
         str, typer.Option("--start", "--time", metavar="S", help="When the first frame is.")
     ] = "0",
-    samples: Annotated[int, typer.Option(min=1, max=65536, help="Rays for each pixel.")] = 1,
+    samples: SamplesOption = None,
     loop: Annotated[
         bool,
         typer.Option("--loop", help="Repeat gif, apng and webp without end; say if it jumps."),

@@ -18,6 +18,8 @@ from distal.version import __version__
 _First = TypeVar("_First")
 
 PREFIX: Final = "distal:"
+# The text of ``Provenance.samples`` None.
+ADAPTIVE: Final = "adaptive"
 # Limits of a text's length and of the number of modules; distal never writes more.
 _LONGEST_TEXT: Final = 2**20
 _MOST_NEIGHBOURS: Final = 10_000
@@ -46,7 +48,7 @@ class Provenance:
         index: The number of the frame.
         seed: The seed of random numbers.
         mouse: The frame's mouse.
-        samples: Rays per pixel.
+        samples: Samples in each pixel; None for one, and more where neighbouring pixels differ.
         view: The name of the view.
         plane: The plane of the view "slice": normal and offset.
         transparent: Whether alpha is 0 where a ray hits nothing.
@@ -68,7 +70,7 @@ class Provenance:
     index: int = 0
     seed: int = 0
     mouse: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
-    samples: int = 1
+    samples: int | None = 1
     view: str = "color"
     plane: tuple[tuple[float, ...], float] | None = None
     transparent: bool = False
@@ -94,7 +96,7 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         "distal:index": str(origin.index),
         "distal:seed": str(origin.seed),
         "distal:mouse": json.dumps(list(origin.mouse)),
-        "distal:samples": str(origin.samples),
+        "distal:samples": ADAPTIVE if origin.samples is None else str(origin.samples),
         "distal:view": origin.view,
         "distal:transparent": json.dumps(origin.transparent),
         "distal:device": origin.device,
@@ -136,6 +138,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
         steering = json_of("distal:steering", None)
         stage = json_of("distal:stage", None)
         exposure = found.get("distal:exposure")
+        samples = found.get("distal:samples", "1")
         return Provenance(
             source=found.get("distal:source", ""),
             source_hash=found.get("distal:source-hash", ""),
@@ -145,7 +148,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             index=int(found.get("distal:index", "0")),
             seed=int(found.get("distal:seed", "0")),
             mouse=_numbers(json_of("distal:mouse", [0.0] * 4), 4),
-            samples=int(found.get("distal:samples", "1")),
+            samples=None if samples == ADAPTIVE else int(samples),
             view=found.get("distal:view", "color"),
             plane=None if plane is None else _pair(plane, lambda normal: _numbers(normal, 3)),
             transparent=_flag(found.get("distal:transparent", "false")),

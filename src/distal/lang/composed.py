@@ -30,6 +30,8 @@ class Composed(Immutable, ABC):
         result: The type of its result.
         display: For a picture with linear light: the function ``(vec4) -> vec4`` that encodes
             its pixels for display. None if the pixels are already encoded.
+        adaptive: Whether it is a picture of linear light that is rendered in the two passes of
+            ``runtime.sampling``.
     """
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
@@ -37,6 +39,7 @@ class Composed(Immutable, ABC):
     signature: tuple[tuple[str, Type], ...]
     result: Type
     display: Composed | None = None
+    adaptive: bool = False
 
     @abstractmethod
     def compose(self, assembly: Any) -> str:

@@ -100,6 +100,8 @@ class Image(Func, Presentable):
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
         index: int = 0,
         seed: int = 0,
+        *,
+        samples: int | None = None,
     ) -> Picture:
         """Render the picture.
 
@@ -116,6 +118,8 @@ class Image(Func, Presentable):
                 as in Shadertoy.
             index: ``frame.index``, the frame number; wraps at 32 bits.
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
+            samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
+                scene, and eight more where the pixel differs from its neighbours.
 
         Raises:
             CompileError: The scene code has mistakes.
@@ -134,6 +138,7 @@ class Image(Func, Presentable):
             mouse=mouse,
             index=index,
             seed=seed,
+            samples=samples,
         )
         return executor().render(self, options)
 

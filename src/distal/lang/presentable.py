@@ -57,7 +57,7 @@ class VideoOptions(TypedDict, total=False):
     start: float | Fraction | str
     params: Mapping[str, Any] | None
     view: str
-    samples: int
+    samples: int | None
     loop: bool
     quality: str | float
     device: str

@@ -17,6 +17,7 @@ from typing import Any, Final, TypeAlias
 from distal.ir.limits import LARGEST_TIME
 
 LARGEST_SIDE_PX: Final = 16384
+MOST_SAMPLES: Final = 65536
 
 # Called with the finished share, from 0 to 1.
 Progress: TypeAlias = Callable[[float], Any]
@@ -41,6 +42,8 @@ class RenderOptions:
             as in Shadertoy.
         index: ``frame.index``, the frame number; wraps at 32 bits.
         seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
+        samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
+            scene, and eight more where the pixel differs from its neighbours.
         freeze: Compile all numbers as constants: slower to compile, a little faster to run.
         settings: Values of a scene's numbers by name, for this picture only.
 
@@ -59,6 +62,7 @@ class RenderOptions:
     mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0)
     index: int = 0
     seed: int = 0
+    samples: int | None = None
     freeze: bool = False
     settings: Mapping[str, Any] = field(default_factory=dict)
 
@@ -69,6 +73,7 @@ class RenderOptions:
             ("mouse", _checked_mouse(self.mouse)),
             ("index", _checked_int("index", self.index)),
             ("seed", _checked_int("seed", self.seed)),
+            ("samples", checked_samples(self.samples)),
         ):
             object.__setattr__(self, name, value)
 
@@ -110,6 +115,19 @@ def checked_time(seconds: Any) -> float:
             "32 bits are too far apart there"
         )
     return value
+
+
+def checked_samples(samples: object) -> int | None:
+    """Return the checked number of samples in each pixel, or None.
+
+    Raises:
+        ValueError: It is no whole number in this range.
+    """
+    if samples is None:
+        return None
+    if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
+        raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
+    return samples
 
 
 def _checked_mouse(mouse: Any) -> tuple[float, float, float, float]:

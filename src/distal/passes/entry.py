@@ -25,6 +25,7 @@ from distal.ir.nodes import (
     Apply,
     Call,
     Compose,
+    Construct,
     EntryKind,
     Expr,
     Field,
@@ -198,6 +199,8 @@ class _FrameReplacer:
         """Return the coord that replaces a value of type Frame."""
         if isinstance(frame, Read) and frame.name in self._coords:
             return self._coords[frame.name]
+        if isinstance(frame, Construct):  # another coord (``runtime.sampling``)
+            return self._expression(frame.parts[0])
         raise self._misuse(frame)
 
     def _misuse(self, e: Expr) -> CompileError:

@@ -7,6 +7,7 @@ compilation.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
@@ -16,12 +17,12 @@ from distal.ir.types import Kind, Matrix, Scalar, Type, Vector
 from distal.ir.walk import map_expressions, substitute
 
 
-def freeze(module: Module) -> Module:
-    """Return the module with its numbers as constants."""
+def freeze(module: Module, kept: Collection[str] = ()) -> Module:
+    """Return the module with its numbers as constants, except those whose names are ``kept``."""
     constants: dict[Expr, Expr] = {
         Uniform(u.name, u.type): constant(u.default, u.type)
         for u in module.uniforms
-        if u.origin is Origin.NUMBER
+        if u.origin is Origin.NUMBER and u.name not in kept
     }
     if not constants:
         return module
@@ -30,8 +31,8 @@ def freeze(module: Module) -> Module:
         replace(f, body=map_expressions(f.body, lambda e: substitute(e, constants, memo)))
         for f in module.functions
     )
-    kept = tuple(u for u in module.uniforms if u.origin is not Origin.NUMBER)
-    return replace(module, functions=functions, uniforms=kept)
+    left = tuple(u for u in module.uniforms if u.origin is not Origin.NUMBER or u.name in kept)
+    return replace(module, functions=functions, uniforms=left)
 
 
 def constant(value: Any, type: Type) -> Expr:

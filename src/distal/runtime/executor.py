@@ -10,7 +10,8 @@ import threading
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakKeyDictionary
 
@@ -29,8 +30,10 @@ from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
-from distal.lang.render_options import RenderOptions, checked_time
+from distal.lang.render_options import Progress, RenderOptions, checked_time
 from distal.loading import loaded_from
+from distal.render import film
+from distal.runtime import sampling
 from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
@@ -109,34 +112,35 @@ class PythonExecutor:
 
     def _render_on(self, device: str, image: Image | Composed, options: RenderOptions) -> Picture:
         begin = time.perf_counter()
+        if isinstance(image, Image) and options.samples is not None and options.samples > 1:
+            image = sampling.sampled(image)
+            options = replace(options, settings={film.SAMPLES: options.samples})
+        adaptive = isinstance(image, Composed) and image.adaptive
         run = self._parts(image)
         parts = run.parts
         values, others = _uniforms(run.declared, options)
         if options.freeze:
             numbers = run.declared.number_values(options.settings)
-            parts = tuple(part.frozen(numbers) for part in parts)
+            kept = film.PASS_NUMBERS if adaptive else ()
+            parts = tuple(part.frozen(numbers, kept) for part in parts)
         kernels = [self.kernels.kernel(part, device, 32) for part in parts]
+        passes = _Passes(kernels, parts, run.declared, (values, others), options)
+        contrast = self._contrast(device) if adaptive else None
         compiled = time.perf_counter()
-        pixels = kernels[0].render(
-            *options.size,
-            run.declared.for_kernel(0, values, others),
-            parts[0].resources,
-            threads=options.threads,
-            progress=options.progress,
-            cancel=options.cancel,
-        )
-        stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
         linear: NDArray[np.float32] | None = None
-        if len(parts) > 1:
-            linear = pixels
-            pixels = kernels[1].map_pixels(
-                linear,
-                run.declared.for_kernel(1, values, others),
-                parts[1].resources,
-                threads=options.threads,
-                cancel=options.cancel,
-            )
+        samples = 1.0
+        if contrast is not None:
+            seen = partial(passes.contrast, *contrast)
+            programs = sampling.Programs(passes.light, passes.shown, seen)
+            linear, pixels, samples = sampling.adaptive(programs, options.size, options.progress)
+        else:
+            pixels = passes.light(options.size, {}, {}, options.progress)
+            if len(parts) > 1:
+                linear, pixels = pixels, passes.shown(pixels)
+        stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
         stats["render_s"] = time.perf_counter() - compiled
+        if contrast is not None:
+            stats["samples"] = samples
         known = loaded_from(image)
         origin = Provenance(
             source=image.name if known is None else known.source,
@@ -148,9 +152,15 @@ class PythonExecutor:
             seed=others["seed"],
             mouse=others["mouse"],
             freeze=options.freeze,
+            samples=None if adaptive else options.samples or 1,
             device=device,
         )
         return Picture(pixels, origin, stats, linear)
+
+    def _contrast(self, device: str) -> tuple[Kernel, Mapping[str, Any]]:
+        """Return the kernel of ``film.contrast``, and its buffer by name."""
+        lowered = self._lower(film.contrast, None)
+        return self.kernels.kernel(lowered, device, 32), lowered.resources
 
     def draw(
         self, image: Image | Composed, target: DrawTarget, options: RenderOptions
@@ -253,6 +263,61 @@ class PythonExecutor:
             if lowered is None or not lowered.captured.is_fresh():
                 lowered = known[types] = Lowered.of(function, types)
             return lowered
+
+
+@dataclass(frozen=True, slots=True)
+class _Passes:
+    """The kernels of one picture with everything that they are called with."""
+
+    kernels: Sequence[Kernel]
+    parts: Sequence[Lowered]
+    declared: DeclaredUniforms
+    values: tuple[Mapping[str, Any], Mapping[str, Any]]
+    options: RenderOptions
+
+    def light(
+        self,
+        size: tuple[int, int],
+        numbers: Mapping[str, Any],
+        buffers: Mapping[Any, Any],
+        progress: Progress | None,
+    ) -> NDArray[np.float32]:
+        """Render the first kernel; see ``sampling.Programs``."""
+        parameters, others = self.values
+        changed = {**others, **numbers, "resolution": (float(size[0]), float(size[1]))}
+        resources = self.parts[0].resources
+        return self.kernels[0].render(
+            *size,
+            self.declared.for_kernel(0, parameters, changed),
+            {name: buffers.get(source, source) for name, source in resources.items()},
+            threads=self.options.threads,
+            progress=progress,
+            cancel=self.options.cancel,
+        )
+
+    def shown(self, light: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Encode linear light for display by the second kernel."""
+        return self.kernels[1].map_pixels(
+            light,
+            self.declared.for_kernel(1, *self.values),
+            self.parts[1].resources,
+            threads=self.options.threads,
+            cancel=self.options.cancel,
+        )
+
+    def contrast(
+        self, kernel: Kernel, resources: Mapping[str, Any], shown: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """Return the contrast of each pixel of display values with its neighbours."""
+        height, width, _ = shown.shape
+        return kernel.render(
+            width,
+            height,
+            {"resolution": (float(width), float(height))},
+            dict.fromkeys(resources, shown.reshape(-1, 4)),
+            threads=self.options.threads,
+            cancel=self.options.cancel,
+        )[..., 0]
 
 
 class _ValueOf(Composed):

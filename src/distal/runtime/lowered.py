@@ -7,7 +7,7 @@ constants that they captured have changed since. Runs nothing.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -48,13 +48,13 @@ class Lowered:
         texts = sorted({"".join(o.source.lines) for o in captured.overloads})
         return Lowered(module, _hash(print_identity(module)), _hash("\0".join(texts)), captured)
 
-    def frozen(self, numbers: Mapping[str, Any]) -> Lowered:
-        """Return a copy with these values of the scene's numbers as constants."""
+    def frozen(self, numbers: Mapping[str, Any], kept: Collection[str] = ()) -> Lowered:
+        """Return a copy with these values of the scene's numbers as constants, but not ``kept``."""
         uniforms = tuple(
             replace(u, default=numbers[u.name]) if u.origin is Origin.NUMBER else u
             for u in self.module.uniforms
         )
-        module = freeze_numbers(replace(self.module, uniforms=uniforms))
+        module = freeze_numbers(replace(self.module, uniforms=uniforms), kept)
         return replace(self, module=module, digest=_hash(print_identity(module)))
 
     @property

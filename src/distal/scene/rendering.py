@@ -37,13 +37,11 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     check_slopes(scene.shape, options.params, options.time)
     warn_of_functions(scene.shape, options.params, options.time)
     shares = _shares(options.progress, 1 + len(view.layers))
-    image = scene.view(
-        view.view,
-        transparent=view.transparent,
-        sampled=view.samples > 1,
-        steered=view.steering is not None,
+    steered = view.steering is not None
+    image, sampled = scene.program(
+        view.view, options.samples, transparent=view.transparent, steered=steered
     )
-    settings = {**view.sample_settings, **sliced, **moved}
+    settings = {**sampled, **sliced, **moved}
     picture = executor().render(image, replace(options, settings=settings, progress=shares[0]))
     if view.view == "color":
         _check_visible(scene, view, picture, options)
@@ -52,7 +50,6 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
         for name, share in zip(view.layers, shares[1:], strict=True)
     }
     return picture.with_layers(layers).with_provenance(
-        samples=view.samples,
         view=view.view,
         transparent=view.transparent,
         plane=tuple(sliced.values()) or None,

@@ -134,7 +134,7 @@ def rerender(
     Args:
         plan: The plan made by ``plan_rerender``.
         size: Width and height in pixels.
-        samples: Number of rays for each pixel of a scene.
+        samples: Samples in each pixel.
         device: The device to render on, as for ``Scene.render``.
         threads: Number of CPU threads; None uses all that the process may use.
         progress: Called with the finished share, from 0 to 1.
@@ -160,20 +160,17 @@ def rerender(
             mouse=origin.mouse,
             index=origin.index,
             seed=origin.seed,
+            samples=origin.samples if samples is None else samples,
         )
-        made = _rendered(obj, origin, samples, options)
+        made = _rendered(obj, origin, options)
     except (ValueError, TypeError, OverflowError) as error:  # the scene no longer has it
         raise RerenderError(f"cannot rebuild {plan.path}: {error}") from None
     return made.with_provenance(source=plan.named)
 
 
-def _rendered(
-    obj: SceneCode, origin: Provenance, samples: int | None, options: RenderOptions
-) -> Picture:
+def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Picture:
     seen = viewable(obj, *(origin.stage or ({}, 0.0)))
     if seen.scene is None:
-        if samples is not None:
-            raise ValueError(f"samples are for scenes and shapes; '{seen.name}' is an @image")
         return seen.render(options, view=origin.view)
     scene = seen.scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
     moved = None
@@ -181,7 +178,6 @@ def _rendered(
         yaw, pitch, zoom, *pan = origin.steering
         moved = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
     view = ViewOptions(
-        samples=origin.samples if samples is None else samples,
         view=origin.view,
         transparent=origin.transparent,
         steering=moved,

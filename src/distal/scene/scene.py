@@ -20,7 +20,7 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import copy_loaded_from
-from distal.render import tonemap, views
+from distal.render import film, tonemap, views
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer
 from distal.scene.lowering.picture import NORMALS, SceneLowering
@@ -187,7 +187,7 @@ class Scene(Composed, Presentable):
         index: int = 0,
         seed: int = 0,
         *,
-        samples: int = 1,
+        samples: int | None = None,
         view: str = "color",
         transparent: bool = False,
         plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
@@ -210,7 +210,8 @@ class Scene(Composed, Presentable):
                 as in Shadertoy.
             index: ``frame.index``, the frame number; wraps at 32 bits.
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
-            samples: Number of rays for each pixel.
+            samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
+                scene, and eight more where the pixel differs from its neighbours.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
             transparent: Whether alpha is 0 where a ray hits nothing.
@@ -228,7 +229,6 @@ class Scene(Composed, Presentable):
             ValueError: A value is out of range, or the view, parameter or device does not exist.
         """
         shown = ViewOptions(
-            samples=samples,
             view=view,
             transparent=transparent,
             plane=plane,
@@ -246,6 +246,7 @@ class Scene(Composed, Presentable):
             mouse=mouse,
             index=index,
             seed=seed,
+            samples=samples,
             freeze=freeze,
         )
         return rendering.render_scene(self, shown, options)
@@ -258,6 +259,7 @@ class Scene(Composed, Presentable):
         sampled: bool = False,
         encoded: bool = False,
         steered: bool = False,
+        adaptive: bool = False,
     ) -> Composed:
         """Return another view of the scene ("normal", "depth" …); the scene itself for "color".
 
@@ -267,6 +269,8 @@ class Scene(Composed, Presentable):
             sampled: Whether a pixel is the mean of ``Samples`` rays.
             encoded: Whether pixels are display values instead of linear light.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
+            adaptive: Whether it is rendered in two passes: one sample in each pixel, then more
+                where pixels differ from their neighbours; for "color" as linear light.
 
         Raises:
             ValueError: There is no such view.
@@ -275,12 +279,33 @@ class Scene(Composed, Presentable):
             known = ", ".join(["color", *views.VIEWS])
             hint = "; locals are shown of an @image" if name.startswith("local:") else ""
             raise ValueError(f"there is no view '{name:.40}'; views: {known}{hint}")
-        key = (name, transparent, sampled, encoded, steered)
-        if key == ("color", False, False, False, False):
+        key = (name, transparent, sampled, encoded, steered, adaptive)
+        if key == ("color", False, False, False, False, False):
             return self
         if key not in self._pictures:
             self._pictures[key] = View(self, *key)
         return self._pictures[key]
+
+    def program(
+        self, view: str, samples: int | None, *, encoded: bool = False, **shown: bool
+    ) -> tuple[Composed, Mapping[str, Any]]:
+        """Return a view with several samples in each pixel, and its settings.
+
+        Args:
+            view: The name of the view.
+            samples: Number of samples. None: adaptive for "color", one for other views.
+            encoded: Whether pixels are display values instead of linear light; not if adaptive.
+            shown: ``transparent`` and ``steered`` of ``view``.
+
+        Raises:
+            ValueError: There is no such view.
+        """
+        if samples is None and view == "color":
+            return self.view(view, adaptive=True, **shown), {}
+        if samples is None or samples == 1:
+            return self.view(view, encoded=encoded, **shown), {}
+        made = self.view(view, sampled=True, encoded=encoded, **shown)
+        return made, {film.SAMPLES: samples}
 
     def layer(self, name: str, *, steered: bool = False) -> Composed:
         """Return an image of one layer's values at the middle of each pixel (``render.layers``).
@@ -345,6 +370,7 @@ class View(Composed):
         sampled: bool,
         encoded: bool,
         steered: bool,
+        adaptive: bool,
     ) -> None:
         copy_loaded_from(scene, self)
         self.name = scene.name if view == "color" else f"{scene.name} ({view})"
@@ -352,6 +378,7 @@ class View(Composed):
         self._view = view
         self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
         self._steered = steered
+        self.adaptive = adaptive
         self.display = scene.display if view == "color" and not encoded else None
 
     def compose(self, assembly: Assembly) -> str:
@@ -362,6 +389,7 @@ class View(Composed):
             sampled=self._sampled,
             encoded=self._encoded and self._view == "color",
             steered=self._steered,
+            adaptive=self.adaptive,
         )
 
     def functions(self) -> Iterable[Func]:

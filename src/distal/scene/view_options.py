@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, VEC3
@@ -18,15 +18,12 @@ from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
-MOST_SAMPLES: Final = 65536
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewOptions:
     """What is shown of a scene; checked on construction.
 
     Attributes:
-        samples: Number of rays for each pixel.
         view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
             "steps", "material", "slope" or "slice".
         transparent: Whether alpha is 0 where a ray hits nothing.
@@ -40,7 +37,6 @@ class ViewOptions:
         ValueError: A value is out of range, or there is no such layer.
     """
 
-    samples: int = 1
     view: str = "color"
     transparent: bool = False
     plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0)
@@ -48,7 +44,6 @@ class ViewOptions:
     layers: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        checked_samples(self.samples)
         object.__setattr__(self, "layers", checked_layers(self.layers))
 
     @property
@@ -74,19 +69,3 @@ class ViewOptions:
         direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
         distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
         return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
-
-    @property
-    def sample_settings(self) -> dict[str, Any]:
-        """The number of rays as a setting; empty if a pixel has one ray."""
-        return {"Samples": self.samples} if self.samples > 1 else {}
-
-
-def checked_samples(samples: object) -> int:
-    """Return the checked number of rays for each pixel.
-
-    Raises:
-        ValueError: It is no whole number in this range.
-    """
-    if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
-        raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
-    return samples

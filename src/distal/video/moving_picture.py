@@ -20,9 +20,9 @@ from distal.ir.nodes import Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
+from distal.render import film
 from distal.runtime.lowered import Lowered
 from distal.scene.checks.warnings import check_slopes, warn_of_black, warn_of_functions
-from distal.scene.view_options import checked_samples
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
 from distal.version import __version__
 from distal.video.formats import VideoError
@@ -76,7 +76,6 @@ class MovingPicture:
             .render(self._image, options)
             .with_provenance(
                 view=self._view,
-                samples=options.settings.get("Samples", 1),
                 stage=None if self._scene is None else self._scene.staged,
             )
         )
@@ -87,7 +86,7 @@ class MovingPicture:
             warn_of_black(self._scene, picture, self.parameters, time)
 
 
-def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) -> MovingPicture:
+def moving_picture(obj: Any, options: RenderOptions, view: str) -> MovingPicture:
     """Return the animated picture of an object.
 
     Args:
@@ -95,14 +94,13 @@ def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) ->
         options: How to render each frame. The default scene of a single shape fits the size of
             the shape at this time and for these parameters.
         view: One of its views.
-        samples: Rays per pixel of a scene.
 
     Raises:
         LoadError: The object is not a picture.
-        VideoError: There is no such view or parameter, or no such number of samples.
+        VideoError: There is no such view or parameter.
     """
     shown = viewable(obj, options.params, options.time)
-    image, settings = _image(shown, view, samples)
+    image, settings = _image(shown, view, options.samples)
     lowered = Lowered.of(image, None)
     values = _values(shown, lowered, options.params)
     if shown.scene is not None:
@@ -111,7 +109,7 @@ def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) ->
     return MovingPicture(
         name=shown.name,
         options=replace(options, params=values, settings=settings),
-        fingerprint=_fingerprint(lowered, settings),
+        fingerprint=_fingerprint(lowered, {**settings, film.SAMPLES: options.samples}),
         source_hash=lowered.source_hash,
         _image=image,
         _scene=shown.scene,
@@ -119,14 +117,17 @@ def moving_picture(obj: Any, options: RenderOptions, view: str, samples: int) ->
     )
 
 
-def _image(shown: Viewable, view: str, samples: int) -> tuple[Image | Composed, dict[str, Any]]:
-    """Return one program that computes display values; a second pass per frame would be slower."""
+def _image(
+    shown: Viewable, view: str, samples: int | None
+) -> tuple[Image | Composed, Mapping[str, Any]]:
+    """Return the program of the frames, and its settings.
+
+    It computes display values where it can, because a second pass for each frame is slower.
+    """
     try:
-        if checked_samples(samples) > 1 and shown.scene is None:
-            raise VideoError(f"samples are for scenes and shapes; '{shown.name}' is an @image")
-        if samples == 1 or shown.scene is None:
-            return shown.image(view, encoded=True), {}
-        return shown.scene.view(view, sampled=True, encoded=True), {"Samples": samples}
+        if shown.scene is None:
+            return shown.image(view), {}
+        return shown.scene.program(view, samples, encoded=True)
     except ValueError as error:
         raise VideoError(str(error)) from None
 

@@ -97,7 +97,7 @@ def video(
     start: float | Fraction | str = 0.0,
     params: Mapping[str, Any] | None = None,
     view: str = "color",
-    samples: int = 1,
+    samples: int | None = None,
     loop: bool = False,
     quality: str | float = "high",
     device: str = "cpu",
@@ -123,7 +123,7 @@ def video(
         start: The time of the first frame in seconds.
         params: Values of parameters by name.
         view: The view to show; see ``Scene.render``.
-        samples: Rays per pixel of a scene.
+        samples: Samples in each pixel, as for ``render``.
         loop: Whether gif, apng and webp repeat forever; otherwise they are played once.
         quality: "low", "medium", "high", a number from 0 to 100, or "lossless".
         device: The device to render on: "auto" (a hardware GPU, else the CPU), "cpu", "gpu",
@@ -161,13 +161,14 @@ def video(
         time=when.time(0),
         params=params or {},
         device=device,
+        samples=samples,
         threads=threads,
         cancel=lambda: stop.is_set() or is_cancelled(),
     )
     job = _RecordingJob(
         output=output,
         format=format,
-        moving=moving_picture(obj, options, view, samples),
+        moving=moving_picture(obj, options, view),
         timing=when,
         quality=chosen,
         loop=loop,

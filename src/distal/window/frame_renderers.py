@@ -92,6 +92,7 @@ def render_options(shot: Shot, size: tuple[int, int], device: str) -> RenderOpti
         params=dict(shot.parameters),
         mouse=shot.mouse.pixels(size),
         index=shot.index,
+        samples=1,
         device=device,
     )
 

@@ -13,7 +13,7 @@ from distal.fields.guarantees import UNBOUNDED
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
 from distal.ir.nodes import CompareOp, Expr, FunctionRef, If, Param, Read, Return
-from distal.ir.types import FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.ir.types import BOOL, FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
 from distal.render import bounce, film, layers, legend, settings, steer, tonemap, views
 from distal.render.camera import Ray
@@ -60,7 +60,14 @@ class SceneLowering:
         }
 
     def main(
-        self, view: str, *, transparent: bool, sampled: bool, encoded: bool, steered: bool = False
+        self,
+        view: str,
+        *,
+        transparent: bool,
+        sampled: bool,
+        encoded: bool,
+        steered: bool = False,
+        adaptive: bool = False,
     ) -> str:
         """Add the function that maps the frame to a pixel, and return its name.
 
@@ -70,19 +77,32 @@ class SceneLowering:
             sampled: Whether a pixel is the mean of ``Samples`` rays.
             encoded: Whether pixels are display values instead of linear light.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
+            adaptive: Whether it is rendered in two passes.
         """
         frame = Read("frame", FRAME)
         body = StatementList(taken={"frame"})
         resolution = field(frame, "resolution")
+        samples: Expr = integer(1)
+        if sampled or adaptive:
+            samples = self._assembly.number(film.SAMPLES, INT, 1)
+        again: dict[str, Expr] = {}
+        if adaptive:
+            again = self._second_pass(resolution)
+            resolution = again["resolution"]
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
             "resolution": resolution,
             "camera": self._camera_of(resolution, steered=steered),
             "transparent": boolean(transparent),
-            "samples": self._assembly.number("Samples", INT, 1) if sampled else integer(1),
+            "samples": samples,
+            "step": integer(1),
+            **again,
         }
         given["radiance"] = self._radiance(self._shown(view), resolution, steered=steered)
-        color = body.let("color", self.composer.call(film.exposed, given))
+        if sampled or adaptive:
+            given["step"] = self.composer.call(film.lattice_step, {"count": samples})
+        exposed = film.exposed_again if adaptive else film.exposed
+        color = body.let("color", self.composer.call(exposed, given))
         if view == "steps":
             given["color"] = color
             given["most"] = self._steps(body)
@@ -92,6 +112,17 @@ class SceneLowering:
         body.statements.append(Return(color))
         params = (Param("frame", FRAME),)
         return self._assembly.define("picture", params, VEC4, body.statements, self._scene.place)
+
+    def _second_pass(self, grid: Expr) -> dict[str, Expr]:
+        """Return what ``film.exposed_again`` takes besides the values of ``film.exposed``."""
+        assembly, size = self._assembly, (640.0, 480.0)
+        return {
+            "grid": grid,
+            "resolution": assembly.number(film.PICTURE_SIZE, VEC2, size),
+            "again": assembly.number(film.AGAIN, BOOL, False),
+            "places": assembly.resource(film.PLACES, "Places"),
+            "firsts": assembly.resource(film.FIRSTS, "Firsts"),
+        }
 
     def layer(self, name: str, *, steered: bool) -> str:
         """Add the function that maps the frame to a layer's values, and return its name.

@@ -121,12 +121,16 @@ class Viewable:
             view: One of ``views``.
             steering: How a person has moved the camera; None if it was not moved.
         """
-        image = self.image(view, steered=steering is not None)
-        settings = {} if steering is None else self.settings(steering)
-        picture = executor().render(image, replace(options, settings=settings))
-        moved = steering.numbers if steering is not None and self.steers else None
+        moved = {} if steering is None else self.settings(steering)
+        if self.scene is None:
+            picture = executor().render(self.image(view), options)
+        else:
+            image, sampled = self.scene.program(view, options.samples, steered=steering is not None)
+            settings = {**moved, **sampled}
+            picture = executor().render(image, replace(options, settings=settings))
+        numbers = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
-        return picture.with_provenance(view=view, steering=moved, stage=staged)
+        return picture.with_provenance(view=view, steering=numbers, stage=staged)
 
     def _has(self, view: str) -> bool:
         try:
