@@ -16,7 +16,7 @@ from __future__ import annotations
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
-from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March, crossing
+from distal.render.march import MOST_STEPS, OUT_OF_STEPS, PASSED, Hit, March, crossing
 
 UPRIGHT = 1e-6
 # A step goes to where the line through the last two values is 0, times this factor, so that the
@@ -151,7 +151,7 @@ def march_heightfield(
     # A ray is above the surface where it enters the box: the first probe is one step further.
     t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
-    for _ in range(steps):
+    for _ in range(min(steps, MOST_STEPS)):
         if t > end:
             break
         taken += 1

@@ -19,6 +19,8 @@ RELAXATION = 0.9
 LONGEST = 8.0
 # When steps run out, the closest approach is a hit if it came within this many thresholds.
 FORGIVING = 4.0
+# A limit of loops for targets that need a constant one.
+MOST_STEPS = 65536
 
 # Why a ray has found no surface.
 PASSED = 0  # it left the box, or moved away from the surfaces
@@ -101,7 +103,7 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
     best_t = t
     found = False
     nearing = False
-    for i in range(steps):
+    for i in range(min(steps, MOST_STEPS)):
         if t > end:
             break
         taken += 1

@@ -13,7 +13,7 @@ from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, dot, exp, func, max, min, mix, reflect, struct, vec3
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
-from distal.render.march import March, crossing
+from distal.render.march import MOST_STEPS, March, crossing
 from distal.render.material import highlight
 from distal.render.trace import SurfacePoint, ray_offset
 
@@ -60,7 +60,7 @@ def soft_shadow(
     width = max(light.radius, SHARPEST)
     open_share = 1.0
     t = max(span.x, 0.0) + numbers.threshold
-    for i in range(steps):
+    for i in range(min(steps, MOST_STEPS)):
         if t > end or open_share < -1.0:
             break
         d = field(origin + t * light.direction) / numbers.divisor
