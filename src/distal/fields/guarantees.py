@@ -183,6 +183,8 @@ class Primitive:
             name of a vec2, and the name of the texture whose largest differences of neighbouring
             texels (first channel, along each axis) it holds. Measured once, on construction.
         approximates: What the shape replaces by simpler pieces, or None.
+        normalize: For an author's function: ``(field, p, …) -> float``, whose value is used instead
+            of that of ``distance``, which it receives as ``field``.
         signed: False for surfaces and curves without an inside.
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
@@ -204,6 +206,7 @@ class Primitive:
     linear: bool = False
     measured: Mapping[str, str] = field(default_factory=dict)
     approximates: Approximation | None = None
+    normalize: Func | None = None
 
     @property
     def flat(self) -> bool:

@@ -143,7 +143,9 @@ class ShapeComposer:
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):
-            value = self.call(rule.distance, given)
+            if rule.normalize is not None:
+                given["field"] = self._unchanged(node, rule, given)
+            value = self.call(rule.normalize or rule.distance, given)
             if value.type is not FLOAT:
                 message = f"'{rule.name}' is no field: a distance is a float, not {value.type}"
                 refuse(message, None, node.place)
@@ -164,6 +166,28 @@ class ShapeComposer:
         if rule.finish is not None:
             result = body.let("d", self.call(rule.finish, {**given, "d": result}))
         return result
+
+    def _unchanged(self, node: Node, rule: Primitive, given: Mapping[str, Expr]) -> FunctionRef:
+        """Return an author's function as a function of the point alone, before it is normalized.
+
+        Args:
+            node: The author's function.
+            rule: Its primitive.
+            given: The values of its parameters, by name.
+        """
+        names = self.assembly.parameter_names(rule.distance)
+        passed = {n: given[n] for n in names if n in node.numbers or n == "cell"}
+        point = Param("p", VEC2 if node.flat else VEC3)
+        params = (point, *(Param(n, v.type) for n, v in passed.items()))
+        value = self.call(
+            rule.distance, {**given, **{p.name: Read(p.name, p.type) for p in params}}
+        )
+        if value.type is not FLOAT:
+            message = f"'{rule.name}' is no field: a distance is a float, not {value.type}"
+            refuse(message, None, node.place)
+        stem = f"{plain_name(node.name)}_unchanged"
+        name = self.assembly.define(stem, params, FLOAT, (Return(value),), node.place)
+        return FunctionRef(name, tuple(passed.values()), FunctionType((point.type,), FLOAT))
 
     def given(
         self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]

@@ -8,16 +8,23 @@ and times are checked when the scene is rendered (``scene.checks.warnings``).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NoReturn, TypeAlias
+from dataclasses import replace
+from typing import Final, NoReturn, TypeAlias
 
-from distal.fields.guarantees import ENDLESS, Operator
-from distal.packages import PackageError
+from distal.fields.guarantees import ENDLESS, Operator, Primitive
+from distal.lang.runtime_access import executor
+from distal.packages import PackageError, imported
+from distal.scene.lowering.derived import GradientOf
 from distal.scene.lowering.known_bounds import known_bounds_of
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 
 # The low and the high corner.
 Box: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
+
+# The number of places where a gradient is looked for, and how far out along axes without an end.
+PLACES: Final = 64
+REACH: Final = 2.0
 
 
 def check_slope(node: Node) -> None:
@@ -35,6 +42,33 @@ def check_slope(node: Node) -> None:
     if not slope < ENDLESS:
         boxes = [known_bounds_of(child) for child in node.children]
         refuse_steepness(node, [(box.low, box.high) for box in boxes])
+
+
+def check_gradient(node: Node) -> None:
+    """Raise an error if an author's function has no gradient by which to divide its values.
+
+    It is evaluated at some points, for the defaults of parameters at time 0.
+
+    Raises:
+        SceneValueError: At the line of the function's shape.
+    """
+    try:
+        np = imported("numpy")  # only what runs scene code needs it
+    except PackageError:
+        return
+    assert isinstance(node.rule, Primitive)
+    known = known_bounds_of(node)
+    size = 2 if node.flat else 3
+    low, high = (np.clip(corner[:size], -REACH, REACH) for corner in (known.low, known.high))
+    points = np.random.default_rng(0).uniform(low, high, (PLACES, size))
+    unchanged = GradientOf(replace(node, rule=replace(node.rule, normalize=None)))
+    found = np.asarray(executor().call(unchanged, (points,), {}, device="reference"))
+    if not (np.isfinite(found) & (found != 0.0)).any():
+        message = (
+            f"'{node.name}' has no gradient at any of {PLACES} places, so it cannot be normalized"
+        )
+        hint = "return a value that changes gradually, not one made by floor, round or comparisons"
+        refuse(message, hint, node.place)
 
 
 def may_be_endless(node: Node) -> bool:

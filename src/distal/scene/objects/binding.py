@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import Span
 from distal.fields import boxes
+from distal.fields import normalize as normalizing
 from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive
 from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
@@ -27,6 +28,15 @@ if TYPE_CHECKING:
     from distal.scene.objects import measuring
 else:
     measuring = LazyModule("distal.scene.objects.measuring")
+
+
+# The functions that normalize, by ``flat`` and by whether there are bounds.
+_NORMALIZED: Final = {
+    (False, False): normalizing.normalized,
+    (False, True): normalizing.normalized_within,
+    (True, False): normalizing.normalized_flat,
+    (True, True): normalizing.normalized_within_flat,
+}
 
 
 def bound(
@@ -75,6 +85,7 @@ def own_node(
     bounds: Any,
     exact: bool,
     growth: Any,
+    normalize: bool = False,
 ) -> Node:
     """Return the node of an author's own function; see ``BaseShape.from_function``.
 
@@ -82,10 +93,11 @@ def own_node(
         function: The author's ``@func``.
         numbers: Values of its parameters, by name.
         place: The author's line.
-        slope: Bound on |gradient| everywhere.
+        slope: Bound on |gradient| everywhere; None is 1, an estimate if ``normalize``.
         bounds: Corners (low, high) of a box around the surface, or None.
         exact: Whether the value is the true distance.
         growth: Bound on the growth of the box, or None.
+        normalize: Whether values are divided by the gradient.
 
     Raises:
         SceneTypeError: The function is not a ``@func`` of a point that returns a float.
@@ -107,8 +119,9 @@ def own_node(
     own, constants = bound(rule, (), numbers, place)
     found: dict[str, Any] = dict(own)
     limits = {"slope": Limit.POSITIVE}
+    declared = 1.0 if slope is None else slope
     found |= arguments(
-        boxes.given_slope, (slope,), {}, what=name, limits=limits, place=place, reserved=()
+        boxes.given_slope, (declared,), {}, what=name, limits=limits, place=place, reserved=()
     )
     if bounds is not None:
         box = boxes.given_bounds2 if flat else boxes.given_bounds
@@ -120,6 +133,10 @@ def own_node(
             boxes.given_growth, (growth,), {}, what=name, requires=_grows, place=place, reserved=()
         )
         rule = replace(rule, growth=boxes.given_growth)
+    if normalize:
+        if exact:
+            refuse(f"'{name}' cannot be both exact and normalized", "leave out one of them", place)
+        rule = replace(rule, normalize=_NORMALIZED[flat, box is not None], estimate=slope is None)
     return Node(rule, flat, (), found, constants, place)
 
 

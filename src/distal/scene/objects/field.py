@@ -23,7 +23,7 @@ from distal.lang.presentable import Presentable
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.derived import BoundsOf, GradientOf
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.lowering.slope_limit import check_slope
+from distal.scene.lowering.slope_limit import check_gradient, check_slope
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
@@ -320,10 +320,11 @@ class BaseShape(Composed, Presentable):
         cls,
         function: Func,
         *,
-        slope: float = 1.0,
+        slope: Any = None,
         bounds: Any = None,
         exact: bool = False,
-        growth: float | None = None,
+        growth: Any = None,
+        normalize: bool = False,
         **numbers: Any,
     ) -> Any:
         """Make a shape from a ``@func`` of a point, and of numbers passed by name.
@@ -331,20 +332,38 @@ class BaseShape(Composed, Presentable):
         Args:
             function: ``(p: vec3, …) -> float``, or with ``p: vec2`` for a flat shape. A parameter
                 ``cell: vec3`` receives the index of the repetition that contains the point.
-            slope: Lipschitz bound (slope): a bound on |gradient| everywhere. The marcher relies on
-                it.
+            slope: Lipschitz bound (slope): a bound on |gradient| everywhere, of the result if
+                ``normalize``. The marcher relies on it. None: 1, which with ``normalize`` is only
+                an estimate.
             bounds: Corners (low, high) of a box around the surface; None for an infinite shape.
             exact: Whether the value is the true distance.
             growth: How far from the box a point may be, at most, for each unit of its value; 1 if
                 the value is never less than the distance to the box. None: unknown (1 if
                 ``exact``). Operators that move the surface outwards (round, offset, blends) need it
                 to compute a box. Used only with ``bounds``.
+            normalize: Whether to divide values by the length of their gradient, which makes a badly
+                scaled function (0 on the surface, like x^4 + y^4 + z^4 - 1) about the distance near
+                its surface. Pass ``bounds`` too: they also limit the values far away.
             numbers: Values of the function's other parameters.
+
+        Raises:
+            SceneTypeError: The function is not a ``@func`` of a point that returns a float.
+            SceneValueError: A number is beyond its limit, or a function to normalize has no
+                gradient.
         """
         place = author_place()
         node = own_node(
-            function, numbers, place, slope=slope, bounds=bounds, exact=exact, growth=growth
+            function,
+            numbers,
+            place,
+            slope=slope,
+            bounds=bounds,
+            exact=exact,
+            growth=growth,
+            normalize=normalize,
         )
+        if normalize:
+            check_gradient(node)
         return cls._of(node)
 
 
