@@ -215,7 +215,7 @@ ERRORS = {
     ),
     "no background": (
         lambda: Scene(Sphere(), background="#12345"),
-        "'color of Background' takes a color like #rrggbb, not '#12345'",
+        "'color of Background' takes a color like #rrggbb or tomato, not '#12345'",
         None,
     ),
     "unknown tone map": (

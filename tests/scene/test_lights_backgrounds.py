@@ -151,9 +151,9 @@ def test_turned_surroundings_turn_their_light_too():
             "Sky: sun is a vector of zeros, which points nowhere",
         ),
         (
-            lambda: Sky(zenith="blue"),
+            lambda: Sky(zenith="#12"),
             SceneValueError,
-            "'zenith of Sky' takes a color like #rrggbb, not 'blue'",
+            "'zenith of Sky' takes a color like #rrggbb or tomato, not '#12'",
         ),
         (
             lambda: Environment(np.zeros(3)),

@@ -200,10 +200,16 @@ def test_what_is_painted_twice_has_one_set_of_numbers():
             None,
         ),
         (
-            lambda: matte("red"),
+            lambda: matte("tomatoe"),
             SceneValueError,
-            "'color of matte' takes a color like #rrggbb, not 'red'",
-            None,
+            "'color of matte' takes a color like #rrggbb or tomato, not 'tomatoe'",
+            "did you mean 'tomato'?",
+        ),
+        (
+            lambda: matte("transparent"),
+            SceneValueError,
+            "'color of matte' takes a color like #rrggbb or tomato, not 'transparent'",
+            "a color is opaque: write glass(), or render(transparent=True) for the background",
         ),
         (
             lambda: matte(matte("#f00")),

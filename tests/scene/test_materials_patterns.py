@@ -145,10 +145,10 @@ def test_pictures_lie_on_all_sides():
     ("make", "error", "message", "hint"),
     [
         (
-            lambda: checker("#f00", "blue"),
+            lambda: checker("#f00", "light blue"),
             SceneValueError,
-            "'b of checker' takes a color like #rrggbb, not 'blue'",
-            None,
+            "'b of checker' takes a color like #rrggbb or tomato, not 'light blue'",
+            "did you mean 'lightblue'?",
         ),
         (
             lambda: checker(size=0),

@@ -237,10 +237,10 @@ WIDE = slider("Wide", 0.5, -1.0, 1.0)
             None,
         ),
         (
-            lambda: light("red"),
+            lambda: light("rde"),
             VALUE,
-            "'color of Light' takes a color like #rrggbb, not 'red'",
-            None,
+            "'color of Light' takes a color like #rrggbb or tomato, not 'rde'",
+            "did you mean 'red'?",
         ),
         (
             lambda: light((0, -1, 0)),

@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Final, TypeAlias
 
+from distal.lang.color_names import code_of_name, hint_for
 from distal.lang.number_text import shown
 from distal.lang.values import VectorValue
 
@@ -119,26 +120,41 @@ def as_option(label: str, options: tuple[str, ...], value: object) -> int:
 
 
 def as_color(label: str, value: object) -> tuple[float, ...]:
-    """Return linear red, green and blue of a color, given linear or as "#rrggbb" in sRGB.
+    """Return linear red, green and blue of a color: linear, "#rrggbb" in sRGB, or a CSS name.
 
     Raises:
         TypeError: The value is neither a text nor three numbers.
-        ValueError: The text is not a color, or a number is outside 0 to 1.
+        ColorNameError: The text is not a color.
+        ValueError: A number is outside 0 to 1.
     """
     if isinstance(value, str):
-        return _decode_hex(label, value)
+        return _decode_text(label, value)
     numbers = as_point(label, value, (3,))
     if not all(0.0 <= c <= 1.0 for c in numbers):
         raise ValueError(f"'{label}' takes numbers from 0 to 1, not {joined(numbers)}")
     return numbers
 
 
-def _decode_hex(label: str, text: str) -> tuple[float, ...]:
+class ColorNameError(ValueError):
+    """A text is not a color.
+
+    Attributes:
+        message: What is wrong.
+        hint: What to write instead, or None.
+    """
+
+    def __init__(self, message: str, hint: str | None) -> None:
+        super().__init__(message if hint is None else f"{message}: {hint}")
+        self.message, self.hint = message, hint
+
+
+def _decode_text(label: str, text: str) -> tuple[float, ...]:
     # Imported here to avoid a cycle: that module is scene code and imports users of this module.
     srgb = importlib.import_module("distal.lang.srgb")
-    linear: tuple[float, ...] | None = srgb.linear_of(text)
+    linear: tuple[float, ...] | None = srgb.linear_of(code_of_name(text) or text)
     if linear is None:
-        raise ValueError(f"'{label}' takes a color like #rrggbb, not '{text:.40}'")
+        message = f"'{label}' takes a color like #rrggbb or tomato, not '{text:.40}'"
+        raise ColorNameError(message, hint_for(text))
     return linear
 
 

@@ -164,7 +164,11 @@ class Parameter(Symbolic):
                 is_number = text.isascii() and text.isdigit() and text not in self.options
                 return int(text) if is_number else text
             case ParameterKind.COLOR:
-                return text if text.startswith("#") else read_coordinates(self.label, text)
+                return (
+                    text
+                    if text.startswith("#") or text.isalpha()
+                    else read_coordinates(self.label, text)
+                )
             case ParameterKind.POINT:
                 return read_coordinates(self.label, text)
             case _:
@@ -193,7 +197,7 @@ class Parameter(Symbolic):
                 assert isinstance(self.default, int)
                 return f"{', '.join(self.options)} (default {self.options[self.default]})"
             case ParameterKind.COLOR:
-                return f"#rrggbb or linear r,g,b (default {joined(self.default)})"
+                return f"#rrggbb, a name or linear r,g,b (default {joined(self.default)})"
             case ParameterKind.POINT:
                 axes = ",".join("xyz"[: _size(self.default)])
                 return f"{axes} (default {joined(self.default)})"
@@ -344,7 +348,8 @@ def color(
 
     Args:
         label: The name shown to a person; its letters and digits form the parameter's name.
-        default: The initial color: "#rrggbb" in sRGB, or three linear numbers from 0 to 1.
+        default: The initial color: "#rrggbb" in sRGB, a CSS name ("tomato"), or three linear
+            numbers from 0 to 1.
         group: The heading under which it is listed.
         help: One sentence about its effect.
 

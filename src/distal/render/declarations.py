@@ -80,7 +80,7 @@ class Family:
     Attributes:
         site: The parameters that the scene passes, not the author.
         limits: The allowed range of a number, by its name.
-        colors: Parameters that accept "#rrggbb"; ``color`` and ``…_color`` always do.
+        colors: Parameters that accept "#rrggbb" and names; ``color`` and ``…_color`` always do.
         keyword_only: Parameters that are passed by name only.
         optional: Parameters that may be None, which selects the default.
         varies: Whether arguments may be patterns.

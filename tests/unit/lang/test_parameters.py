@@ -73,7 +73,7 @@ def test_hex_color_is_decoded_from_srgb():
         (lambda: choice("A", ["x", "x"]), ValueError, "twice"),
         (lambda: choice("A", ["x"], "y"), ValueError, "'A' takes one of x, not 'y'"),
         (lambda: choice("A", ["x"], 1), ValueError, "options 0 to 0"),
-        (lambda: color("A", "red"), ValueError, "#rrggbb"),
+        (lambda: color("A", "rde"), ValueError, "#rrggbb"),
         (lambda: color("A", (0, 0, 2)), ValueError, "from 0 to 1"),
         (lambda: point("A", (1, 2, 3, 4)), ValueError, "2 or 3 numbers, not 4"),
         (lambda: point("A", (1, "x")), TypeError, "takes a number"),

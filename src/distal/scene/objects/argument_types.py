@@ -31,7 +31,7 @@ class ArrayLike(Protocol):
 Number: TypeAlias = "float | Parameter | Expression | ArrayLike"
 # Two or three numbers.
 Vector: TypeAlias = "Sequence[Number] | vec2 | vec3 | vec4 | Parameter | Expression | ArrayLike"
-# "#rrggbb", linear red, green and blue, or one number for a grey.
+# "#rrggbb", a CSS name, linear red, green and blue, or one number for a grey.
 Color: TypeAlias = "str | Vector | Number"
 # A list of points or of numbers.
 Points: TypeAlias = "Sequence[Vector] | Sequence[float] | Buffer | ArrayLike"

@@ -47,8 +47,8 @@ class Material(CalledObject):
     most 1. Each argument is a number (or a color), a parameter, an expression, or a pattern.
 
     Args:
-        color: Color of scattered light, and of a metal's reflections: "#rrggbb", or linear red,
-            green, blue.
+        color: Color of scattered light, and of a metal's reflections: "#rrggbb", a CSS name
+            ("tomato"), or linear red, green, blue.
         diffuse: Share of light that is scattered in all directions.
         specular: Share of light that is reflected.
         transmission: Share of light that is transmitted.

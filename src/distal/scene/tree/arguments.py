@@ -127,7 +127,7 @@ def arguments(
             numbers is computed.
         place: The author's line.
         reserved: Names of parameters that the author does not set.
-        colors: Parameters that accept "#rrggbb"; ``color`` and ``…_color`` always do.
+        colors: Parameters that accept "#rrggbb" and names; ``color`` and ``…_color`` always do.
         accept: Accepts objects that are not numbers.
 
     Raises:
@@ -155,7 +155,7 @@ def arguments(
 
 
 def takes_color(name: str, colors: Collection[str]) -> bool:
-    """Return whether a parameter accepts "#rrggbb": by its name, or because ``colors`` has it."""
+    """Return whether a parameter accepts colors as text: by its name, or by ``colors``."""
     return name in colors or name == "color" or name.endswith("_color")
 
 

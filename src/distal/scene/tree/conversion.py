@@ -1,8 +1,8 @@
 """Conversion of an author's values to ``Number``s; errors are reported at the author's line.
 
-Input: Python and NumPy numbers, tuples, lists, arrays, vectors, ``"#hex"`` colors, parameters and
-expressions, also mixed. Output: checked plain numbers, or one expression. Checks limits
-(``fields.guarantees``); does not depend on the functions that take the numbers.
+Input: Python and NumPy numbers, tuples, lists, arrays, vectors, colors (``"#hex"``, CSS names),
+parameters and expressions, also mixed. Output: checked plain numbers, or one expression. Checks
+limits (``fields.guarantees``); does not depend on the functions that take the numbers.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from distal.ir.nodes import Cast, Compose, Const, Expr, Splat, Uniform
 from distal.ir.types import FLOAT, INT, TEXTURE_2D, TEXTURE_3D, Kind, Scalar, Texture, Type, Vector
 from distal.ir.types import Buffer as BufferType
 from distal.lang.expressions import Expression, Symbolic
-from distal.lang.parameter_values import as_bool, as_color, as_float, as_int
+from distal.lang.parameter_values import ColorNameError, as_bool, as_color, as_float, as_int
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
 from distal.lang.values import VectorValue
@@ -66,8 +66,8 @@ class Asked:
         what: The name of the object that is made: "Sphere".
         type: The type of the scene function's parameter.
         limit: The limit of each number.
-        is_color: Whether "#rrggbb" and a single number (a grey) are accepted, and components must
-            not be negative.
+        is_color: Whether "#rrggbb", a CSS name and a single number (a grey) are accepted, and
+            components must not be negative.
         splats: Whether one number sets all components.
         place: The author's line.
     """
@@ -173,6 +173,9 @@ def _checked(read: Callable[[str, object], Any], value: object, asked: Asked) ->
     except TypeError as error:
         message = str(error)
         refuse_kind(message, place=asked.place)
+    except ColorNameError as error:
+        message, hint = error.message, error.hint
+        refuse(message, hint, asked.place)
     except ValueError as error:
         message = str(error)
         refuse(message, place=asked.place)
@@ -219,7 +222,7 @@ def _vector(value: Any, asked: Asked, type: Vector) -> Number:
 def _refuse_vector(value: Any, asked: Asked, type: Vector) -> None:
     takes = f"{_WORDS[type.size]} numbers"
     if asked.is_color:
-        takes = "a color: '#rrggbb', or linear red, green and blue"
+        takes = "a color: '#rrggbb', a name, or linear red, green and blue"
     if isinstance(value, Symbolic):
         given = f"{_described(value)}, a {value.as_expression().node.type}"
     elif value is None:
