@@ -237,9 +237,9 @@ WIDE = slider("Wide", 0.5, -1.0, 1.0)
             None,
         ),
         (
-            lambda: light("rde"),
+            lambda: light("redd"),
             VALUE,
-            "'color of Light' takes a color like #rrggbb or tomato, not 'rde'",
+            "'color of Light' takes a color like #rrggbb or tomato, not 'redd'",
             "did you mean 'red'?",
         ),
         (
