@@ -328,6 +328,274 @@ class SpotLight(_Light):
         radius: Number = 0.0,
     ) -> None: ...
 
+def aluminium(roughness: Number | Varying = 0.3) -> Material:
+    """Aluminium; also spelt ``aluminum``: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def aluminum(roughness: Number | Varying = 0.3) -> Material:
+    """Aluminum; also spelt ``aluminium``: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def amber(
+    color: Color | Varying = ...,
+    depth: Number | Varying = 1.0,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Amber: transparent, it refracts light.
+
+    Args:
+        color: Color of white light after it passed through ``depth``.
+        depth: Thickness with this color, in scene units: about the size of the shape.
+        ior: Index of refraction.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def bone(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.7,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Bleached bone: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def brass(roughness: Number | Varying = 0.2) -> Material:
+    """Brass, an alloy of copper and zinc: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def brick(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.9,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Red brick: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def bronze(roughness: Number | Varying = 0.3) -> Material:
+    """Bronze, an alloy of copper and tin: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
+def car_paint(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.03,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Red paint of a car under a clear coat: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
+def charcoal(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.9,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Charcoal: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def chocolate(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.4,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Milk chocolate: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def chrome(roughness: Number | Varying = 0.0) -> Material:
+    """Polished chromium: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def clay(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.7,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Grey modelling clay: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
+def concrete(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.8,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Fresh concrete: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def copper(roughness: Number | Varying = 0.2) -> Material:
+    """Pure copper: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def diamond(
+    color: Color | Varying = ...,
+    depth: Number | Varying = 1.0,
+    ior: Number | Varying = 2.417,
+) -> Material:
+    """Diamond: transparent, it refracts light.
+
+    Args:
+        color: Color of white light after it passed through ``depth``.
+        depth: Thickness with this color, in scene units: about the size of the shape.
+        ior: Index of refraction.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def emerald(
+    color: Color | Varying = ...,
+    depth: Number | Varying = 1.0,
+    ior: Number | Varying = 1.578,
+) -> Material:
+    """Emerald (beryl): transparent, it refracts light.
+
+    Args:
+        color: Color of white light after it passed through ``depth``.
+        depth: Thickness with this color, in scene units: about the size of the shape.
+        ior: Index of refraction.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
 def emissive(color: Color | Varying = ..., strength: Number | Varying = 1.0) -> Material:
     """A material that emits light and reflects none.
 
@@ -359,6 +627,144 @@ def glossy(
     Raises:
         ValueError: A number is out of its range.
         TypeError: An argument is of another kind.
+    """
+
+def gold(roughness: Number | Varying = 0.15) -> Material:
+    """Pure gold: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def granite(
+    size: Number | Varying = 0.12,
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.12,
+) -> Material:
+    """Polished granite: grains of feldspar, quartz and black mica.
+
+    Args:
+        size: Size of the grains, in scene units.
+        color: Color of the feldspar, which is most of the stone.
+        roughness: Roughness of the polished surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: grains by the sign of noise; colors by eye.
+    """
+
+def honey(
+    color: Color | Varying = ...,
+    depth: Number | Varying = 1.0,
+    ior: Number | Varying = 1.504,
+) -> Material:
+    """Liquid honey: transparent, it refracts light.
+
+    Args:
+        color: Color of white light after it passed through ``depth``.
+        depth: Thickness with this color, in scene units: about the size of the shape.
+        ior: Index of refraction.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def ice(meter: Number | Varying = 1.0) -> Material:
+    """Clear ice: it refracts light, and is blue where it is metres deep.
+
+    Args:
+        meter: Length of a metre in scene units: 100 if a unit is a centimetre.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: refraction and absorption: Warren and Brandt (2008), by Physically Based
+        (https://physicallybased.info).
+    """
+
+def iron(roughness: Number | Varying = 0.4) -> Material:
+    """Pure iron, without rust: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def jade(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.1,
+    ior: Number | Varying = 1.61,
+) -> Material:
+    """Polished jade (nephrite): it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
+def leather(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.5,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Brown leather: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
+def marble(
+    size: Number | Varying = 1.0,
+    color: Color | Varying = ...,
+    vein_color: Color | Varying = ...,
+    roughness: Number | Varying = 0.08,
+) -> Material:
+    """Polished marble: white, with grey veins of several widths.
+
+    Args:
+        size: Distance between large veins, in scene units.
+        color: Color of the stone.
+        vein_color: Color of the veins.
+        roughness: Roughness of the polished surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: layers displaced by noise: Ken Perlin, "An Image Synthesizer" (1985); the stone's
+        color: Physically Based (https://physicallybased.info).
     """
 
 def matte(color: Color | Varying = ...) -> Material:
@@ -395,6 +801,57 @@ def mirror(color: Color | Varying = ...) -> Material:
         TypeError: An argument is of another kind.
     """
 
+def nickel(roughness: Number | Varying = 0.2) -> Material:
+    """Pure nickel: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def paper(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.8,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """White office paper: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def plaster(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.9,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """White plaster: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
 def plastic(
     color: Color | Varying = ...,
     roughness: Number | Varying = 0.2,
@@ -410,6 +867,273 @@ def plastic(
     Raises:
         ValueError: A number is out of its range.
         TypeError: An argument is of another kind.
+    """
+
+def platinum(roughness: Number | Varying = 0.15) -> Material:
+    """Pure platinum: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def porcelain(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.05,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Glazed porcelain: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def rubber(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.7,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Black rubber, as of a tire: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def ruby(
+    color: Color | Varying = ...,
+    depth: Number | Varying = 1.0,
+    ior: Number | Varying = 1.768,
+) -> Material:
+    """Ruby (corundum): transparent, it refracts light.
+
+    Args:
+        color: Color of white light after it passed through ``depth``.
+        depth: Thickness with this color, in scene units: about the size of the shape.
+        ior: Index of refraction.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: index: "Physically Based" (https://physicallybased.info).
+    """
+
+def sand(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.9,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Dry sand: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def sapphire(
+    color: Color | Varying = ...,
+    depth: Number | Varying = 1.0,
+    ior: Number | Varying = 1.768,
+) -> Material:
+    """Blue sapphire (corundum): transparent, it refracts light.
+
+    Args:
+        color: Color of white light after it passed through ``depth``.
+        depth: Thickness with this color, in scene units: about the size of the shape.
+        ior: Index of refraction.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: index: "Physically Based" (https://physicallybased.info).
+    """
+
+def silver(roughness: Number | Varying = 0.1) -> Material:
+    """Pure silver: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def skin(tone: Number | Varying = 0.2, roughness: Number | Varying = 0.5) -> Material:
+    """Human skin, without the light that passes under it.
+
+    Args:
+        tone: From 0, the lightest, to 1, the darkest of six measured types (Fitzpatrick I to VI).
+        roughness: Roughness of the surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: Physically Based (https://physicallybased.info), skin I to VI.
+    """
+
+def snow(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.7,
+    ior: Number | Varying = 1.31,
+) -> Material:
+    """Fresh snow: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def steel(roughness: Number | Varying = 0.25) -> Material:
+    """Stainless steel: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def terracotta(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.8,
+    ior: Number | Varying = 1.5,
+) -> Material:
+    """Fired clay, as of a flower pot: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def titanium(roughness: Number | Varying = 0.35) -> Material:
+    """Pure titanium: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
+    """
+
+def water(meter: Number | Varying = 1.0) -> Material:
+    """Clear water: it refracts light, and is blue where it is metres deep.
+
+    Args:
+        meter: Length of a metre in scene units: 100 if a unit is a centimetre.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: refraction: Daimon and Masumura (2007); absorption: Physically Based
+        (https://physicallybased.info).
+    """
+
+def wax(
+    color: Color | Varying = ...,
+    roughness: Number | Varying = 0.4,
+    ior: Number | Varying = 1.44,
+) -> Material:
+    """Beeswax: it scatters light below a reflecting surface.
+
+    Args:
+        color: Fraction of the light that it scatters.
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+        ior: Index of refraction of its surface.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: chosen by eye.
+    """
+
+def wood(
+    size: Number | Varying = 0.09,
+    color: Color | Varying = ...,
+    dark_color: Color | Varying = ...,
+    roughness: Number | Varying = 0.35,
+) -> Material:
+    """Varnished wood: growth rings around the trunk, which stands along the y axis, and pores.
+
+    Args:
+        size: Thickness of a growth ring, in scene units.
+        color: Color of the wood that grows in spring.
+        dark_color: Color of the wood that grows in late summer, and of pores.
+        roughness: Roughness of the varnish.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: rings by the distance from an axis: Darwyn Peachey, "Solid Texturing of Complex
+        Surfaces" (1985); colors by eye, after oak.
+    """
+
+def zinc(roughness: Number | Varying = 0.4) -> Material:
+    """Pure zinc: a metal.
+
+    Args:
+        roughness: 0 mirrors sharply, 1 hardly mirrors.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: "Physically Based" (https://physicallybased.info).
     """
 
 def by_cell(seed: Number | Varying = 0.0) -> Pattern:
@@ -2325,25 +3049,68 @@ __all__ = [
     "VoronoiWalls",
     "Wedge",
     "__version__",
+    "aluminium",
+    "aluminum",
+    "amber",
+    "bone",
+    "brass",
+    "brick",
+    "bronze",
     "by_cell",
+    "car_paint",
+    "charcoal",
     "checker",
+    "chocolate",
+    "chrome",
+    "clay",
+    "concrete",
+    "copper",
     "cube_map",
+    "diamond",
+    "emerald",
     "emissive",
     "gallery",
     "glass",
     "glossy",
+    "gold",
     "gradient",
+    "granite",
+    "honey",
+    "ice",
     "image_pattern",
+    "iron",
+    "jade",
+    "leather",
     "load",
+    "marble",
     "matte",
     "metal",
     "mirror",
+    "nickel",
     "noise",
     "palette",
+    "paper",
     "pattern",
+    "plaster",
     "plastic",
+    "platinum",
+    "porcelain",
     "radial_gradient",
+    "rubber",
+    "ruby",
+    "sand",
+    "sapphire",
+    "silver",
+    "skin",
+    "snow",
+    "steel",
     "stripes",
+    "terracotta",
     "time",
+    "titanium",
+    "water",
     "waves",
+    "wax",
+    "wood",
+    "zinc",
 ]

@@ -12,7 +12,12 @@ DECLARED_NAMES: Final = {
     "distal.scene.objects.lights": (
         "AmbientLight DistantLight HemisphereLight PointLight SpotLight"
     ),
-    "distal.scene.objects.materials": "emissive glossy matte metal mirror plastic",
+    "distal.scene.objects.materials": (
+        "aluminium aluminum amber bone brass brick bronze car_paint charcoal chocolate chrome clay "
+        "concrete copper diamond emerald emissive glossy gold granite honey ice iron jade leather "
+        "marble matte metal mirror nickel paper plaster plastic platinum porcelain rubber ruby "
+        "sand sapphire silver skin snow steel terracotta titanium water wax wood zinc"
+    ),
     "distal.scene.objects.patterns": (
         "by_cell checker gradient noise palette radial_gradient stripes waves"
     ),

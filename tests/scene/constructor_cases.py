@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ import distal
 from distal.lang import func, vec3
 from distal.render import patterns as pattern_functions
 from distal.render.material import Surface
+from distal.render.named_materials import CLEAR as CLEAR_ROWS
+from distal.render.named_materials import COATED, METALS
 from distal.scene.objects.cameras import TurnedCamera
 
 Formula = Callable[..., dict[str, Any]]
@@ -327,6 +330,42 @@ MATERIALS = [
     ),
 ]
 
+METAL = {"diffuse": 0.0, "specular": 1.0, "metal": 1.0, "fresnel": 1.0}
+
+
+def named_cases() -> list[Case]:
+    """The materials by name: their rows' colors, and the formulas of metal, plastic and glass."""
+
+    def metallic(color: Any) -> Formula:
+        return lambda **k: surface(color=color, **METAL, **k)
+
+    def clear(color: Any, depth: float, ior: float) -> dict[str, Any]:
+        return surface(ior=ior, absorption=-np.log(arr(color)) / depth, **CLEAR)
+
+    def coated(**given: Any) -> dict[str, Any]:
+        return surface(fresnel=1.0, **given)
+
+    cases = [Case(n, {"roughness": 0.4}, metallic(row.color)) for n, row in METALS.items()]
+    given = {"color": COLOR, "roughness": 0.4, "ior": 1.3}
+    cases += [Case(name, given, coated) for name in COATED]
+    cases += [Case(name, {"color": COLOR, "depth": 0.7, "ior": 1.3}, clear) for name in CLEAR_ROWS]
+    water, ice = (1.3325, arr((0.297, 0.045, 0.017))), (1.3098, arr((0.2075, 0.0416, 0.0)))
+    for name, (ior, absorption) in (("water", water), ("ice", ice)):
+        formula = partial(in_metres, ior=ior, absorption=absorption)
+        cases.append(Case(name, {"meter": 0.2}, formula))
+
+    def of_skin(tone: float, roughness: float) -> dict[str, Any]:
+        types = np.array([[0.847, 0.638, 0.552], [0.799, 0.485, 0.347], [0.623, 0.433, 0.343]])
+        color = [np.interp(5.0 * tone, np.arange(3), channel) for channel in types.T]
+        return surface(color=color, roughness=roughness, ior=1.4, fresnel=1.0)
+
+    return [*cases, Case("skin", {"tone": 0.22, "roughness": 0.4}, of_skin)]
+
+
+def in_metres(meter: float, ior: float, absorption: Any) -> dict[str, Any]:
+    return surface(ior=ior, absorption=absorption / meter, **CLEAR)
+
+
 # Patterns: a share from one color to the other, or a color
 
 
@@ -426,7 +465,8 @@ PATTERNS = [
 ]
 # Without a formula here; other tests of this folder look at them.
 ELSEWHERE_ARGUMENTS = {"Sky": {"light"}, "pattern": {"function"}}
-ELSEWHERE = {"by_cell", "cube_map", "image_pattern", "Environment"}
+# ``test_named_materials`` looks at those that vary over a surface.
+ELSEWHERE = {"by_cell", "cube_map", "image_pattern", "Environment", "granite", "marble", "wood"}
 
 
 # Backgrounds
@@ -492,4 +532,4 @@ BACKGROUNDS = [
     ),
 ]
 MAKERS = {name: getattr(distal, name) for name in distal.__all__} | {"TurnedCamera": TurnedCamera}
-CASES = [*LIGHTS, *CAMERAS, *MATERIALS, *PATTERNS, *BACKGROUNDS]
+CASES = [*LIGHTS, *CAMERAS, *MATERIALS, *named_cases(), *PATTERNS, *BACKGROUNDS]

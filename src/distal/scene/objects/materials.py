@@ -20,6 +20,7 @@ from distal.lang.expressions import Expression, Symbolic
 from distal.lang.functions import Func
 from distal.lang.values import VectorValue
 from distal.render import material as library
+from distal.render import named_materials
 from distal.render.declarations import MATERIALS, Declaration
 from distal.scene.objects.declared import declared_function, scene_call
 from distal.scene.objects.scene_object import CalledObject
@@ -283,6 +284,7 @@ def _declared(declaration: Declaration, given: Mapping[str, Any], place: Span | 
     return Material.of(call, reflects=declaration.reflects, refracts=declaration.refracts)
 
 
+assert named_materials  # importing it declares the materials by name
 FUNCTIONS: Final = {
     name: declared_function(found, _declared, __name__, "Material")
     for name, found in MATERIALS.members.items()
