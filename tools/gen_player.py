@@ -1,8 +1,8 @@
 """Write the parts of the page's player whose one definition is Python: ``web/src/generated/``.
 
 The rules of camera movement (``distal/scene/viewing/interaction.py``), sRGB's curve
-(``distal/lang/srgb.py``) and the key bindings (``distal/scene/viewing/key_bindings.py``) are
-translated to TypeScript. Run it after any change of these, then build the player; a test fails when
+(``distal/lang/srgb.py``), the key bindings (``distal/scene/viewing/key_bindings.py``) and the names
+of what guides a camera (``distal/render/guide.py``) are translated to TypeScript. Run it after any change of these, then build the player; a test fails when
 it was forgotten.
 """
 
@@ -16,6 +16,8 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
+from distal.render.guide import ACTIONS, NUMBERS
+from distal.scene.steering import ACTION, GOAL_PREFIX, PREFIX, SIZE
 from distal.scene.viewing.key_bindings import BINDINGS, HELP
 
 ROOT = Path(__file__).parents[1]
@@ -219,20 +221,44 @@ def srgb() -> str:
 def bindings() -> str:
     """The keys of pages, and the lines of their help."""
     shared = [b for b in BINDINGS if b.in_page]
-    names = " | ".join(f'"{camel(b.action)}"' for b in shared)
+    actions = [camel(a) for b in shared for a in (b.action, b.opposite) if a is not None]
+    names = " | ".join(f'"{action}"' for action in actions)
     keys = {key: camel(b.action) for b in shared for key in b.keys}
+    opposites = {key: camel(b.opposite) for b in shared if b.opposite for key in b.keys}
     lines = [[h.keys, h.meaning, camel(h.needs)] for h in HELP if h.in_page]
-    rows = "".join(f"  {json.dumps(key)}: {json.dumps(keys[key])},\n" for key in keys)
+    rows, turned = (
+        "".join(f"  {json.dumps(key)}: {json.dumps(table[key])},\n" for key in table)
+        for table in (keys, opposites)
+    )
     helps = "".join(f"  {json.dumps(line, ensure_ascii=False)},\n" for line in lines)
     return (
         f"{NOTE.format('scene/viewing/key_bindings.py')}\nexport type Action = {names};\n\n"
         f"export const KEYS: Record<string, Action> = {{\n{rows}}};\n\n"
+        "/** The actions of digits with shift. */\n"
+        f"export const OPPOSITES: Record<string, Action> = {{\n{turned}}};\n\n"
         'export type Needs = Action | "camera" | "mouse";\n\n'
         f"export const HELP: readonly (readonly [string, string, Needs])[] = [\n{helps}];\n"
     )
 
 
-FILES = {"interaction.ts": interaction, "srgb.ts": srgb, "bindings.ts": bindings}
+def guide() -> str:
+    """What the program that guides a camera reads and gives, and the actions it knows."""
+
+    def listed(name: str, texts: tuple[str, ...]) -> str:
+        return f"export const {name} = {json.dumps([camel(text) for text in texts])} as const;\n"
+
+    names = {"PREFIX": PREFIX, "GOAL_PREFIX": GOAL_PREFIX, "ACTION": ACTION, "SIZE": SIZE}
+    constants = "".join(f"export const {n} = {json.dumps(v)};\n" for n, v in names.items())
+    head = f"{NOTE.format('render/guide.py')}\n"
+    return head + constants + listed("ACTIONS", ACTIONS) + listed("NUMBERS", NUMBERS)
+
+
+FILES = {
+    "interaction.ts": interaction,
+    "srgb.ts": srgb,
+    "bindings.ts": bindings,
+    "guide.ts": guide,
+}
 
 
 def main() -> None:

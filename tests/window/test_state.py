@@ -312,7 +312,7 @@ def test_a_new_scene_keeps_what_is_still_valid() -> None:
     assert session.shot(5.0).time == 3.0
     assert session.view == view
     session.adopt(still_scene(), 0.0)
-    session.steering = Steering(yaw=1.0)
+    session.camera.steering = Steering(yaw=1.0)
     session.act(Action.LAST_VIEW, 0.0)
     assert session.view in session.viewable.views
     session.adopt(still_scene(), 0.0)
@@ -453,6 +453,10 @@ def test_every_action_has_a_key_and_a_line_of_the_help() -> None:
             action = action_of_key(key) or action_of_character(key)
             assert action is Action(binding.action)
             found.add(action)
+            if binding.opposite is not None:
+                opposite = action_of_key(key, modified=True)
+                assert opposite is Action(binding.opposite)
+                found.add(opposite)
     assert found == set(Action)
     assert action_of_character("R") is Action.RESET_CAMERA
     assert action_of_character("V") is Action.LAST_VIEW

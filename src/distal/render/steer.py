@@ -2,7 +2,7 @@
 
 Input: the rays of any camera, and five numbers: how far a person orbited, dragged and zoomed.
 Output: the rays of the moved camera. Windows and pages keep the five numbers and do not depend on
-cameras.
+cameras; ``guide`` keeps the numbers where the camera sees something.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from distal.lang import (
     cross,
     dot,
     func,
+    length,
     mat3,
     max,
     normalize,
@@ -51,6 +52,46 @@ class Rig:
     zoom: float
 
 
+@struct
+class Steer:
+    """The five numbers by which a person moved a camera, as ``scene/steering.py`` declares them."""
+
+    yaw: float
+    pitch: float
+    zoom: float
+    pan: vec2
+
+
+@struct
+class Lens:
+    """What a movement has to know of the author's camera.
+
+    Attributes:
+        eye: Where the ray in the middle of the picture starts.
+        ahead: Its direction.
+        pivot: The point that the camera turns around.
+        depth: Distance of the pivot along ``ahead``.
+        across: How far the right edge of a square picture is from its middle, at that depth.
+        upward: How far the upper edge is from the middle, at that depth.
+        axis: The unit axis of horizontal turns.
+        side: -1 if the camera swaps right and left, else 1.
+        spread: How far the starts of rays are apart, per unit of the picture; 0 in perspective.
+        tangent: How far apart rays are at distance 1, per unit of the picture, less ``spread``;
+            0 without perspective.
+    """
+
+    eye: vec3
+    ahead: vec3
+    pivot: vec3
+    depth: float
+    across: vec3
+    upward: vec3
+    axis: vec3
+    side: float
+    spread: float
+    tangent: float
+
+
 @func
 def in_depth(ray: Ray, eye: Ray, depth: float) -> vec3:
     """Return where a ray meets the plane that faces the camera, ``depth`` ahead of it."""
@@ -77,37 +118,59 @@ def pivot_within(bounds: Bounds, camera: Callable[[vec2], Ray]) -> vec3:
 
 
 @func
-def rig(
-    camera: Callable[[vec2], Ray],
-    pivot: vec3,
-    up: vec3,
-    yaw: float,
-    pitch: float,
-    zoom: float,
-    pan: vec2,
-) -> Rig:
-    """Return the motion of a camera.
+def lens(camera: Callable[[vec2], Ray], pivot: vec3, up: vec3) -> Lens:
+    """Return what a movement has to know of a camera.
 
     Args:
         camera: The ray of a place in the picture.
         pivot: The point that it turns around.
         up: The axis of horizontal turns.
-        yaw: Angle of the orbit to the right, as the camera sees it, in radians.
-        pitch: Angle of the orbit upwards, in radians.
-        zoom: Factor on the distance from the pivot.
-        pan: How far the picture was dragged; 1 is half the picture's height.
     """
     eye = camera(vec2(0.0))
+    aside = camera(vec2(0.0, _ASIDE))
     depth = max(dot(pivot - eye.origin, eye.direction), _LEAST)
     middle = eye.origin + eye.direction * depth
     across = (in_depth(camera(vec2(_ASIDE, 0.0)), eye, depth) - middle) / _ASIDE
-    upward = (in_depth(camera(vec2(0.0, _ASIDE)), eye, depth) - middle) / _ASIDE
+    upward = (in_depth(aside, eye, depth) - middle) / _ASIDE
     axis = normalize(up)
     # A mirrored camera swaps right and left; the eye still follows the hand.
     side = select(dot(cross(eye.direction, axis), across) < 0.0, -1.0, 1.0)
-    turn = axis_matrix(axis, yaw * side) @ axis_matrix(normalize(across) * side, -pitch)
-    moved = pivot - turn @ (across * pan.x + upward * pan.y) * zoom
-    return Rig(pivot, moved, turn, zoom)
+    spread = length(aside.origin - eye.origin) / _ASIDE
+    opened = aside.direction / dot(aside.direction, eye.direction) - eye.direction
+    return Lens(
+        eye.origin,
+        eye.direction,
+        pivot,
+        depth,
+        across,
+        upward,
+        axis,
+        side,
+        spread,
+        length(opened) / _ASIDE,
+    )
+
+
+@func
+def rotation(lens: Lens, yaw: float, pitch: float) -> mat3:
+    """Return the rotation of a camera that was turned by two angles."""
+    raised = axis_matrix(normalize(lens.across) * lens.side, -pitch)
+    return axis_matrix(lens.axis, yaw * lens.side) @ raised
+
+
+@func
+def rig(lens: Lens, steer: Steer) -> Rig:
+    """Return the motion of a camera that was moved by five numbers."""
+    turn = rotation(lens, steer.yaw, steer.pitch)
+    dragged = lens.across * steer.pan.x + lens.upward * steer.pan.y
+    return Rig(lens.pivot, lens.pivot - turn @ dragged * steer.zoom, turn, steer.zoom)
+
+
+@func
+def moved_eye(lens: Lens, steer: Steer) -> vec3:
+    """Return where the eye is after the camera has moved."""
+    motion = rig(lens, steer)
+    return motion.moved + motion.turn @ ((lens.eye - motion.pivot) * motion.zoom)
 
 
 @func

@@ -21,6 +21,12 @@ NUMBERS: Final[tuple[tuple[str, Type, Any], ...]] = (
 )
 PREFIX: Final = "View_"
 
+# What the program that guides a camera reads, besides the numbers that the camera has: the numbers
+# that a gesture asks for, the action of a key, the size of the picture.
+GOAL_PREFIX: Final = "Goal_"
+ACTION: Final = "Guide_action"
+SIZE: Final = "Guide_size"
+
 
 @dataclass(frozen=True, slots=True)
 class Steering:

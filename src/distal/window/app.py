@@ -18,7 +18,9 @@ from distal.diagnostics import CompileError, DeviceError, LoadError, printable, 
 from distal.images.atomic_files import SaveError
 from distal.lang.number_text import shown as number_text
 from distal.loading import EXAMPLE_PREFIX
+from distal.scene.steering import STILL
 from distal.scene.viewing import interaction
+from distal.scene.viewing.guide import point_text
 from distal.scene.viewing.viewable import view_label
 from distal.window.frame_renderers import FrameRenderer, RenderedFrame, picture, render_options
 from distal.window.frame_scheduler import FrameRequest, FrameScheduler
@@ -27,7 +29,7 @@ from distal.window.log import Log
 from distal.window.overlay import Overlay
 from distal.window.overlay_content import OverlayContent, overlay_content
 from distal.window.reload import PERIOD_S, FileWatcher, ReloadedScene, files_in, load_again
-from distal.window.screen import set_full_screen
+from distal.window.screen import copy_text, set_full_screen
 from distal.window.screenshots import free_name
 from distal.window.session import Session
 from distal.window.worker import Worker
@@ -85,7 +87,7 @@ class Application:
         self._scheduler = FrameScheduler(renderer, self._worker, self._finished, self._failed)
         self._overlay = Overlay()
         self._watch = FileWatcher(source.files)
-        self._is_loading = False
+        self._has_begun = self._is_loading = False
         self._busy_since: float | None = None
         self._trouble_of_file = self._trouble_of_frame = ""
         self._last_report = ""
@@ -163,6 +165,8 @@ class Application:
 
     def _finished(self, request: FrameRequest, made: RenderedFrame) -> None:
         if made.share == 1.0:
+            if not self._has_begun:
+                self._begin(request)
             self._trouble_of_frame = ""
             self._surface.show(made)
             if request.shot.mouse == self._session.mouse:
@@ -170,6 +174,14 @@ class Application:
             self._log("frame", **_facts(request), ms=made.seconds * 1000)
             self._canvas.request_draw()
         self.wake()
+
+    def _begin(self, request: FrameRequest) -> None:
+        """Start the time with the first picture, and compile what guides the camera."""
+        self._has_begun = True
+        session, now = self._session, time.monotonic()
+        if session.playing:
+            session.clock.jump(request.shot.time, now)
+        session.camera.prepare(session.moment(now))
 
     def _failed(self, request: FrameRequest, error: BaseException) -> None:
         self._trouble_of_frame = self._report(error)
@@ -217,6 +229,9 @@ class Application:
             words.append(f"{made.seconds * 1000:.1f} ms")
             words.append("{}x{}".format(*shown.pixels))
         words.append(self._scheduler.renderer.device)
+        place = session.camera.known_place(session.moment(now))
+        if place is not None and session.steering != STILL and not session.playing:
+            words.append(f"camera {point_text(place.position, place)}")
         words.append("H: help")
         self._status, self._status_at = "   ".join(words), now
         return self._status
@@ -296,10 +311,11 @@ class Application:
         self.wake()
 
     def _key_down(self, event: dict[str, Any]) -> None:
-        action = action_of_key(event["key"])
+        shift = "Shift" in event["modifiers"]
+        modified = shift or "Control" in event["modifiers"]
+        action = action_of_key(event["key"], modified=modified)
         if action is None:
             return
-        shift = "Shift" in event["modifiers"]
         self._act(action, shift=shift)
         if action in REPEATED:
             self._held = action
@@ -325,6 +341,8 @@ class Application:
             return
         if action is Action.SCREENSHOT:
             self._save()
+        elif action is Action.COPY_CAMERA:
+            self._copy_camera()
         elif action is Action.FULL_SCREEN:
             self._toggle_full_screen()
         else:
@@ -376,6 +394,14 @@ class Application:
             self.wake()
 
         self._worker.submit(job, done)
+
+    def _copy_camera(self) -> None:
+        """Copy the camera as Python to the clipboard."""
+        text = self._session.camera.text(self._session.moment(time.monotonic()))
+        if text:
+            copy_text(self._canvas, text)
+            self._notify(f"copied {text}")
+            self._log("copied", text=text)
 
     def _toggle_full_screen(self) -> None:
         self._full_screen_from = set_full_screen(self._canvas, self._full_screen_from)

@@ -22,6 +22,14 @@ class Action(Enum):
     NEARER = "nearer"
     FARTHER = "farther"
     RESET_CAMERA = "reset_camera"
+    FRAME = "frame"
+    FRONT = "front"
+    BACK_SIDE = "back_side"
+    RIGHT_SIDE = "right_side"
+    LEFT_SIDE = "left_side"
+    TOP = "top"
+    BOTTOM = "bottom"
+    COPY_CAMERA = "copy_camera"
     PAUSE = "pause"
     BACK = "back"
     FORTH = "forth"
@@ -47,17 +55,33 @@ _KEYS: Final = {
     for binding in BINDINGS
     for key in (*binding.keys, *binding.window_keys)
 }
+_OPPOSITES: Final = {
+    key: Action(binding.opposite)
+    for binding in BINDINGS
+    if binding.opposite is not None
+    for key in binding.keys
+}
+# How the canvas names the digits of the numeric keypad: by the code of glfw.
+_KEYPAD: Final = {chr(320 + digit): str(digit) for digit in range(10)}
 # Actions that repeat while the key is held; the system itself repeats typed characters.
 REPEATED: Final = frozenset({Action.LEFT, Action.RIGHT, Action.UP, Action.DOWN})
 
 
-def action_of_key(key: str) -> Action | None:
-    """Return the action of a key by its name, such as "ArrowLeft" or " "."""
+def action_of_key(key: str, *, modified: bool = False) -> Action | None:
+    """Return the action of a key by its name, such as "ArrowLeft", "1" or " ".
+
+    Args:
+        key: The name of the key.
+        modified: Whether shift or ctrl is held, which gives digits the opposite action.
+    """
+    key = _KEYPAD.get(key, key)
+    if key.isdigit():
+        return (_OPPOSITES if modified else _KEYS).get(key)
     return _KEYS.get(key) if len(key) > 1 or key == " " else None
 
 
 def action_of_character(character: str) -> Action | None:
-    """Return the action of a typed character."""
-    if character == " ":
+    """Return the action of a typed character; digits and space are keys."""
+    if character == " " or character.isdigit():
         return None
     return _KEYS.get(character, _KEYS.get(character.lower()))

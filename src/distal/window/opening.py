@@ -66,6 +66,7 @@ def view(
             values=options.params,
             view=first_view,
             paused=paused,
+            guided=True,
             now=time.monotonic(),
         )
         loop = canvas._rc_canvas_group.get_loop()

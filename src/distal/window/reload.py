@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from distal.diagnostics import CompileError
 from distal.loading import load, loaded_from
 from distal.scene.steering import STILL
+from distal.scene.viewing.guide import Moment
 from distal.scene.viewing.viewable import Viewable, checked_picture, viewable
 from distal.window.session import Shot, valid_values
 
@@ -111,6 +112,8 @@ def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) ->
     maker.prepare(shown, replace(shot, parameters=parameters, view=view, steering=steering))
     # Computed and cached here, so that the window's thread does not have to wait.
     _ = shown.elevation
+    if shown.guide is not None:
+        shown.guide.prepare(Moment(time=shot.time, params=values))
     return ReloadedScene(shown, shown.animated, origin.files)
 
 

@@ -121,3 +121,8 @@ def set_full_screen(canvas: Any, back_to: tuple[int, ...] | None) -> tuple[int, 
     width, height = mode.size
     glfw.set_window_monitor(window, monitor, 0, 0, width, height, mode.refresh_rate)
     return place
+
+
+def copy_text(canvas: Any, text: str) -> None:
+    """Put a text on the clipboard."""
+    glfw.set_clipboard_string(canvas._window, text)

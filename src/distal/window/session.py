@@ -16,9 +16,11 @@ from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
 from distal.scene.steering import STILL, Steering
 from distal.scene.viewing import interaction
+from distal.scene.viewing.guide import Moment
 from distal.window.clock import Clock
 from distal.window.dials import Dial, dials
 from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
+from distal.window.guided_camera import SHOWN, GuidedCamera
 from distal.window.keys import Action
 from distal.window.layout import Table, time_bar, time_track
 
@@ -77,7 +79,7 @@ class Session:
     Attributes:
         viewable: The object to show.
         clock: The scene's time.
-        steering: The movement of the camera.
+        camera: The camera, moved by gestures and keys.
         values: The parameters that a person moved, by name.
         view: The name of the view.
         dials: The controls of the parameters.
@@ -96,10 +98,23 @@ class Session:
         values: Mapping[str, Value] | None = None,
         view: str = "color",
         paused: bool = False,
+        guided: bool = False,
         now: float = 0.0,
     ) -> None:
+        """Make the state of a window that has just opened.
+
+        Args:
+            viewable: The object to show.
+            time: Initial time in seconds.
+            values: The parameters that are not at their defaults, by name.
+            view: The initial view.
+            paused: Whether the time is paused at the start.
+            guided: Whether the camera is kept out of solids, and keys show the whole scene; this
+                compiles the scene's guide.
+            now: The reading of the clock, in seconds.
+        """
         self.clock = Clock(time, running=False, now=now)
-        self.steering = STILL
+        self.camera = GuidedCamera(viewable, is_guided=guided)
         self.mouse = Mouse()
         self.values: dict[str, Value] = dict(values or {})
         self.view = view
@@ -130,8 +145,7 @@ class Session:
         self.chosen = max(min(self.chosen, len(self.dials) - 1), 0)
         if self.view not in viewable.views:
             self.view = viewable.views[0]
-        if not viewable.steers:
-            self.steering = STILL
+        self.camera.adopt(viewable)
         # The object of the drag may no longer exist.
         self._grab = None
         self.clock.run(self._wants_time and self.animated, now)
@@ -191,6 +205,8 @@ class Session:
             now: The reading of the clock, in seconds.
             shift: Whether the shift key is held.
         """
+        if action in SHOWN and self.viewable.steers:
+            self.camera.show(action, self.moment(now))
         match action:
             case Action.PAUSE:
                 self._pause(now)
@@ -214,12 +230,12 @@ class Session:
             case Action.RESET_PARAMETER:
                 self._reset_parameter(every=shift)
             case Action.RESET_CAMERA:
-                self.steering, self.mouse = STILL, Mouse()
+                self.camera.steering, self.mouse = STILL, Mouse()
             case Action.HELP:
                 self.shows_help = not self.shows_help
             case Action.OVERLAY:
                 self.shows_overlay = not self.shows_overlay
-            case Action.SCREENSHOT | Action.FULL_SCREEN | Action.QUIT:
+            case Action.SCREENSHOT | Action.COPY_CAMERA | Action.FULL_SCREEN | Action.QUIT:
                 pass
 
     def _pause(self, now: float) -> None:
@@ -243,9 +259,23 @@ class Session:
             self.mouse = self.mouse.nudged(way, rise)
         # An arrow is the direction of the eye; a drag moves in the opposite direction.
         elif shift:
-            self.steering = panned(self.steering, -way, rise)
+            self._go(panned(self.steering, -way, rise), now)
         else:
-            self.steering = orbited(self.steering, -way, rise, self.viewable.elevation)
+            self._go(orbited(self.steering, -way, rise, self.viewable.elevation), now)
+
+    # The camera
+
+    @property
+    def steering(self) -> Steering:
+        """The movement of the camera."""
+        return self.camera.steering
+
+    def moment(self, now: float) -> Moment:
+        """Return what the camera's surroundings depend on."""
+        return Moment(self.size, self.clock.time(now), dict(self.values))
+
+    def _go(self, goal: Steering, now: float) -> None:
+        self.camera.go(goal, self.moment(now))
 
     def _step(self, direction: int, seconds: float, now: float) -> None:
         if self.animated:
@@ -339,9 +369,9 @@ class Session:
         self._at = (x, y)
         match self._grab:
             case Grab.ORBIT:
-                self.steering = orbited(self.steering, right, down, self.viewable.elevation)
+                self._go(orbited(self.steering, right, down, self.viewable.elevation), now)
             case Grab.PAN:
-                self.steering = panned(self.steering, right, down)
+                self._go(panned(self.steering, right, down), now)
             case Grab.MOUSE:
                 self.mouse = replace(self.mouse, at=self._place(x, y))
             case Grab.TIME:
@@ -376,7 +406,7 @@ class Session:
     def wheel(self, notches: float, now: float) -> None:
         """Zoom; positive notches move the eye away."""
         if self.viewable.steers:
-            self.steering = zoomed(self.steering, notches)
+            self._go(zoomed(self.steering, notches), now)
             self._moving_until = now + _SETTLING_S
 
     def _place(self, x: float, y: float) -> tuple[float, float]:

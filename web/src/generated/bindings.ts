@@ -1,6 +1,6 @@
 // Made by tools/gen_player.py from src/distal/scene/viewing/key_bindings.py: change that, and run it.
 
-export type Action = "left" | "right" | "up" | "down" | "nearer" | "farther" | "resetCamera" | "pause" | "back" | "forth" | "frameBack" | "frameForth" | "begin" | "slower" | "faster" | "nextView" | "lastView" | "parameters" | "screenshot" | "fullScreen" | "help";
+export type Action = "left" | "right" | "up" | "down" | "nearer" | "farther" | "resetCamera" | "frame" | "front" | "backSide" | "rightSide" | "leftSide" | "top" | "bottom" | "copyCamera" | "pause" | "back" | "forth" | "frameBack" | "frameForth" | "begin" | "slower" | "faster" | "nextView" | "lastView" | "parameters" | "screenshot" | "fullScreen" | "help";
 
 export const KEYS: Record<string, Action> = {
   "ArrowLeft": "left",
@@ -12,6 +12,11 @@ export const KEYS: Record<string, Action> = {
   "-": "farther",
   "_": "farther",
   "r": "resetCamera",
+  "f": "frame",
+  "1": "front",
+  "3": "rightSide",
+  "7": "top",
+  "c": "copyCamera",
   " ": "pause",
   ",": "back",
   ".": "forth",
@@ -26,9 +31,16 @@ export const KEYS: Record<string, Action> = {
   "V": "lastView",
   "p": "parameters",
   "s": "screenshot",
-  "f": "fullScreen",
+  "F": "fullScreen",
   "h": "help",
   "?": "help",
+};
+
+/** The actions of digits with shift. */
+export const OPPOSITES: Record<string, Action> = {
+  "1": "backSide",
+  "3": "leftSide",
+  "7": "bottom",
 };
 
 export type Needs = Action | "camera" | "mouse";
@@ -38,6 +50,9 @@ export const HELP: readonly (readonly [string, string, Needs])[] = [
   ["Right or shift drag", "Move the scene (shift arrows, two fingers)", "camera"],
   ["Wheel, pinch, + -", "Nearer, farther", "camera"],
   ["R, double click", "Reset the camera", "camera"],
+  ["F", "See the whole scene", "camera"],
+  ["1  3  7", "From the front, right, top (shift: opposite)", "camera"],
+  ["C", "Copy the camera as Python", "camera"],
   ["Drag, arrows", "The mouse that the picture reads", "mouse"],
   ["R", "Reset the mouse", "mouse"],
   ["Space", "Play or pause", "pause"],
@@ -47,6 +62,6 @@ export const HELP: readonly (readonly [string, string, Needs])[] = [
   ["V, shift V", "Next view, the one before", "nextView"],
   ["P", "Parameters", "parameters"],
   ["S", "Save a picture", "screenshot"],
-  ["F", "Full screen", "fullScreen"],
+  ["Shift F", "Full screen", "fullScreen"],
   ["H, ?", "This list", "help"],
 ];

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from distal.fields.guarantees import UNBOUNDED
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
-from distal.ir.nodes import CompareOp, Expr, FunctionRef, If, Param, Read, Return
+from distal.ir.nodes import CompareOp, Construct, Expr, FunctionRef, If, Param, Read, Return
 from distal.ir.types import BOOL, FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
 from distal.render import bounce, film, layers, legend, settings, steer, tonemap, views
@@ -298,16 +298,26 @@ class SceneLowering:
         """Return the camera moved by the numbers of a ``Steering``."""
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            camera = self._scene.camera
-            asked = {**given, "camera": self._camera(given["resolution"]), "up": self._up()}
-            asked["pivot"] = camera.number(self.composer, "target") or self._pivot(body, asked)
-            for name, type, value in steering.NUMBERS:
-                asked[name] = self._assembly.number(f"{steering.PREFIX}{name}", type, value)
+            asked = {**given, "camera": self._camera(given["resolution"])}
+            asked["lens"] = self.lens(body, given["resolution"])
+            asked["steer"] = self.steer(body, steering.PREFIX)
             asked["rig"] = body.let("rig", self.composer.call(steer.rig, asked))
             return self.composer.call(steer.steered_ray, asked)
 
         params = (("uv", VEC2), ("resolution", VEC2))
         return self._function("steered_ray", params, make, (resolution,))
+
+    def lens(self, body: StatementList, resolution: Expr) -> Expr:
+        """Return what a movement has to know of the camera, for a picture of some pixels."""
+        camera = self._scene.camera
+        given = {"camera": self._camera(resolution), "up": self._up()}
+        given["pivot"] = camera.number(self.composer, "target") or self._pivot(body, given)
+        return body.let("lens", self.composer.call(steer.lens, given))
+
+    def steer(self, body: StatementList, prefix: str) -> Expr:
+        """Return the five numbers of a ``Steering``, which are uniforms with this prefix."""
+        numbers = [self._assembly.number(f"{prefix}{n}", t, v) for n, t, v in steering.NUMBERS]
+        return body.let("steer", Construct(tuple(numbers), self._assembly.struct(steer.Steer)))
 
     def elevation(self) -> str:
         """Add the function that returns the camera's elevation above its target."""

@@ -20,12 +20,15 @@ class Binding:
             capital, unless the capital has an action.
         in_page: Whether pages and notebooks have the action; those of windows only do not.
         window_keys: Further keys in windows, which a browser uses itself.
+        opposite: The action of the same keys with shift or ctrl, if they are digits: what they
+            type with shift depends on the keyboard.
     """
 
     action: str
     keys: tuple[str, ...] = ()
     in_page: bool = True
     window_keys: tuple[str, ...] = ()
+    opposite: str | None = None
 
 
 BINDINGS: Final = (
@@ -37,6 +40,11 @@ BINDINGS: Final = (
     Binding("nearer", ("+", "=")),
     Binding("farther", ("-", "_")),
     Binding("reset_camera", ("r",)),
+    Binding("frame", ("f",)),
+    Binding("front", ("1",), opposite="back_side"),
+    Binding("right_side", ("3",), opposite="left_side"),
+    Binding("top", ("7",), opposite="bottom"),
+    Binding("copy_camera", ("c",)),
     Binding("pause", (" ",)),
     Binding("back", (",",)),
     Binding("forth", (".",)),
@@ -50,7 +58,7 @@ BINDINGS: Final = (
     Binding("last_view", ("V",)),
     Binding("parameters", ("p",), window_keys=("Tab",)),
     Binding("screenshot", ("s",)),
-    Binding("full_screen", ("f",), window_keys=("F11",)),
+    Binding("full_screen", ("F",), window_keys=("F11",)),
     Binding("help", ("h", "?")),
     Binding("overlay", ("o",), in_page=False),
     Binding("reset_parameter", ("Backspace",), in_page=False),
@@ -81,6 +89,9 @@ HELP: Final = (
     Help("Right or shift drag", "Move the scene (shift arrows, two fingers)", "camera"),
     Help("Wheel, pinch, + -", "Nearer, farther", "camera"),
     Help("R, double click", "Reset the camera", "camera"),
+    Help("F", "See the whole scene", "camera"),
+    Help("1  3  7", "From the front, right, top (shift: opposite)", "camera"),
+    Help("C", "Copy the camera as Python", "camera"),
     Help("Drag, arrows", "The mouse that the picture reads", "mouse"),
     Help("R", "Reset the mouse", "mouse"),
     Help("Space", "Play or pause", "pause"),
@@ -92,7 +103,7 @@ HELP: Final = (
     Help("P, then arrows", "Choose and change one (shift: finely)", "parameters", False),
     Help("Backspace", "Reset a parameter (shift: all)", "reset_parameter", False),
     Help("S", "Save a picture", "screenshot"),
-    Help("F", "Full screen", "full_screen"),
+    Help("Shift F", "Full screen", "full_screen"),
     Help("O", "Hide all this", "overlay", False),
     Help("H, ?", "This list", "help"),
     Help("Q, Esc", "Close", "quit", False),

@@ -27,6 +27,7 @@ from distal.scene.lowering.picture import SceneLowering
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.steering import STILL, Steering
+from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.stage import stage
 
 if TYPE_CHECKING:
@@ -73,6 +74,11 @@ class Viewable:
         if self.scene is None:
             return 0.0
         return float(executor().call(_Elevation(self.scene), (), {}))
+
+    @cached_property
+    def guide(self) -> Guide | None:
+        """What keeps the camera out of solids and frames the scene; None without a camera."""
+        return None if self.scene is None else Guide(self.scene)
 
     @cached_property
     def animated(self) -> bool:

@@ -1,0 +1,86 @@
+"""The program that guides a scene's camera: from a gesture to the numbers that it leads to.
+
+Input: a scene; as uniforms the numbers that the camera has, those that a gesture asks for, and the
+action of a key. Output: an image of one row, in which each pixel holds the bits of one number, so
+that a picture of eight bits per channel is enough to read them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, ClassVar
+
+from distal.fields.combine.joins import UNION
+from distal.frontend import Assembly
+from distal.ir.build import field
+from distal.ir.nodes import EntryKind, Expr, Param, Read, Return
+from distal.ir.types import FRAME, INT, VEC2, VEC4
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.loading import copy_loaded_from
+from distal.render import guide
+from distal.scene import steering
+from distal.scene.lowering.picture import SceneLowering
+from distal.scene.lowering.shapes import ZERO_CELL
+from distal.scene.tree.values import StatementList
+
+if TYPE_CHECKING:
+    from distal.scene.scene import Scene
+    from distal.scene.tree.node import Node
+
+
+class GuideImage(Composed):
+    """An image of one row: the numbers of ``guide.NUMBERS``, one pixel each."""
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+
+    def __init__(self, scene: Scene) -> None:
+        copy_loaded_from(scene, self)
+        self.name = f"{scene.name} (guide)"
+        self._scene = scene
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function that maps the frame to a pixel, and return its name."""
+        made = SceneLowering(assembly, self._scene)
+        composer, node = made.composer, self._scene.shape.node
+        body = StatementList(taken={"frame"})
+        values = composer.values.all(node)
+        bounds = composer.bounds.of(body, node, values)
+        # The picture that is guided has another size than this image.
+        size = assembly.number(steering.SIZE, VEC2, (4.0, 3.0))
+        given: dict[str, Expr] = {
+            "coord": field(Read("frame", FRAME), "coord"),
+            "size": size,
+            "action": assembly.number(steering.ACTION, INT, 0),
+            "lens": made.lens(body, size),
+            "now": made.steer(body, steering.PREFIX),
+            "goal": made.steer(body, steering.GOAL_PREFIX),
+            "box": _finite_box(made, body, node),
+            "divisor": bounds.divisor,
+            "field": composer.field(node, values, ZERO_CELL),
+        }
+        given["guided"] = body.let("guided", composer.call(guide.guided, given))
+        body.statements.append(Return(composer.call(guide.pixel_of, given)))
+        params = (Param("frame", FRAME),)
+        return assembly.define("guide", params, VEC4, body.statements, self._scene.place)
+
+    def functions(self) -> Iterable[Func]:
+        """Yield the scene functions that this object calls."""
+        return self._scene.functions()
+
+
+def _finite_box(made: SceneLowering, body: StatementList, root: Node) -> Expr:
+    """Return the box around all parts of the scene that are finite; planes have no part in it."""
+    composer = made.composer
+    parts = body.let("parts", composer.call(guide.no_parts, {}))
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        if node.rule is UNION:
+            stack.extend(node.children)
+            continue
+        part = composer.bounds.of(body, node, composer.values.all(node)).bounds
+        parts = body.let("parts", composer.call(guide.with_part, {"parts": parts, "bounds": part}))
+    return composer.call(guide.box_of, {"parts": parts})
