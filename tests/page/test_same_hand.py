@@ -33,7 +33,10 @@ from tests.page.test_player_build import built
 ROOT = Path(__file__).parents[2]
 SIZE = (640.0, 360.0)
 BUTTONS = {0: 1, 1: 3, 2: 2}  # as browsers count them -> as the window's canvas does
-APART = ("pause", "next_view", "last_view", "full_screen", "screenshot", "parameters", "help")
+APART = (
+    *("pause", "next_view", "last_view", "full_screen", "screenshot", "parameters", "help"),
+    *("frame", "front", "right_side", "top", "copy_camera"),  # these ask the scene's guide
+)
 KEYS = [key for b in BINDINGS if b.in_page and b.action not in APART for key in b.keys]
 SLIDERS = (
     slider("Linear", 1.0, 0.5, 2.0),

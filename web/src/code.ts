@@ -2,6 +2,9 @@
 
 import { hexOf, linearOf } from "./color";
 import type { Steering } from "./camera";
+import { rounded } from "./generated/interaction";
+import type { Guided } from "./guide";
+import { shown } from "./numbers";
 import type { Parameter, Value, Values } from "./payload";
 import { same } from "./values";
 
@@ -29,6 +32,26 @@ function literal(parameter: Parameter, value: Value): string {
     if (linearOf(hex)!.every((light, i) => Math.abs(light - value[i]!) < 1e-6)) return text(hex);
   }
   return tuple(value);
+}
+
+/** A camera at a place as Python, rounded to a ten-thousandth of its distance from the target. */
+export function cameraOf(place: Guided, name: string, mirror: boolean): string {
+  const { eyeX, eyeY, eyeZ, targetX, targetY, targetZ, upX, upY, upZ } = place;
+  const away = Math.hypot(targetX - eyeX, targetY - eyeY, targetZ - eyeZ);
+  const point = (numbers: number[], unit: number) =>
+    `(${numbers.map((n) => shown(rounded(n, unit))).join(", ")})`;
+  const unit = 0.1 * Math.max(away, 1e-6);
+  const parts = [point([eyeX, eyeY, eyeZ], unit), point([targetX, targetY, targetZ], unit)];
+  if (upX || upZ || upY !== 1) parts.push(`up=${point([upX, upY, upZ], 0.1)}`);
+  const { opening, height } = place;
+  if (name === "Camera" || name === "FisheyeCamera") {
+    parts.push(`fov_deg=${shown(rounded(opening, 10))}`);
+  }
+  if (name === "OrthographicCamera") {
+    parts.push(`height=${shown(rounded(height, 0.1 * Math.max(height, 1e-6)))}`);
+  }
+  if (mirror) parts.push("mirror=True");
+  return `${name}(${parts.join(", ")})`;
 }
 
 /** `params={...}` of the parameters that are not at their defaults, and the other arguments. */

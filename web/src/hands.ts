@@ -9,6 +9,7 @@ import type { Camera } from "./camera";
 import type { Clock } from "./clock";
 import { ARROW, FRAMES_PER_S, STEP_S } from "./generated/interaction";
 import type { Hand } from "./gestures";
+import type { GuideAction } from "./guide";
 import type { Actions } from "./keyboard";
 import type { Mouse } from "./mouse";
 
@@ -63,6 +64,12 @@ export class Hands implements Hand {
     if (this.camera) this.reset();
   }
 
+  /** Shows the whole scene; false where there is no camera to do it with. */
+  show(action: GuideAction): boolean {
+    void this.camera?.show(action);
+    return !!this.camera;
+  }
+
   reset(): boolean {
     this.camera?.reset();
     this.mouse.reset();
@@ -79,7 +86,8 @@ export class Hands implements Hand {
 
 type Moves = Omit<
   Actions,
-  "pause" | "nextView" | "lastView" | "fullScreen" | "screenshot" | "parameters" | "help"
+  | ("pause" | "nextView" | "lastView" | "fullScreen" | "screenshot" | "parameters" | "help")
+  | "copyCamera"
 >;
 
 /** What keys do to the camera and the time; `timed` and `sped` are called after the clock changed. */
@@ -106,6 +114,13 @@ export function movesOf(
     nearer: () => hands.wheel(-1),
     farther: () => hands.wheel(1),
     resetCamera: () => hands.reset(),
+    frame: () => hands.show("frame"),
+    front: () => hands.show("front"),
+    backSide: () => hands.show("back"),
+    rightSide: () => hands.show("right"),
+    leftSide: () => hands.show("left"),
+    top: () => hands.show("top"),
+    bottom: () => hands.show("bottom"),
     back: step(-STEP_S),
     forth: step(STEP_S),
     frameBack: step(-1 / FRAMES_PER_S),

@@ -1,6 +1,6 @@
 /** Keys to actions, and when a key belongs to somebody else. */
 
-import { KEYS, type Action } from "./generated/bindings";
+import { KEYS, OPPOSITES, type Action } from "./generated/bindings";
 
 /** What keys do, with or without shift; false for a key that has no meaning and is left to the page. */
 export type Actions = Record<Action, (shift: boolean) => boolean>;
@@ -8,9 +8,12 @@ export type Actions = Record<Action, (shift: boolean) => boolean>;
 /** Acts on a key unless the element that has the focus needs it. */
 export function press(event: KeyboardEvent, actions: Actions): void {
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-  const { key } = event;
+  // What a digit's key types with shift depends on the keyboard; which key it is does not.
+  const digit = event.shiftKey && /^(?:Digit|Numpad)(\d)$/.exec(event.code ?? "")?.[1];
+  const key = digit || event.key;
   if (isNeeded(event.composedPath()[0], key)) return;
-  const action = KEYS[key] ?? (key.length === 1 && KEYS[key.toLowerCase()]);
+  const action =
+    (digit && OPPOSITES[digit]) || (KEYS[key] ?? (key.length === 1 && KEYS[key.toLowerCase()]));
   if (action && actions[action](event.shiftKey)) event.preventDefault();
 }
 

@@ -11,6 +11,7 @@ import { link, type Linked } from "./program";
 import { Resources } from "./resources";
 import { trusted, trusting } from "./trust";
 import { setUniforms, type Inputs } from "./uniforms";
+import { gpuDone } from "./waiting";
 
 interface Target {
   frame: WebGLFramebuffer;
@@ -25,6 +26,8 @@ export class Painter {
   #resources: Resources;
   #work: Target;
   #shown: Target;
+  /** For pictures that are read, not shown: what is being drawn is not touched. */
+  #read: Target;
   #largest: number;
 
   /** Throws where the browser gives no WebGL 2. */
@@ -49,6 +52,7 @@ export class Painter {
     this.#resources = new Resources(gl, resources);
     this.#work = newTarget(gl);
     this.#shown = newTarget(gl);
+    this.#read = newTarget(gl);
     this.#largest = Math.min(gl.getParameter(gl.MAX_RENDERBUFFER_SIZE) as number, 8192);
     gl.bindVertexArray(gl.createVertexArray());
     gl.disable(gl.DITHER);
@@ -77,6 +81,30 @@ export class Painter {
     const read = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, read);
     return read;
+  }
+
+  /** What a program draws, byte by byte, as soon as the GPU has it; null where it was lost. */
+  async pixels(program: Linked, inputs: Inputs, size: [number, number]): Promise<Uint8Array | null> {
+    const { gl } = this;
+    const work = this.#work;
+    this.#work = this.#read;
+    this.draw(program, inputs, size, 0, size[1]);
+    this.#work = work;
+    const read = new Uint8Array(4 * size[0] * size[1]);
+    // Into a buffer first: to read pixels at once would hold up the page until they are drawn.
+    const buffer = gl.createBuffer();
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.bufferData(gl.PIXEL_PACK_BUFFER, read.byteLength, gl.STREAM_READ);
+    gl.readPixels(0, 0, ...size, gl.RGBA, gl.UNSIGNED_BYTE, 0);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    const isDone = (await gpuDone(gl)) !== null;
+    if (isDone) {
+      gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+      gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, read);
+      gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    }
+    gl.deleteBuffer(buffer);
+    return isDone ? read : null;
   }
 
   async #link(source: Program): Promise<Linked> {

@@ -81,7 +81,8 @@ export interface Payload {
   size: [number, number];
   embed: boolean;
   panel: boolean;
-  steering: { elevation: number } | null;
+  /** Of a scene's camera: `guide` is the number of its guide's program, -1 if there is none. */
+  steering: { elevation: number; guide?: number; camera?: { name: string; mirror: boolean } } | null;
   time: { start: number; duration: number | null; animated: boolean };
   parameters: Parameter[];
   values: Values;

@@ -7,9 +7,10 @@
 
 import { Camera, type Steering } from "./camera";
 import { Clock } from "./clock";
-import { pythonOf } from "./code";
+import { cameraOf, pythonOf } from "./code";
 import { Emitter, type Events } from "./events";
 import { Frame, type Theme } from "./frame";
+import { GUIDE_PIXELS, answer, numbersOf, question } from "./guide";
 import { Hands, movesOf } from "./hands";
 import type { Actions } from "./keyboard";
 import { Mouse } from "./mouse";
@@ -57,6 +58,7 @@ export class Player {
     const { time, steering, parameters } = payload;
     this.#clock = new Clock(time.start, time.duration);
     this.camera = steering && new Camera(steering.elevation);
+    if (this.camera) this.camera.onMoved = () => this.#steered();
     this.#view = payload.view;
     this.hands = new Hands(
       this.camera,
@@ -77,6 +79,7 @@ export class Player {
       screenshot: () => done(void this.saveScreenshot()),
       parameters: () => !this.payload.embed && done(this.togglePanel()),
       help: () => done(this.showHelp()),
+      copyCamera: () => !!this.camera && done(void this.copyCamera()),
     };
     for (const parameter of parameters) {
       const given = checked(parameter, payload.values[parameter.name]);
@@ -238,8 +241,23 @@ export class Player {
     this.#frame.notices.brief(isCopied ? `Copied: ${code}` : code);
   }
 
+  /** Where the camera is, as the author would write it; null where no guide knows. */
+  async cameraText(): Promise<string | null> {
+    const place = await this.camera?.place();
+    const { name, mirror } = this.payload.steering?.camera ?? { name: "Camera", mirror: false };
+    return place ? cameraOf(place, name, mirror) : null;
+  }
+
+  async copyCamera(): Promise<void> {
+    const text = await this.cameraText();
+    if (text === null) return;
+    const isCopied = await copy(text, this.#frame.root);
+    this.#frame.notices.brief(isCopied ? `Copied: ${text}` : text);
+  }
+
   /** Resolves to true when the sharp picture of the current state is shown, to false where none can be. */
-  settled(): Promise<boolean> {
+  async settled(): Promise<boolean> {
+    await this.camera?.rest();
     return this.#renderer.rest();
   }
 
@@ -322,9 +340,23 @@ export class Player {
       return;
     }
     if (this.#isGone) return;
+    this.#beGuided();
     this.#frame.listen(!!this.camera || this.readsMouse);
     this.#renderer.start();
     if (this.#state !== "unsupported") this.#compile();
+  }
+
+  /** From now on the camera asks the scene's guide, if the page has one. */
+  #beGuided(): void {
+    const source = this.#programs[this.payload.steering?.guide ?? -1];
+    if (!source || !this.camera) return;
+    this.camera.ask = async (action, now, goal) => {
+      const { width, height } = this.#frame.canvas;
+      const number = question(action, now, goal, [width, height]);
+      const inputs = { ...this.#subject().inputs(GUIDE_PIXELS, 1), number };
+      const bytes = await this.#renderer.pixels(source, inputs, [GUIDE_PIXELS, 1]);
+      return bytes && answer(bytes);
+    };
   }
 
   #compile(): void {
@@ -386,6 +418,8 @@ export class Player {
     if (state === "ready") {
       notices.clear();
       notices.say(`${label} is shown`);
+      // After the first sharp picture, so that neither it nor the first gesture has to wait.
+      if (!this.payload.embed) void this.#renderer.rest().then(() => this.camera?.place());
     }
     if (state === "lost") {
       this.#frame.live = false;
@@ -399,10 +433,6 @@ export class Player {
       this.#emitter.emit("error", { message: failure.sentence, log });
     }
   }
-}
-
-function numbersOf({ yaw, pitch, zoom, pan }: Steering) {
-  return { View_yaw: yaw, View_pitch: pitch, View_zoom: zoom, View_pan: pan };
 }
 
 function done(_: void): true {

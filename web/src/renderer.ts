@@ -148,6 +148,17 @@ export class Renderer {
     this.change();
   }
 
+  /** What a program draws from some inputs, byte by byte; null where it cannot be drawn. */
+  async pixels(source: Program, inputs: Inputs, size: [number, number]): Promise<Uint8Array | null> {
+    const painter = this.#painter;
+    if (!painter) return null;
+    try {
+      return await painter.pixels(await painter.program(source), inputs, size);
+    } catch {
+      return null;
+    }
+  }
+
   /** A PNG of what is to be seen, at the canvas's full scale. */
   capture(): Promise<Blob | null> {
     return new Promise((resolve) => {

@@ -25,7 +25,7 @@ export function toolbarOf(player: Player): HTMLElement {
     bar.append(iconButton("Reset the camera (R)", ICONS.reset, () => player.resetCamera()));
   }
   if (document.fullscreenEnabled) {
-    bar.append(iconButton("Full screen (F)", ICONS.full, () => player.toggleFullScreen()));
+    bar.append(iconButton("Full screen (shift F)", ICONS.full, () => player.toggleFullScreen()));
   }
   if (!embed) {
     const panel = iconButton("Settings (P)", ICONS.panel, () => player.togglePanel());

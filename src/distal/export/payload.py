@@ -29,6 +29,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
+from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
 
@@ -82,7 +83,7 @@ def payload(
         "size": list(options.size),
         "embed": options.embed,
         "panel": options.panel and not options.embed,
-        "steering": {"elevation": seen.elevation} if seen.steers else None,
+        "steering": _steering(seen, programs),
         "time": {
             "start": options.time,
             "duration": options.duration,
@@ -97,6 +98,15 @@ def payload(
         "programs": _packed(programs.made),
         "resources": programs.resources,
     }
+
+
+def _steering(seen: Viewable, programs: PagePrograms) -> dict[str, Any] | None:
+    """Return what the player needs to move the camera; ``guide`` is a program's index, or -1."""
+    if seen.guide is None:
+        return None
+    form = seen.guide.form
+    camera = {"name": form.name, "mirror": form.mirror}
+    return {"elevation": seen.elevation, "guide": programs.add_guide(seen.guide), "camera": camera}
 
 
 def name_of(seen: Viewable) -> str:
@@ -192,7 +202,16 @@ class PagePrograms:
             CompileError: WebGL 2 cannot show it.
             LoadError: The data of a texture cannot be read.
         """
-        image = self._seen.image(view, steered=self._seen.steers, encoded=True)
+        return self._added_program(self._seen.image(view, steered=self._seen.steers, encoded=True))
+
+    def add_guide(self, guide: Guide) -> int:
+        """Add the program that guides the camera; -1 if WebGL 2 cannot run it."""
+        try:
+            return self._added_program(guide.image)
+        except CompileError:
+            return -1
+
+    def _added_program(self, image: Func | Composed) -> int:
         artifact, module = _compiled(image)
         program = self._program(artifact, module)
         if program not in self.made:

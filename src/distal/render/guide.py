@@ -44,7 +44,7 @@ ACTIONS = ("go", "frame", "front", "back", "right", "left", "top", "bottom")
 GO, FRAME, FRONT, BACK, RIGHT, LEFT, TOP, BOTTOM = range(len(ACTIONS))
 # The numbers that hosts get, in the order of ``number_of``.
 NUMBERS = (
-    *("yaw", "pitch", "zoom", "pan_x", "pan_y", "arrived", "room", "tangent", "spread"),
+    *("yaw", "pitch", "zoom", "pan_x", "pan_y", "arrived", "room", "opening", "height"),
     *("eye_x", "eye_y", "eye_z", "target_x", "target_y", "target_z", "up_x", "up_y", "up_z"),
 )
 # The eye keeps this fraction of its distance from the pivot, but no less than this fraction of the
@@ -53,7 +53,7 @@ _CLEAR = 0.02
 _LEAST_CLEAR = 0.004
 _OF_START = 0.8
 # Field evaluations in one event. A drag along a wall advances by half of the clearance each time.
-_ROUNDS = 160
+_ROUNDS = 320
 # The parts of a step to try, three bits each from the last: yaw with the horizontal part of a pan
 # (1), pitch with the vertical part (2), zoom (4). All, then without zoom, pitch, yaw, then alone.
 _PARTS = 0o4216537
@@ -81,8 +81,8 @@ class Guided:
         eye: Position of the camera.
         target: The point that it looks at, at the distance of its pivot.
         up: The direction that is up in its picture.
-        tangent: How far apart rays are at distance 1, for half the picture's height.
-        spread: How far the starts of rays are apart, for half the picture's height.
+        opening: The angle from the bottom of its picture to the top, in degrees.
+        height: Height of what it sees without perspective; 0 in perspective.
         room: Distance of the eye from the nearest surface, at least; negative inside a solid.
     """
 
@@ -91,8 +91,8 @@ class Guided:
     eye: vec3
     target: vec3
     up: vec3
-    tangent: float
-    spread: float
+    opening: float
+    height: float
     room: float
 
 
@@ -138,19 +138,24 @@ def with_part(parts: Parts, bounds: Bounds) -> Parts:
     larger = extent(bounds) > extent(parts.largest)
     smaller = joined(parts.others, bounds)
     displaced = joined(parts.others, parts.largest)
-    found = parts
-    if max(size.x, max(size.y, size.z)) < ENDLESS:
-        found = Parts(
-            Bounds(
-                select(larger, bounds.low, parts.largest.low),
-                select(larger, bounds.high, parts.largest.high),
-            ),
-            Bounds(
-                select(larger, displaced.low, smaller.low),
-                select(larger, displaced.high, smaller.high),
-            ),
-        )
-    return found
+    largest = Bounds(
+        select(larger, bounds.low, parts.largest.low),
+        select(larger, bounds.high, parts.largest.high),
+    )
+    others = Bounds(
+        select(larger, displaced.low, smaller.low), select(larger, displaced.high, smaller.high)
+    )
+    finite = max(size.x, max(size.y, size.z)) < ENDLESS
+    return Parts(
+        Bounds(
+            select(finite, largest.low, parts.largest.low),
+            select(finite, largest.high, parts.largest.high),
+        ),
+        Bounds(
+            select(finite, others.low, parts.others.low),
+            select(finite, others.high, parts.others.high),
+        ),
+    )
 
 
 @func
@@ -300,6 +305,17 @@ def advanced(now: Steer, rest: Steer, share: float) -> Steer:
 
 
 @func
+def chosen(first: bool, a: Steer, b: Steer) -> Steer:
+    """Return ``a`` if ``first`` is true, else ``b``."""
+    return Steer(
+        select(first, a.yaw, b.yaw),
+        select(first, a.pitch, b.pitch),
+        select(first, a.zoom, b.zoom),
+        select(first, a.pan, b.pan),
+    )
+
+
+@func
 def guided(
     action: int,
     now: Steer,
@@ -334,41 +350,32 @@ def guided(
     attempt = 0
     moves = True
     arrived = False
+    going = action == GO
+    # Without branches: some drivers need twice the time to compile for each.
     for k in range(_ROUNDS):
         distance = field(moved_eye(lens, trial)) / max(divisor, 1.0)
         start = select(k == 0, distance, start)
         clear = clearance(lens.depth, trial.zoom, start)
         # A camera that is too close already, for the scene has moved, comes no closer.
-        enough = select(action == GO, min(clear, room * 0.9999), clear)
+        enough = select(going, min(clear, room * 0.9999), clear)
         taken = moves and k > 0 and (k == 1 or distance >= enough)
-        if taken:
-            here = trial
-            room = distance
-        inside = k == 1 and distance <= 0.0
+        here = chosen(taken, trial, here)
+        room = select(taken, distance, room)
+        inside = going and k == 1 and distance <= 0.0
+        here = chosen(inside, goal, here)
         attempt = select(k < 2 or taken, 0, attempt + 1)
-        rest = remaining(here, goal, 0)
-        through = action == GO and k > 0 and (inside or size_of(rest) < _STILL)
-        arrived = arrived or through or (action != GO and k > 1 and taken)
-        if inside and action == GO:
-            here = goal
-        if arrived or attempt >= select(action == GO, _PARTS_COUNT, _RISES):
+        through = size_of(remaining(here, goal, 0)) < _STILL
+        arrived = select(going, k > 0 and through, k > 1 and taken)
+        if arrived or attempt >= select(going, _PARTS_COUNT, _RISES):
             break
-        if action == GO:
-            part = remaining(here, goal, min(attempt, _PARTS_COUNT - 1))
-            kept = min(clearance(lens.depth, here.zoom, start), room)
-            stride = max(room - kept, 0.5 * kept)
-            share = min(stride / max(way_of_eye(lens, here, part), 1e-20), 1.0)
-            moves = k == 0 or size_of(part) > 0.0
-            if k == 0:
-                trial = now
-            if k > 0:
-                trial = advanced(here, part, share)
-        if action != GO:
-            pitch = min(angles.y + _RISE * float(attempt), 0.5 * _PI)
-            if k == 0:
-                trial = now
-            if k > 0:
-                trial = framed(lens, box, size.x / size.y, angles.x, pitch)
+        part = remaining(here, goal, min(attempt, _PARTS_COUNT - 1))
+        moves = k == 0 or not going or size_of(part) > 0.0
+        kept = min(clearance(lens.depth, here.zoom, start), room)
+        stride = max(room - kept, 0.5 * kept)
+        share = min(stride / max(way_of_eye(lens, here, part), 1e-20), 1.0)
+        pitch = min(angles.y + _RISE * float(attempt), 0.5 * _PI)
+        seen = framed(lens, box, size.x / size.y, angles.x, pitch)
+        trial = chosen(k == 0, now, chosen(going, advanced(here, part, share), seen))
     return seen_from(lens, here, arrived, room)
 
 
@@ -395,8 +402,8 @@ def seen_from(lens: Lens, steer: Steer, arrived: bool, room: float) -> Guided:
         eye,
         eye + ahead * (lens.depth * steer.zoom),
         select(upright, lens.axis, upward),
-        lens.tangent,
-        lens.spread * steer.zoom,
+        lens.opening * (180.0 / _PI),
+        2.0 * lens.spread * steer.zoom,
         room,
     )
 
@@ -412,7 +419,7 @@ def number_of(guided: Guided, index: int) -> float:
     found = vec3(steer.yaw, steer.pitch, steer.zoom)
     arrived = select(guided.arrived, 1.0, 0.0)
     found = select(row == 1, vec3(steer.pan.x, steer.pan.y, arrived), found)
-    found = select(row == 2, vec3(guided.room, guided.tangent, guided.spread), found)
+    found = select(row == 2, vec3(guided.room, guided.opening, guided.height), found)
     found = select(row == 3, guided.eye, found)
     found = select(row == 4, guided.target, found)
     found = select(row == 5, guided.up, found)
@@ -432,6 +439,16 @@ def bytes_of(number: float) -> vec4:
         )
         / 255.0
     )
+
+
+@func
+def asked(coord: vec2, action: int) -> int:
+    """Return the action, as a value of the pixel.
+
+    What is the same for all pixels is moved into the vertex stage of a page, and a struct there is
+    computed once for each of its members: the way of the eye would be found eleven times.
+    """
+    return select(coord.x < 0.0, GO, action)
 
 
 @func

@@ -14,6 +14,7 @@ from distal.fields.place.solid import axis_matrix
 from distal.lang import (
     abs,
     asin,
+    atan2,
     clamp,
     cross,
     dot,
@@ -78,6 +79,7 @@ class Lens:
         spread: How far the starts of rays are apart, per unit of the picture; 0 in perspective.
         tangent: How far apart rays are at distance 1, per unit of the picture, less ``spread``;
             0 without perspective.
+        opening: The angle from the picture's bottom to its top, in radians.
     """
 
     eye: vec3
@@ -90,6 +92,7 @@ class Lens:
     side: float
     spread: float
     tangent: float
+    opening: float
 
 
 @func
@@ -137,6 +140,8 @@ def lens(camera: Callable[[vec2], Ray], pivot: vec3, up: vec3) -> Lens:
     side = select(dot(cross(eye.direction, axis), across) < 0.0, -1.0, 1.0)
     spread = length(aside.origin - eye.origin) / _ASIDE
     opened = aside.direction / dot(aside.direction, eye.direction) - eye.direction
+    top = camera(vec2(0.0, 1.0)).direction
+    half_opening = atan2(length(cross(top, eye.direction)), dot(top, eye.direction))
     return Lens(
         eye.origin,
         eye.direction,
@@ -148,6 +153,7 @@ def lens(camera: Callable[[vec2], Ray], pivot: vec3, up: vec3) -> Lens:
         side,
         spread,
         length(opened) / _ASIDE,
+        2.0 * half_opening,
     )
 
 

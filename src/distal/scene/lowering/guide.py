@@ -53,7 +53,6 @@ class GuideImage(Composed):
         given: dict[str, Expr] = {
             "coord": field(Read("frame", FRAME), "coord"),
             "size": size,
-            "action": assembly.number(steering.ACTION, INT, 0),
             "lens": made.lens(body, size),
             "now": made.steer(body, steering.PREFIX),
             "goal": made.steer(body, steering.GOAL_PREFIX),
@@ -61,6 +60,8 @@ class GuideImage(Composed):
             "divisor": bounds.divisor,
             "field": composer.field(node, values, ZERO_CELL),
         }
+        action = {**given, "action": assembly.number(steering.ACTION, INT, 0)}
+        given["action"] = composer.call(guide.asked, action)
         given["guided"] = body.let("guided", composer.call(guide.guided, given))
         body.statements.append(Return(composer.call(guide.pixel_of, given)))
         params = (Param("frame", FRAME),)

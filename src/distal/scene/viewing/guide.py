@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 _BYTE: Final = 255.0
 _PERSPECTIVE: Final = "Camera"
+_WITH_ANGLE: Final = (_PERSPECTIVE, "FisheyeCamera")
 _ORTHOGRAPHIC: Final = "OrthographicCamera"
 
 
@@ -55,16 +56,16 @@ class Place:
         position: Its position.
         target: The point that it looks at.
         up: The direction that is up in its picture.
-        tangent: How far apart rays are at distance 1, for half the picture's height.
-        spread: How far the starts of rays are apart, for half the picture's height.
+        opening_deg: The angle from the bottom of its picture to the top, in degrees.
+        height: Height of what it sees without perspective; 0 in perspective.
         room: Distance from the nearest surface, at least; negative inside a solid.
     """
 
     position: tuple[float, float, float]
     target: tuple[float, float, float]
     up: tuple[float, float, float]
-    tangent: float
-    spread: float
+    opening_deg: float
+    height: float
     room: float
 
 
@@ -72,14 +73,16 @@ class Guide:
     """Guides the camera of one scene.
 
     Attributes:
+        image: Its program; each pixel holds the bits of one of ``NUMBERS``.
+        form: How the camera is written.
         is_ready: Whether it is compiled.
     """
 
     def __init__(self, scene: Scene) -> None:
         self.is_ready = False
         self._lock = threading.Lock()
-        self._image = GuideImage(scene)
-        self._form = camera_form(scene)
+        self.image = GuideImage(scene)
+        self.form = camera_form(scene)
 
     def prepare(self, moment: Moment) -> None:
         """Compile the program, which takes up to a few seconds."""
@@ -114,12 +117,12 @@ class Guide:
         def point(name: str) -> tuple[float, float, float]:
             return found[f"{name}_x"], found[f"{name}_y"], found[f"{name}_z"]
 
-        flat = found["tangent"], found["spread"], found["room"]
+        flat = found["opening"], found["height"], found["room"]
         return Place(point("eye"), point("target"), point("up"), *flat)
 
     def text(self, place: Place) -> str:
         """Return a camera at a place as Python, as an author writes it."""
-        return camera_text(self._form, place)
+        return camera_text(self.form, place)
 
     def _numbers(
         self, action: str, now: Steering, goal: Steering, moment: Moment
@@ -139,7 +142,7 @@ class Guide:
             settings=settings,
         )
         with self._lock:  # the first call compiles; a second one waits for it
-            pixels = executor().render(self._image, options).array[0]
+            pixels = executor().render(self.image, options).array[0]
             self.is_ready = True
         bits = bytes(round(float(value) * _BYTE) for value in pixels.reshape(-1))
         return dict(zip(NUMBERS, struct.unpack(f"<{len(NUMBERS)}f", bits), strict=True))
@@ -182,12 +185,11 @@ def camera_text(form: CameraForm, place: Place) -> str:
     arguments = [point_text(place.position, place), point_text(place.target, place)]
     if place.up != (0.0, 1.0, 0.0):
         arguments.append(f"up={_rounded(place.up, 0.1)}")
-    if form.name == _PERSPECTIVE:
-        fov = math.degrees(2.0 * math.atan(place.tangent))
-        arguments.append(f"fov_deg={shown(interaction.rounded(fov, 10.0))}")
+    if form.name in _WITH_ANGLE:
+        arguments.append(f"fov_deg={shown(interaction.rounded(place.opening_deg, 10.0))}")
     if form.name == _ORTHOGRAPHIC:
-        height = 2.0 * place.spread
-        arguments.append(f"height={shown(interaction.rounded(height, 0.1 * max(height, 1e-6)))}")
+        unit = 0.1 * max(place.height, 1e-6)
+        arguments.append(f"height={shown(interaction.rounded(place.height, unit))}")
     if form.mirror:
         arguments.append("mirror=True")
     return f"{form.name}({', '.join(arguments)})"
