@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 SCREEN = (1024, 768)
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 
 
 class DisplayUnavailableError(RuntimeError):
@@ -110,7 +110,7 @@ class Window:
             shown = event.get("shown", {})
             return (
                 event["event"] == "drawn"
-                and shown["share"] == 1.0
+                and shown["is_final"]
                 and all(shown[name] == value for name, value in facts.items())
             )
 
@@ -126,7 +126,7 @@ class Window:
             assert self.process.poll() is None, self.errors
             events = self.events
             drawn = [event["shown"] for event in events if event["event"] == "drawn"]
-            if drawn and drawn[-1]["share"] == 1.0 and events == before:
+            if drawn and drawn[-1]["is_final"] and events == before:
                 shown: dict[str, Any] = drawn[-1]
                 return shown
             before = events

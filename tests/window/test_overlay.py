@@ -171,3 +171,19 @@ def test_lines_of_help_never_lie_over_each_other(size: tuple[int, int]) -> None:
     accent = (np.abs(panel.pixels[..., :3].astype(int) - overlay._ACCENT[:3]) < 40).all(axis=2)
     lines = np.flatnonzero(np.diff(accent.any(axis=1).astype(int)) == 1).size
     assert lines >= min(len(overlay.HELP), int((size[1] - 20) // 21))
+
+
+def test_a_swatch_shows_the_color_beside_its_components() -> None:
+    color = (208, 112, 64)
+    rows = tuple(
+        ParameterRow(f"Tint {name}", "1", 0.5, is_moved=False, swatch=color) for name in "rgb"
+    )
+    read = OverlayContent(rows=(*rows, ROWS[0]))
+    picture = composed(Overlay().panels(read, (640, 480), 1.0), (640, 480))
+    table = Table.of(640, 480, 4, 0)
+    shown = (picture == color).all(axis=2)
+    first, last = table.row(0), table.row(2)
+    assert shown.sum() == 14 * (3 * first.height - 8)
+    down, across = np.nonzero(shown)
+    assert first.y + 4 == down.min() and down.max() == last.y + last.height - 5
+    assert across.max() < table.track(0).x

@@ -159,7 +159,9 @@ class Application:
         self._surface.draw(self._overlay.panels(self._shown_content, size, ratio))
         shown = self._scheduler.shown
         if shown is not None:
-            self._log("drawn", size=size, shown=_facts(shown), trouble=self._trouble)
+            is_final = self._scheduler.is_final(shown)
+            facts = {**_facts(shown), "is_final": is_final}
+            self._log("drawn", size=size, shown=facts, trouble=self._trouble)
 
     # Frames
 
@@ -378,10 +380,11 @@ class Application:
         session, size = self._session, self._frame_size()
         shot, viewable = session.shot(time.monotonic()), session.viewable
         device, title = self._scheduler.renderer.device, self._source.title
+        options = render_options(shot, size, device, is_refined=True)
 
         def job(_: object) -> Path:
             path = free_name(Path.cwd(), title, shot)
-            picture(viewable, shot, render_options(shot, size, device)).save(path)
+            picture(viewable, shot, options).save(path)
             return path
 
         def done(result: Path | BaseException) -> None:

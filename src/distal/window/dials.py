@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, assert_never
+from typing import Final, TypeAlias, assert_never
 
 from distal.lang.number_text import precise, shown
 from distal.lang.parameter_values import Value
@@ -166,13 +166,38 @@ class Dial:
         assert low is not None and high is not None
         return low, high, self.parameter.step, self.parameter.log
 
+    def swatch(self, value: Value) -> tuple[int, int, int] | None:
+        """Return the whole color of which this is a component, as display codes; else None."""
+        if self.parameter.kind is not ParameterKind.COLOR:
+            return None
+        assert isinstance(value, tuple)
+        red, green, blue = (min(max(code_of(v), 0), _LAST_CODE) for v in value)
+        return red, green, blue
+
+
+# A row of the table: a control, or the name of a group above its controls.
+Line: TypeAlias = Dial | str
+
 
 def dials(parameters: Sequence[Parameter]) -> list[Dial]:
-    """Return a control for each number that can be moved, in the order of the parameters."""
+    """Return a control for each number that can be moved: group by group, as on a page."""
+    groups = list(dict.fromkeys(parameter.group for parameter in parameters))
     rows: list[Dial] = []
-    for parameter in parameters:
+    for parameter in sorted(parameters, key=lambda p: groups.index(p.group)):
         if isinstance(parameter.default, tuple):
             rows += (Dial(parameter, part) for part in range(len(parameter.default)))
         else:
             rows.append(Dial(parameter))
     return rows
+
+
+def lines_of(rows: Sequence[Dial]) -> list[Line]:
+    """Return the controls with the names of their groups above them."""
+    lines: list[Line] = []
+    group = ""
+    for dial in rows:
+        if dial.parameter.group != group:
+            group = dial.parameter.group
+            lines.append(group)
+        lines.append(dial)
+    return lines

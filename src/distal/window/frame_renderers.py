@@ -52,16 +52,24 @@ class FrameRenderer(Protocol):
 
     Attributes:
         device: Its name, as for ``render``.
+        refines: Whether it can make edges smooth.
     """
 
     device: str
+    refines: bool
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs, so that errors are found before anything is replaced."""
         ...
 
     def render(
-        self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
+        self,
+        viewable: Viewable,
+        shot: Shot,
+        size: tuple[int, int],
+        cancel: threading.Event,
+        *,
+        is_refined: bool = False,
     ) -> RenderedFrame:
         """Render a frame.
 
@@ -70,6 +78,7 @@ class FrameRenderer(Protocol):
             shot: Time, parameters, view and camera.
             size: Width and height in pixels.
             cancel: Set to stop the rendering early.
+            is_refined: Whether edges are smooth: several samples where pixels differ.
 
         Raises:
             CompileError: The scene code has mistakes.
@@ -78,13 +87,16 @@ class FrameRenderer(Protocol):
         ...
 
 
-def render_options(shot: Shot, size: tuple[int, int], device: str) -> RenderOptions:
+def render_options(
+    shot: Shot, size: tuple[int, int], device: str, *, is_refined: bool = False
+) -> RenderOptions:
     """Return the options for rendering a shot.
 
     Args:
         shot: Time, parameters, view and camera.
         size: Width and height in pixels.
         device: The device that renders.
+        is_refined: Whether edges are smooth: several samples where pixels differ.
     """
     return RenderOptions(
         size=size,
@@ -92,7 +104,7 @@ def render_options(shot: Shot, size: tuple[int, int], device: str) -> RenderOpti
         params=dict(shot.parameters),
         mouse=shot.mouse.pixels(size),
         index=shot.index,
-        samples=1,
+        samples=None if is_refined else 1,
         device=device,
     )
 
@@ -111,6 +123,8 @@ def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
 class PixelRenderer:
     """Renders pixels, on any device that renders to memory."""
 
+    refines = True
+
     def __init__(self, device: str) -> None:
         self.device = device
 
@@ -119,7 +133,13 @@ class PixelRenderer:
         picture(viewable, shot, render_options(shot, _SMALLEST, self.device))
 
     def render(
-        self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
+        self,
+        viewable: Viewable,
+        shot: Shot,
+        size: tuple[int, int],
+        cancel: threading.Event,
+        *,
+        is_refined: bool = False,
     ) -> RenderedFrame:
         """Render a frame; if cancelled, return the finished fraction and the time.
 
@@ -128,6 +148,7 @@ class PixelRenderer:
             shot: Time, parameters, view and camera.
             size: Width and height in pixels.
             cancel: Set to stop the rendering early.
+            is_refined: Whether edges are smooth: several samples where pixels differ.
         """
         done = 0.0
         begin = time.perf_counter()
@@ -138,7 +159,7 @@ class PixelRenderer:
                 begin = time.perf_counter()
             done = share
 
-        options = render_options(shot, size, self.device)
+        options = render_options(shot, size, self.device, is_refined=is_refined)
         try:
             made = picture(viewable, shot, replace(options, cancel=cancel, progress=progress))
         except Cancelled:
@@ -151,6 +172,8 @@ class PixelRenderer:
 
 class TextureRenderer:
     """Draws into textures of a GPU, by its fragment path."""
+
+    refines = False
 
     def __init__(self, device: str, gpu: Any, adapter: str | None) -> None:
         """Make a renderer.
@@ -176,7 +199,13 @@ class TextureRenderer:
         self._ready = (viewable, {shot.view, *(views if known is viewable else ())})
 
     def render(
-        self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
+        self,
+        viewable: Viewable,
+        shot: Shot,
+        size: tuple[int, int],
+        cancel: threading.Event,
+        *,
+        is_refined: bool = False,
     ) -> RenderedFrame:
         """Render a frame.
 
@@ -185,6 +214,7 @@ class TextureRenderer:
             shot: Time, parameters, view and camera.
             size: Width and height in pixels.
             cancel: Has no effect, because a GPU finishes what it has begun.
+            is_refined: Has no effect: this path draws one sample a pixel.
         """
         self.prepare(viewable, shot)
         # Two textures are enough: the window shows one while the other is drawn.

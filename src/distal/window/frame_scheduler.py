@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.window.frame_renderers import FrameRenderer, RenderedFrame
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from distal.scene.viewing.viewable import Viewable
 
 _LEAST_GAP_S: Final = 1 / 60
+# A still is refined when it has been at rest so long; a hand that pauses goes on without waiting.
+_LEAST_REST_S: Final = 0.3
+# A still of this share is not preceded by a preview any more.
+_PREVIEWED: Final = 0.4
 _FIGURES_S: Final = 1.0  # the frame rate is measured over the last second
 
 
@@ -33,12 +37,19 @@ class FrameRequest:
         shot: Time, parameters, view and camera.
         size: Width and height of the window's picture in pixels.
         share: The fraction of width and height that is rendered.
+        is_refined: Whether edges are smooth: several samples where pixels differ.
     """
 
     viewable: Viewable
     shot: Shot
     size: tuple[int, int]
     share: float
+    is_refined: bool = False
+
+    @property
+    def quality(self) -> tuple[float, bool]:
+        """What a better frame has more of."""
+        return self.share, self.is_refined
 
     @property
     def pixels(self) -> tuple[int, int]:
@@ -76,7 +87,7 @@ class FrameScheduler:
         self._on_finished, self._on_failure = on_finished, on_failure
         self._resolution = ResolutionChooser()
         self._in_progress: FrameRequest | None = None
-        self._begun = float("-inf")
+        self._begun = self._ended = float("-inf")
         self._times: deque[float] = deque(maxlen=240)
 
     @property
@@ -112,18 +123,33 @@ class FrameScheduler:
             self.shown.viewable is not viewable or self.shown.shot.view != shot.view
         ):
             self._forget(viewable, shot)
-        share = self._resolution.share(size, is_moving=is_moving)
-        request = FrameRequest(viewable, shot, size, share)
+        request = self._next_request(viewable, shot, size, is_moving=is_moving)
         if self._in_progress is not None:
             self._cancel_for(request, is_moving=is_moving)
             return None
         if not self._is_wanted(request):
             return None
-        wait = self._begun + _LEAST_GAP_S - time.monotonic()
+        rest = _LEAST_REST_S if request.is_refined else 0.0
+        wait = max(self._begun + _LEAST_GAP_S, self._ended + rest) - time.monotonic()
         if wait > 0:
             return wait
         self._begin(request)
         return None
+
+    def _next_request(
+        self, viewable: Viewable, shot: Shot, size: tuple[int, int], *, is_moving: bool
+    ) -> FrameRequest:
+        """Return the frame that is wanted now: fast, or sharp, or with smooth edges."""
+        best = FrameRequest(viewable, shot, size, 1.0)
+        shown = self.shown if self.shown is not None and self.shown.shows_the_same(best) else None
+        is_first = shown is None or shown.share < _PREVIEWED
+        share = self._resolution.share(size, is_moving=is_moving, is_first=is_first)
+        is_sharp = not is_moving and shown is not None and shown.share == 1.0
+        return replace(best, share=share, is_refined=is_sharp and self.renderer.refines)
+
+    def is_final(self, request: FrameRequest) -> bool:
+        """Return whether no better frame will follow, unless something changes."""
+        return request.quality >= (1.0, self.renderer.refines)
 
     def _forget(self, viewable: Viewable, shot: Shot) -> None:
         assert self.shown is not None
@@ -134,7 +160,7 @@ class FrameScheduler:
     def _is_wanted(self, request: FrameRequest) -> bool:
         for known in (self.shown, self.failed):
             if known is not None and request.shows_the_same(known):
-                return known is self.shown and request.share > known.share
+                return known is self.shown and request.quality > known.quality
         return True
 
     def _cancel_for(self, request: FrameRequest, *, is_moving: bool) -> None:
@@ -143,7 +169,7 @@ class FrameScheduler:
         assert current is not None
         if current.shows_the_same(request):
             return
-        if is_moving and current.share <= request.share:
+        if is_moving and current.quality <= request.quality:
             return
         self._worker.cancel()
 
@@ -151,19 +177,25 @@ class FrameScheduler:
         self._in_progress, self._begun = request, time.monotonic()
         self._worker.submit(
             lambda cancel: self.renderer.render(
-                request.viewable, request.shot, request.pixels, cancel
+                request.viewable,
+                request.shot,
+                request.pixels,
+                cancel,
+                is_refined=request.is_refined,
             ),
             lambda result: self._end(request, result),
         )
 
     def _end(self, request: FrameRequest, result: Any) -> None:
         self._in_progress = None
+        self._ended = time.monotonic()
         if isinstance(result, BaseException):
             self.failed = request
             self._on_failure(request, result)
             return
         width, height = request.pixels
-        self._resolution.learn(result.seconds, width * height * result.share)
+        if not request.is_refined:
+            self._resolution.learn(result.seconds, width * height * result.share)
         if result.share == 1.0:
             self.shown, self.made, self.failed = request, result, None
             self._times.append(time.monotonic())

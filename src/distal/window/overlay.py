@@ -32,6 +32,7 @@ _ACCENT: Final = (96, 165, 250, 255)
 _CHOSEN: Final = (255, 255, 255, 36)
 _TRACK: Final = (255, 255, 255, 48)
 _ROUND: Final = 6
+_SWATCH: Final = 14
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -228,15 +229,22 @@ def _rows(rows: tuple[ParameterRow, ...], chosen: int, place: _Place) -> Panel:
     for number in range(table.first, table.first + table.count):
         row, place_of = rows[number], table.row(number)
         middle = place_of.y + place_of.height / 2
+        if row.is_heading:
+            canvas.text(place_of.x, middle + 2, row.label, _ACCENT, room=place_of.width)
+            continue
         if number == chosen:
             canvas.box(
                 place_of.x - 4, place_of.y + 1, place_of.width + 8, place_of.height - 2, _CHOSEN, 4
             )
         color = _TEXT if row.is_moved or number == chosen else _DIM
-        width_px = place.px(place_of.width * layout.LABEL_SHARE - 8)
+        width_px = place.px(
+            place_of.width * layout.LABEL_SHARE - (8 if row.swatch is None else _SWATCH + 14)
+        )
         label = shortened_inside(plain_font(place.text_px), row.label, width_px)
         canvas.text(place_of.x, middle, label, color)
         track = table.track(number)
+        if row.swatch is not None:  # the rows of one color make one swatch
+            _swatch(canvas, rows, number, table)
         if row.share is not None:
             canvas.box(track.x, middle - 2, track.width, 4, _TRACK, 2)
             canvas.box(track.x, middle - 2, track.width * row.share, 4, _ACCENT, 2)
@@ -249,6 +257,19 @@ def _rows(rows: tuple[ParameterRow, ...], chosen: int, place: _Place) -> Panel:
         part = table.handle(len(rows))
         canvas.box(part.x, part.y, part.width, part.height, _DIM, part.width / 2)
     return canvas.panel()
+
+
+def _swatch(
+    canvas: _Canvas, rows: tuple[ParameterRow, ...], number: int, table: layout.Table
+) -> None:
+    """Draw the part of a color's swatch that belongs to one of its rows."""
+    color = rows[number].swatch
+    assert color is not None
+    place, left = table.row(number), table.track(number).x - _SWATCH - 6
+    begins = number == table.first or rows[number - 1].swatch != color
+    ends = number + 1 == len(rows) or rows[number + 1].swatch != color
+    top, bottom = (4.0 if begins else 0.0), (4.0 if ends else 0.0)
+    canvas.box(left, place.y + top, _SWATCH, place.height - top - bottom, (*color, 255), 0)
 
 
 def _help(place: _Place) -> Panel:

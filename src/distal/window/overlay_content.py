@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from distal.window.dials import Line
 from distal.window.session import Session
 
 
@@ -20,12 +21,16 @@ class ParameterRow:
         words: Its value as text.
         share: The position of its bar from 0 to 1, or None.
         is_moved: Whether it differs from its default.
+        swatch: The color of which it is a component, as display codes, or None.
+        is_heading: Whether the row is the name of a group.
     """
 
     label: str
     words: str
     share: float | None
     is_moved: bool
+    swatch: tuple[int, int, int] | None = None
+    is_heading: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +58,19 @@ class OverlayContent:
     note: str = ""
 
 
+def _row(session: Session, line: Line) -> ParameterRow:
+    if isinstance(line, str):
+        return ParameterRow(line, "", None, is_moved=False, is_heading=True)
+    value = session.value(line)
+    return ParameterRow(
+        line.label,
+        line.words(value),
+        line.share(value),
+        line.parameter.name in session.values,
+        line.swatch(value),
+    )
+
+
 def overlay_content(
     session: Session, now: float, *, status: str = "", trouble: str = "", note: str = ""
 ) -> OverlayContent:
@@ -69,21 +87,13 @@ def overlay_content(
         return OverlayContent(trouble=trouble, note=note)
     rows = None
     if session.shows_parameters:
-        rows = tuple(
-            ParameterRow(
-                dial.label,
-                dial.words(session.value(dial)),
-                dial.share(session.value(dial)),
-                dial.parameter.name in session.values,
-            )
-            for dial in session.dials
-        )
+        rows = tuple(_row(session, line) for line in session.lines)
     # Hundredths: the precision of the text, and finer than a pixel of the time bar.
     seconds = round(session.clock.time(now), 2)
     return OverlayContent(
         status=status,
         rows=rows,
-        chosen=session.chosen,
+        chosen=session.chosen_line,
         time=(seconds, *session.time_range) if session.animated else None,
         is_paused=not session.playing,
         help=session.shows_help,

@@ -18,7 +18,7 @@ from distal.scene.steering import STILL, Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import Moment
 from distal.window.clock import Clock
-from distal.window.dials import Dial, dials
+from distal.window.dials import Dial, Line, dials, lines_of
 from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
 from distal.window.guided_camera import SHOWN, GuidedCamera
 from distal.window.keys import Action
@@ -83,7 +83,8 @@ class Session:
         values: The parameters that a person moved, by name.
         view: The name of the view.
         dials: The controls of the parameters.
-        chosen: The index of the row that keys move.
+        lines: The rows of their table: the controls, and the names of groups.
+        chosen: The index of the control that keys move.
         size: The window's width and height in its own units.
         shows_parameters: Whether the parameters are visible.
         shows_help: Whether the help is visible.
@@ -141,6 +142,7 @@ class Session:
         self.viewable = viewable
         self.animated = viewable.animated if animated is None else animated
         self.dials: list[Dial] = dials(viewable.parameters)
+        self.lines: list[Line] = lines_of(self.dials)
         self.values = valid_values(viewable.parameters, self.values)
         self.chosen = max(min(self.chosen, len(self.dials) - 1), 0)
         if self.view not in viewable.views:
@@ -193,7 +195,12 @@ class Session:
     @property
     def table(self) -> Table:
         """The layout of the table of parameters."""
-        return Table.of(*self.size, len(self.dials), self.chosen)
+        return Table.of(*self.size, len(self.lines), self.chosen_line)
+
+    @property
+    def chosen_line(self) -> int:
+        """The index of the chosen control among the rows of the table."""
+        return self.lines.index(self.dials[self.chosen]) if self.dials else 0
 
     # Keys
 
@@ -351,7 +358,10 @@ class Session:
         row = table.row_at(x, y)
         if row is None:
             return None
-        self.chosen = row
+        line = self.lines[row]
+        if isinstance(line, str):
+            return None
+        self.chosen = self.dials.index(line)
         # If choosing the row scrolls it away from the pointer, its value is not moved.
         stays = self.table.first == table.first
         return Grab.DIAL if stays and table.track(row).holds(x, y) else None
