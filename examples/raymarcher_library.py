@@ -24,12 +24,14 @@ from distal.lang import (
     normalize,
     sin,
     slider,
+    vec2,
     vec3,
     vec4,
 )
 from distal.render.ambient import hemisphere_light
 from distal.render.bounce import seen_plain
-from distal.render.camera import look_at
+from distal.render.camera import Ray, look_at
+from distal.render.footprint import Footprint, pixel_cone
 from distal.render.lights import LightSample, distant_light
 from distal.render.march import march
 from distal.render.material import Surface, matte
@@ -70,10 +72,10 @@ def blob_color(p: vec3, time: float) -> vec3:
 
 
 @func
-def material(p: vec3, time: float) -> Surface:
+def material(p: vec3, sides: Footprint, time: float) -> Surface:
     """The material at a point on the surface."""
     if floor(p) < blob(p, time):
-        return matte(mix(decode_srgb(DARK), decode_srgb(LIGHT), checker(p)))
+        return matte(mix(decode_srgb(DARK), decode_srgb(LIGHT), checker(p, 1.0, sides)))
     return matte(blob_color(p, time))
 
 
@@ -91,27 +93,34 @@ def sky(direction: vec3) -> vec3:
     return air + vec3(1.0, 0.69, 0.32) * max(dot(direction, normalize(SUN)), 0.0) ** 64.0
 
 
+@func
+def camera(uv: vec2, time: float) -> Ray:
+    """A camera that circles the origin."""
+    angle = 0.4 * time
+    eye = vec3(3.0 * cos(angle), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(angle))
+    return look_at(uv, eye, vec3(0.0), vec3(0.0, 1.0, 0.0), fov=2.0 * atan(1.0 / 1.6), mirror=True)
+
+
 @image
 def picture(frame: Frame) -> vec4:
     time = frame.time
-    angle = 0.4 * time
-    eye = vec3(3.0 * cos(angle), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(angle))
     uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
-    ray = look_at(uv, eye, vec3(0.0), vec3(0.0, 1.0, 0.0), fov=2.0 * atan(1.0 / 1.6), mirror=True)
     bounds = Bounds(-EVERYWHERE, EVERYWHERE)
     numbers = march_numbers(1.0, 0.001, 60.0, frame.resolution)
     seen = seen_plain(
-        ray,
+        camera(uv, time),
         lambda ray: march(lambda p: min(blob(p, time), floor(p)), ray, bounds, numbers, 160),
         lambda p: min(blob(p, time), floor(p)),
-        lambda p: material(p, time),
+        lambda p, sides: material(p, sides, time),
         lambda i, p: sun(p),
         lambda n: hemisphere_light(n, vec3(0.5), vec3(0.25), 1.0),
         sky,
+        lambda direction: FOG,
         bounds,
         numbers,
-        Look(0.4, FOG, 0.06),
+        Look(0.4, 0.06),
         light_count=1,
         shadow_steps=64,
+        cone=pixel_cone(lambda at: camera(at, time), uv, 2.0 / frame.resolution.y),
     )
     return display(vec4(seen.xyz, 1.0), 1.0, ACES)

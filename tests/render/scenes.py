@@ -17,6 +17,7 @@ from distal.render import (
     views,
 )
 from distal.render.camera import Ray, look_at
+from distal.render.footprint import Footprint
 from distal.render.lights import LightSample, distant_light, point_light
 
 STEPS = 96
@@ -35,11 +36,11 @@ def field(p: vec3) -> float:
 
 
 @func
-def surface(p: vec3) -> material.Surface:
+def surface(p: vec3, sides: Footprint) -> material.Surface:
     if p.y + 0.8 < balls(p):
         white = material.matte(vec3(0.8, 0.8, 0.75))
         return material.mix_surfaces(
-            white, material.matte(vec3(0.1, 0.12, 0.2)), patterns.checker(p, 0.5)
+            white, material.matte(vec3(0.1, 0.12, 0.2)), patterns.checker(p, 0.5, sides)
         )
     if p.x < 0.05:
         return material.glass(1.5, vec3(0.1, 0.02, 0.1))
@@ -61,6 +62,11 @@ def ambient(n: vec3) -> vec3:
 @func
 def background(direction: vec3) -> vec3:
     return sky.gradient_background(direction)
+
+
+@func
+def haze(direction: vec3) -> vec3:
+    return vec3(0.5)
 
 
 @func
@@ -87,8 +93,8 @@ def first_hit(ray: Ray) -> march.Hit:
 @image
 def plain(frame: Frame) -> vec4:
     seen = bounce.seen_plain(
-        ray_of(frame), first_hit, field, surface, lights, ambient, background,
-        everywhere(), numbers(), shade.Look(0.4, vec3(0.5), 0.02), 2, 48,
+        ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
+        everywhere(), numbers(), shade.Look(0.4, 0.02), 2, 48,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
 
@@ -96,8 +102,8 @@ def plain(frame: Frame) -> vec4:
 @image
 def mirrored(frame: Frame) -> vec4:
     seen = bounce.seen_mirrored(
-        ray_of(frame), first_hit, field, surface, lights, ambient, background,
-        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), 2, 48, 4,
+        ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
+        everywhere(), numbers(), shade.Look(0.0, 0.0), 2, 48, 4,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
 
@@ -105,8 +111,8 @@ def mirrored(frame: Frame) -> vec4:
 @image
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
-        ray_of(frame), first_hit, field, surface, lights, ambient, background,
-        everywhere(), numbers(), shade.Look(0.0, vec3(0.5), 0.0), 2, 48, 6,
+        ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
+        everywhere(), numbers(), shade.Look(0.0, 0.0), 2, 48, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 

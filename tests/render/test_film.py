@@ -15,6 +15,7 @@ from distal.lang import Frame, cos, func, image, select, vec2, vec3, vec4
 from distal.lang.runtime_access import executor
 from distal.render import film
 from distal.render.camera import Ray
+from distal.render.footprint import Cone
 from distal.scene.rerender import difference, plan_rerender, rerender
 
 AHEAD = (0.0, 0.0, -1.0)
@@ -80,7 +81,10 @@ def pixel(coord: vec2, samples: int, transparent: bool) -> vec4:
         coord,
         vec2(30.0, 20.0),
         lambda uv: Ray(vec3(uv, 0.0), vec3(AHEAD)),
-        lambda ray: vec4(ray.origin.x, ray.origin.y, 1.0, 0.75 if ray.origin.x > 0.1 else -1.0),
+        lambda ray, cone: vec4(
+            ray.origin.x, ray.origin.y, 1.0, 0.75 if ray.origin.x > 0.1 else -1.0
+        ),
+        lambda uv, size: Cone(0.0, 0.0),
         samples,
         film.lattice_step(samples),
         transparent,
@@ -237,11 +241,11 @@ def test_progress_covers_both_passes_and_cancel_stops_either():
     assert shares == sorted(shares)
     assert 0.0 <= shares[0] <= 0.5 < shares[-1] == 1.0
     stop = threading.Event()
-    for until in (0.0, 0.5):
+    for until in (0.01, 0.5):
         stop.clear()
 
         def halt(share: float, until: float = until) -> None:
-            if share > until:
+            if share >= until:
                 stop.set()
 
         with pytest.raises(Cancelled):

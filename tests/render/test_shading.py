@@ -394,7 +394,7 @@ def lit(weights: vec3, occlusion: float, shadow_steps: int) -> vec3:
         lambda n: vec3(0.1) + 0.2 * max(n, 0.0),
         Bounds(vec3(-1e18), vec3(1e18)),
         March(1.0, 0.0, 50.0, 1e-4),
-        shade.Look(occlusion, vec3(0.0), 0.0),
+        shade.Look(occlusion, 0.0),
         2,
         shadow_steps,
         False,

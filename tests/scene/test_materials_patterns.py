@@ -75,7 +75,7 @@ def test_two_numbers_make_an_amount():
 def test_two_materials_make_a_material():
     floor = checker(glass(1.4), "#f00")
     assert isinstance(floor, Material)
-    assert floor.refracts and floor.uses == {"p"}
+    assert floor.refracts and floor.uses == {"p", "footprint"}
     assert float(emitted(floor, "transmission", FLOAT, p=(0.5, 0.5, 0.5))) == 1.0
     assert emitted(floor, "color", p=(1.5, 0.5, 0.5)) == pytest.approx(RED)
 
@@ -85,7 +85,7 @@ def test_patterns_of_patterns():
     made = checker(fine, "#fff", size=1.0)
     assert emitted(made, p=(0.3, 0.1, 0.1)) == pytest.approx(BLUE)
     swirl = palette(noise(0.0, 1.0))
-    assert swirl.uses == {"p"}
+    assert swirl.uses == {"p", "footprint"}
     assert emitted(swirl, p=(0.1, 0.2, 0.3)).shape == (3,)
 
 

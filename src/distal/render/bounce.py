@@ -12,11 +12,12 @@ from collections.abc import Callable
 from distal.fields.guarantees import Bounds
 from distal.lang import Field3, exp, func, reflect, refract, vec3, vec4
 from distal.render.camera import Ray
+from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
-from distal.render.shade import Look, direct_light
+from distal.render.shade import Look, direct_light, fogged
 from distal.render.trace import ray_offset, surface_point
 
 # Alpha of a ray that starts inside a solid and does not leave it.
@@ -30,10 +31,11 @@ def seen_plain(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
     field: Field3,
-    surface: Callable[[vec3], Surface],
+    surface: Callable[[vec3, Footprint], Surface],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
+    fog: Callable[[vec3], vec3],
     bounds: Bounds,
     numbers: March,
     look: Look,
@@ -42,6 +44,7 @@ def seen_plain(
     normals: int = EXACT,
     normal_step: float = 1e-3,
     hybrid: bool = False,
+    cone: Cone = THIN,
 ) -> vec4:
     """Return the direct light at the first surface.
 
@@ -49,10 +52,11 @@ def seen_plain(
         ray: Ray.
         first_hit: The first surface along a ray.
         field: Signed distance.
-        surface: The material at a point.
+        surface: The material at a point, averaged over a footprint.
         lights: The light with a given index, from 0, at a point.
         ambient: Light from all directions on a white surface, by its normal.
         background: Light from a direction without a surface.
+        fog: Color of the fog in a direction.
         bounds: Box around the surface.
         numbers: The parameters of the march.
         look: Ambient occlusion and fog.
@@ -61,6 +65,7 @@ def seen_plain(
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
         hybrid: Whether the march for terrain and water finds the hits; a constant.
+        cone: The cone of the ray.
 
     Returns:
         Linear light; alpha is 1 on a surface, 0 if there is none, ``ALL_INSIDE`` if the ray does
@@ -69,11 +74,11 @@ def seen_plain(
     hit = first_hit(ray)
     if not hit.found:
         return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
-    point = surface_point(ray, hit, field, surface, numbers, normals, normal_step)
+    point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
     color = direct_light(
         ray, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps, hybrid
     )
-    return vec4(color, 1.0)
+    return vec4(fogged(color, point.t, fog(ray.direction), look.fog_density), 1.0)
 
 
 @func
@@ -81,10 +86,11 @@ def seen_mirrored(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
     field: Field3,
-    surface: Callable[[vec3], Surface],
+    surface: Callable[[vec3, Footprint], Surface],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
+    fog: Callable[[vec3], vec3],
     bounds: Bounds,
     numbers: March,
     look: Look,
@@ -94,6 +100,7 @@ def seen_mirrored(
     normals: int = EXACT,
     normal_step: float = 1e-3,
     hybrid: bool = False,
+    cone: Cone = THIN,
 ) -> vec4:
     """As ``seen_plain``, with mirrors: one ray continues, at most ``bounces`` times."""
     color = vec3(0.0)
@@ -101,6 +108,7 @@ def seen_mirrored(
     alpha = 0.0
     origin = ray.origin
     direction = ray.direction
+    width = cone
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
         hit = first_hit(here)
@@ -112,11 +120,12 @@ def seen_mirrored(
                 alpha = ALL_INSIDE
             break
         alpha = 1.0
-        point = surface_point(here, hit, field, surface, numbers, normals, normal_step)
-        color += throughput * direct_light(
+        point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
+        light = direct_light(
             here, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
             hybrid,
         )  # fmt: skip
+        color += throughput * fogged(light, point.t, fog(direction), look.fog_density)
         clear = exp(-look.fog_density * point.t)
         throughput = throughput * point.shares.mirrored * ((1.0 - point.surface.roughness) * clear)
         if brightest(throughput) < DIMMEST:
@@ -125,6 +134,7 @@ def seen_mirrored(
         # higher would hit another wave.
         origin = point.p + ray_offset(numbers, hit.t, False) * point.n
         direction = reflect(direction, point.n)
+        width = continued(width, point.t)
     return vec4(color, alpha)
 
 
@@ -133,10 +143,11 @@ def seen_refracted(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
     field: Field3,
-    surface: Callable[[vec3], Surface],
+    surface: Callable[[vec3, Footprint], Surface],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
+    fog: Callable[[vec3], vec3],
     bounds: Bounds,
     numbers: March,
     look: Look,
@@ -145,11 +156,13 @@ def seen_refracted(
     bounces: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
+    cone: Cone = THIN,
 ) -> vec4:
     """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue."""
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
+    widths = [cone.width] * STACK
     depths = [0] * STACK
     insides = [True] * STACK  # whether a ray may start inside a solid; the camera's ray may
     waiting = 1
@@ -161,6 +174,7 @@ def seen_refracted(
         waiting -= 1
         direction = directions[waiting]
         throughput = throughputs[waiting]
+        width = Cone(widths[waiting], cone.spread)
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
         hit = first_hit(here)
@@ -172,14 +186,15 @@ def seen_refracted(
                 alpha = ALL_INSIDE
             continue
         alpha = 1.0
-        point = surface_point(here, hit, field, surface, numbers, normals, normal_step)
+        point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
         if point.inside:
             throughput = throughput * exp(-point.surface.absorption * point.t)
         else:
-            color += throughput * direct_light(
+            light = direct_light(
                 here, point, field, lights, ambient, bounds, numbers, look, light_count,
                 shadow_steps, False,
             )  # fmt: skip
+            color += throughput * fogged(light, point.t, fog(direction), look.fog_density)
             throughput = throughput * exp(-look.fog_density * point.t)
         if depth >= bounces:
             continue
@@ -193,6 +208,7 @@ def seen_refracted(
             origins[waiting] = point.p + offset * point.n
             directions[waiting] = reflect(direction, point.n)
             throughputs[waiting] = mirror_share
+            widths[waiting] = continued(width, point.t).width
             depths[waiting] = depth + 1
             insides[waiting] = point.inside
             waiting += 1
@@ -200,6 +216,7 @@ def seen_refracted(
             origins[waiting] = point.p - offset * point.n
             directions[waiting] = bent
             throughputs[waiting] = through_share
+            widths[waiting] = continued(width, point.t).width
             depths[waiting] = depth + 1
             insides[waiting] = not point.inside
             waiting += 1

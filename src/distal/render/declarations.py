@@ -125,9 +125,10 @@ class Family:
         return keep
 
 
-# The inputs of a function of a place on a surface: the point and the normal in the coordinates of
-# the painted shape, and the index of the repetition that contains the point.
-PLACE_NAMES: Final = frozenset(("p", "n", "cell"))
+# The inputs of a function of a place on a surface: the point, the normal and the footprint of the
+# pixel in the coordinates of the painted shape, and the index of the repetition that contains the
+# point.
+PLACE_NAMES: Final = frozenset(("p", "n", "cell", "footprint"))
 
 LIGHTS: Final = Family(
     ("p", "n"),

@@ -17,6 +17,7 @@ from distal.lang import (
     dot,
     func,
     image,
+    inversesqrt,
     max,
     min,
     round,
@@ -29,6 +30,7 @@ from distal.lang import (
 )
 from distal.lang.srgb import decode_srgb, encode_srgb
 from distal.render.camera import Ray
+from distal.render.footprint import Cone
 
 GOLDEN = 0.6180339887
 # Adaptive sampling: a pixel whose contrast is larger gets so many samples besides the first one.
@@ -46,8 +48,8 @@ PASS_NUMBERS: Final = frozenset((SAMPLES, AGAIN, PICTURE_SIZE))
 LUMA = vec3(0.2126, 0.7152, 0.0722)
 # The data of these buffers is replaced for each picture.
 PLACES: Final = Buffer([0])
-FIRSTS: Final = Buffer([(0.0, 0.0, 0.0, 0.0)])
-SHOWN: Final = Buffer([(0.0, 0.0, 0.0, 0.0)])
+FIRSTS: Final = Buffer([vec4(0.0)])
+SHOWN: Final = Buffer([vec4(0.0)])
 
 
 @func
@@ -120,7 +122,8 @@ def gathered(
     coord: vec2,
     resolution: vec2,
     camera: Callable[[vec2], Ray],
-    radiance: Callable[[Ray], vec4],
+    radiance: Callable[[Ray, Cone], vec4],
+    cone: Callable[[vec2, float], Cone],
     samples: int,
     step: int,
     transparent: bool,
@@ -135,16 +138,20 @@ def gathered(
         resolution: Size of the picture, in pixels.
         camera: Ray of a place in the picture.
         radiance: Linear light and alpha of a ray.
+        cone: The cone of a place in the picture, of a pixel of this size.
         samples: Number of samples.
         step: ``lattice_step`` of this number.
         transparent: Whether alpha is 0 where a ray hits nothing.
     """
+    pixel = 2.0 / resolution.y
+    # Each sample stands for a part of the pixel.
+    spread = cone(pixel * (coord - 0.5 * resolution), pixel * inversesqrt(float(max(samples, 1))))
     total = vec4(0.0)
     row = 0
     for i in range(max(samples, 1)):
         place = coord + sample_offset(i, row, samples)
         row = select(row + step >= samples, row + step - samples, row + step)
-        seen = radiance(camera((2.0 * place - resolution) / resolution.y))
+        seen = radiance(camera((2.0 * place - resolution) / resolution.y), spread)
         weight = max(seen.w, 0.0) if transparent else select(seen.w < 0.0, 0.0, 1.0)
         total += vec4(seen.xyz * weight, weight)
     return total
@@ -164,7 +171,8 @@ def exposed(
     coord: vec2,
     resolution: vec2,
     camera: Callable[[vec2], Ray],
-    radiance: Callable[[Ray], vec4],
+    radiance: Callable[[Ray, Cone], vec4],
+    cone: Callable[[vec2, float], Cone],
     samples: int,
     step: int,
     transparent: bool,
@@ -173,7 +181,7 @@ def exposed(
 
     Arguments as for ``gathered``.
     """
-    total = gathered(coord, resolution, camera, radiance, samples, step, transparent)
+    total = gathered(coord, resolution, camera, radiance, cone, samples, step, transparent)
     return mean_light(total, samples)
 
 
@@ -183,7 +191,8 @@ def exposed_again(
     grid: vec2,
     resolution: vec2,
     camera: Callable[[vec2], Ray],
-    radiance: Callable[[Ray], vec4],
+    radiance: Callable[[Ray, Cone], vec4],
+    cone: Callable[[vec2, float], Cone],
     samples: int,
     step: int,
     transparent: bool,
@@ -205,6 +214,7 @@ def exposed_again(
         resolution: Size of the picture.
         camera: Ray of a place in the picture.
         radiance: Linear light and alpha of a ray.
+        cone: The cone of a place in the picture, of a pixel of this size.
         samples: Number of samples, besides that of the first pass.
         step: ``lattice_step`` of this number.
         transparent: Whether alpha is 0 where a ray hits nothing.
@@ -219,7 +229,7 @@ def exposed_again(
     place = places[index]
     listed = vec2(float(place % width) + 0.5, resolution.y - 0.5 - float(place // width))
     at = select(again, listed, coord)
-    total = gathered(at, resolution, camera, radiance, samples, step, transparent)
+    total = gathered(at, resolution, camera, radiance, cone, samples, step, transparent)
     first = firsts[index]
     known = vec4(first.xyz * first.w, first.w)
     return mean_light(

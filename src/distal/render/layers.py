@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from distal.lang import Field3, abs, clamp, dot, func, gradient, vec2, vec3, vec4
 from distal.render.camera import Ray
+from distal.render.footprint import THIN, Cone
 from distal.render.march import FORGIVING, Hit, March
 from distal.render.material import Surface
 from distal.render.normals import EXACT
@@ -27,7 +28,7 @@ def through_middle(
     coord: vec2,
     resolution: vec2,
     camera: Callable[[vec2], Ray],
-    radiance: Callable[[Ray], vec4],
+    radiance: Callable[[Ray, Cone], vec4],
 ) -> vec4:
     """Return the value of the ray through the middle of a pixel, unfiltered.
 
@@ -37,7 +38,7 @@ def through_middle(
         camera: Ray of a place in the picture.
         radiance: Value of a ray.
     """
-    return radiance(camera((2.0 * coord - resolution) / resolution.y))
+    return radiance(camera((2.0 * coord - resolution) / resolution.y), THIN)
 
 
 @func

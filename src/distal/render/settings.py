@@ -49,15 +49,14 @@ def stride_over(bounds: Bounds, stride: float, stride_growth: float) -> Stride:
 
 
 @func
-def look(ambient_occlusion: float, fog: vec3, fog_density: float) -> Look:
+def look(ambient_occlusion: float, fog_density: float) -> Look:
     """Return the parameters of shading.
 
     Args:
         ambient_occlusion: Reach of ambient occlusion, in scene units; 0 for none.
-        fog: Linear color of the fog.
         fog_density: Fraction of the light that fog takes, per scene unit.
     """
-    return Look(ambient_occlusion, fog, fog_density)
+    return Look(ambient_occlusion, fog_density)
 
 
 @func

@@ -10,7 +10,21 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
-from distal.lang import Field3, abs, clamp, dot, exp, func, max, min, mix, reflect, struct, vec3
+from distal.lang import (
+    Field3,
+    abs,
+    clamp,
+    dot,
+    exp,
+    func,
+    max,
+    min,
+    mix,
+    normalize,
+    reflect,
+    struct,
+    vec3,
+)
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import MOST_STEPS, March, crossing
@@ -28,12 +42,10 @@ class Look:
 
     Attributes:
         occlusion: Reach of ambient occlusion, in scene units; 0 for none.
-        fog_color: Linear color.
         fog_density: Fraction of the light that fog takes, per scene unit.
     """
 
     occlusion: float
-    fog_color: vec3
     fog_density: float
 
 
@@ -93,6 +105,15 @@ def fogged(color: vec3, t: float, fog_color: vec3, fog_density: float) -> vec3:
 
 
 @func
+def at_horizon(direction: vec3) -> vec3:
+    """Return the horizontal unit direction below or above a direction: where far fog ends.
+
+    Straight up and down, where there is none, it is -z.
+    """
+    return normalize(vec3(direction.x, 0.0, direction.z - 1e-9))
+
+
+@func
 def direct_light(
     ray: Ray,
     point: SurfacePoint,
@@ -106,7 +127,7 @@ def direct_light(
     shadow_steps: int,
     hybrid: bool,
 ) -> vec3:
-    """Return the light that a surface emits and scatters from the lights, seen through fog.
+    """Return the light that a surface emits and scatters from the lights, before fog.
 
     Reflections are not included, except blurred ones: a rough surface mirrors a blurred picture of
     its surroundings, which is approximated by the ambient light.
@@ -144,4 +165,4 @@ def direct_light(
             shine = highlight(point.surface, n, view, light.direction, light.radius)
             scattered = point.shares.diffuse * facing + point.shares.mirrored * shine
             color += light.radiance * shadow * scattered
-    return fogged(color, point.t, look.fog_color, look.fog_density)
+    return color

@@ -14,6 +14,7 @@ from distal.fields.boxes import everywhere
 from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import Field3, dot, func, gradient, max, min, select, struct, vec3
 from distal.render.camera import Ray
+from distal.render.footprint import Cone, Footprint, footprint_at
 from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
 from distal.render.march import Hit, March, march
 from distal.render.material import Shares, Surface, shares
@@ -172,7 +173,8 @@ def surface_point(
     ray: Ray,
     hit: Hit,
     field: Field3,
-    surface: Callable[[vec3], Surface],
+    surface: Callable[[vec3, Footprint], Surface],
+    cone: Cone,
     numbers: March,
     normals: int,
     normal_step: float,
@@ -185,7 +187,8 @@ def surface_point(
         ray: Ray.
         hit: Where it ended, at a surface.
         field: Signed distance.
-        surface: The material at a point.
+        surface: The material at a point, averaged over a footprint.
+        cone: The cone of the ray.
         numbers: The parameters of the march.
         normals: The method for normals; a constant of ``normals``.
         normal_step: As for ``facing_normal``.
@@ -193,7 +196,7 @@ def surface_point(
     inside = hit.side < 0.0
     p = hit_point(ray, hit)
     n = facing_normal(field, ray, hit, numbers, normals, normal_step)
-    material = surface(p)
+    material = surface(p, footprint_at(cone, ray.direction, hit.t, n))
     return SurfacePoint(
         hit.t, inside, p, n, material, shares(material, -dot(n, ray.direction), inside)
     )

@@ -150,7 +150,7 @@ def _in_squares(wanted: NDArray[np.bool_]) -> NDArray[np.int32]:
     across = wanted.shape[1] // _SQUARE_PX + 1
     squares = rows // _SQUARE_PX * across + columns // _SQUARE_PX
     order = np.argsort(squares, kind="stable")
-    return (rows * wanted.shape[1] + columns)[order].astype(np.int32)
+    return np.asarray((rows * wanted.shape[1] + columns)[order], np.int32)
 
 
 def _listed(grid: NDArray[np.float32]) -> NDArray[np.float32]:

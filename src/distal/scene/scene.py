@@ -66,7 +66,7 @@ class Scene(Composed, Presentable):
         tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
             or "neutral".
         default_material: The material of shapes without ``paint``.
-        fog: The color of fog.
+        fog: The color of fog. None: that of the background at the horizon, in each direction.
         fog_density: Density of the fog per scene unit: after a distance of 1/density, 1/e of the
             light is left. 0 disables fog.
         shadows: Whether lights cast shadows.
@@ -108,7 +108,7 @@ class Scene(Composed, Presentable):
         exposure: Number = 1.0,
         tone_map: str = "none",
         default_material: Material | Color | Varying = (0.8, 0.8, 0.8),
-        fog: Color = (0.0, 0.0, 0.0),
+        fog: Color | None = None,
         fog_density: Number = 0.0,
         shadows: bool = True,
         ambient_occlusion: Number = 0.4,

@@ -32,16 +32,19 @@ _LIMITS: Final = {
 }
 
 
+BLACK: Final = vec3(0.0)
+
+
 @func
 def scene_numbers(
     exposure: float,
-    fog: vec3,
     fog_density: float,
     ambient_occlusion: float,
     near: float,
     stride: float,
     stride_growth: float,
     far: float = UNBOUNDED,
+    fog: vec3 = BLACK,
 ) -> float:
     """Declare the names, types and order of a scene's numbers; never called."""
     return exposure

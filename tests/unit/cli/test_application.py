@@ -113,11 +113,13 @@ def hidden(x: float) -> float:
 def test_how_a_scene_is_seen_is_handed_on(scene, run):
     words = ("--view", "normal", "--samples", "4", "--transparent")
     assert run("render", "s.py", "-o", "a.png", *words).exit_code == 0
-    assert scene.shown == ViewOptions(view="normal", samples=4, transparent=True)
+    assert scene.shown == ViewOptions(view="normal", transparent=True)
+    assert scene.options.samples == 4
     assert run("render", "s.py", "-o", "a.png", "--slice", "y=-0.5").exit_code == 0
     assert scene.shown == ViewOptions(view="slice", plane=((0.0, 1.0, 0.0), -0.5))
     assert run("render", "s.py", "-o", "a.png").exit_code == 0
     assert scene.shown == ViewOptions()
+    assert scene.options.samples is None
 
 
 def test_stats_are_exactly_one_json_line_on_stdout(scene, run):

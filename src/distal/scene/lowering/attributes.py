@@ -7,14 +7,18 @@ expression. Each attribute is computed once per hit, so subtrees do not share fu
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from distal.fields.guarantees import Operator, Primitive
-from distal.ir.build import builtin, compare, number, select
+from distal.ir.build import builtin, compare, field, number, select
 from distal.ir.nodes import CompareOp, Expr, Gradient
+from distal.ir.types import VEC3
+from distal.lang.functions import Func
+from distal.render.footprint import moved_footprint, point_footprint, step_along
 from distal.render.material import mix_surfaces
 from distal.scene.lowering.shapes import ShapeComposer
+from distal.scene.tree.calls import FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -49,14 +53,28 @@ class Attribute(ABC):
             site: The place at which the attribute is evaluated.
         """
 
+    def averages(self, node: Node) -> bool:
+        """Return whether the attribute of the subtree depends on the footprint of the pixel."""
+        return False
+
 
 class AttributePoint:
-    """The place at which an attribute is evaluated."""
+    """The place at which an attribute is evaluated.
 
-    def __init__(self, p: Expr, cell: Expr, values: Sequence[Expr]) -> None:
+    Attributes:
+        p: The point.
+        cell: The index of the repetition.
+        values: The numbers of the subtree.
+        footprint: The footprint of the pixel; None for a point.
+    """
+
+    def __init__(
+        self, p: Expr, cell: Expr, values: Sequence[Expr], footprint: Expr | None = None
+    ) -> None:
         self.p = p
         self.cell = cell
         self.values = values
+        self.footprint = footprint
 
 
 def attribute(body: StatementList, kind: Attribute, node: Node, site: AttributePoint) -> Expr:
@@ -86,7 +104,8 @@ def _visit(
     if rule.around is not None:
         return _around(body, kind, node, site, given, measured=measured)
     p, cell = composer.moved(body, rule, given)
-    sites = [AttributePoint(p, cell, share) for share in shares]
+    moved = _footprint(body, kind, node, site, given, p, rule.point)
+    sites = [AttributePoint(p, cell, share, moved) for share in shares]
     joins = rule.combine is not None and len(sites) > 1
     first = node.children[0]
     d, result = _visit(body, kind, first, sites[0], measured=measured or joins)
@@ -115,8 +134,46 @@ def _around(
     p, cell = site.p, site.cell
     if rule.site is not None:
         p, cell = composer.site(body, composer.call(rule.site, given), site.cell)
-    _, result = _visit(body, kind, child, AttributePoint(p, cell, values), measured=False)
+    moved = _footprint(body, kind, node, site, given, p, rule.site)
+    inner = AttributePoint(p, cell, values, moved)
+    _, result = _visit(body, kind, child, inner, measured=False)
     return body.let("d", composer.call(rule.around, given)) if measured else None, result
+
+
+def _footprint(
+    body: StatementList,
+    kind: Attribute,
+    node: Node,
+    site: AttributePoint,
+    given: Mapping[str, Expr],
+    q: Expr,
+    point: Func | None,
+) -> Expr | None:
+    """Return the footprint in the coordinates of a node's children; None if nothing needs it.
+
+    Args:
+        body: The statements to add to.
+        kind: The attribute.
+        node: The node.
+        site: The place at which the attribute is evaluated.
+        given: The values for the node's functions, by name.
+        q: The point in the coordinates of the children.
+        point: The function that returns it; None if it is the same point.
+    """
+    if site.footprint is None or point is None or not kind.averages(node):
+        return site.footprint
+    if q.type is not VEC3:
+        return None
+    composer = kind.composer
+    found: dict[str, Expr] = {"q": q}
+    for name in ("across", "along"):
+        side = field(site.footprint, name)
+        for end, sign in (("ahead", 1.0), ("behind", -1.0)):
+            step = {"p": site.p, "side": side, "sign": number(sign)}
+            place = body.let("beside", composer.call(step_along, step))
+            there, _ = composer.site(body, composer.call(point, {**given, "p": place}), site.cell)
+            found[f"{name}_{end}"] = there
+    return body.let("footprint", composer.call(moved_footprint, found))
 
 
 def _joined(
@@ -166,6 +223,7 @@ class SurfaceAttribute(Attribute):
         super().__init__(composer)
         self._default = default
         self._painted: dict[int, bool] = {}
+        self._averaged: dict[int, bool] = {}
 
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the material of a subtree; the default if nothing in it has one."""
@@ -183,6 +241,17 @@ class SurfaceAttribute(Attribute):
         material = node.cut_material
         return None if material is None else self._shown(body, material, node, site)
 
+    def averages(self, node: Node) -> bool:
+        """Return whether a material of the subtree depends on the footprint of the pixel."""
+        found = self._averaged.get(id(node))
+        if found is None:
+            nodes = list(node.walk())
+            materials = [self._default, *(n.material for n in nodes)]
+            materials += [n.cut_material for n in nodes]
+            found = any(m is not None and FOOTPRINT in m.uses for m in materials)
+            self._averaged[id(node)] = found
+        return found
+
     def _paints(self, node: Node) -> bool:
         found = self._painted.get(id(node))
         if found is None:
@@ -191,6 +260,8 @@ class SurfaceAttribute(Attribute):
 
     def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
         given = {"p": site.p, "cell": site.cell}
+        if FOOTPRINT in material.uses:
+            given[FOOTPRINT] = site.footprint or self.composer.call(point_footprint, {})
         if "n" in material.uses:
             field = self.composer.field(node, site.values, site.cell)
             slope = Gradient(field, site.p, False, site.p.type)

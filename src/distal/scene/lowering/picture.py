@@ -15,8 +15,20 @@ from distal.ir.build import add, boolean, compare, field, integer, number
 from distal.ir.nodes import CompareOp, Construct, Expr, FunctionRef, If, Param, Read, Return
 from distal.ir.types import BOOL, FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
-from distal.render import bounce, film, layers, legend, settings, steer, tonemap, views
+from distal.render import (
+    bounce,
+    film,
+    footprint,
+    layers,
+    legend,
+    settings,
+    shade,
+    steer,
+    tonemap,
+    views,
+)
 from distal.render.camera import Ray
+from distal.render.footprint import Cone, Footprint
 from distal.render.lights import no_light
 from distal.scene import steering
 from distal.scene.lowering.attributes import (
@@ -93,6 +105,7 @@ class SceneLowering:
             "coord": field(frame, "coord"),
             "resolution": resolution,
             "camera": self._camera_of(resolution, steered=steered),
+            "cone": self._cone(resolution, view, steered=steered),
             "transparent": boolean(transparent),
             "samples": samples,
             "step": integer(1),
@@ -116,12 +129,14 @@ class SceneLowering:
     def _second_pass(self, grid: Expr) -> dict[str, Expr]:
         """Return what ``film.exposed_again`` takes besides the values of ``film.exposed``."""
         assembly, size = self._assembly, (640.0, 480.0)
+        # Stubs describe a buffer by the type of its elements; here it is a resource.
+        places, firsts = cast(Any, film.PLACES), cast(Any, film.FIRSTS)
         return {
             "grid": grid,
             "resolution": assembly.number(film.PICTURE_SIZE, VEC2, size),
             "again": assembly.number(film.AGAIN, BOOL, False),
-            "places": assembly.resource(film.PLACES, "Places"),
-            "firsts": assembly.resource(film.FIRSTS, "Firsts"),
+            "places": assembly.resource(places, "Places"),
+            "firsts": assembly.resource(firsts, "Firsts"),
         }
 
     def layer(self, name: str, *, steered: bool) -> str:
@@ -173,6 +188,7 @@ class SceneLowering:
             "lights": self._lights(),
             "ambient": self._ambient(),
             "background": self._background(),
+            "fog": self._fog(),
             "camera": self._camera_of(resolution, steered=steered),
             "bounces": integer(scene.bounces),
             "hybrid": boolean(self._hybrid),
@@ -234,6 +250,8 @@ class SceneLowering:
     def _radiance(self, shown: Func, resolution: Expr, *, steered: bool) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, given["resolution"], steered=steered), **given}
+            if shown in RENDERERS.values():
+                asked["surface"] = self.surface(averaged=True)
             if shown is views.view_slice:
                 asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
                 asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
@@ -242,21 +260,52 @@ class SceneLowering:
                 asked["identity"] = self.known_of_place("material_number", kind)
             return self.composer.call(shown, asked)
 
-        params = (("ray", self._assembly.struct(Ray)), ("resolution", VEC2))
+        ray, cone = self._assembly.struct(Ray), self._assembly.struct(Cone)
+        params = (("ray", ray), ("cone", cone), ("resolution", VEC2))
         return self._function("radiance", params, make, (resolution,))
 
-    def surface(self) -> FunctionRef:
-        """Return the function ``(p) -> Surface`` of the material at a place."""
-        return self.known_of_place("surface", SurfaceAttribute(self.composer, self._scene.material))
-
-    def known_of_place(self, name: str, kind: Attribute) -> FunctionRef:
-        """Return an attribute of the place nearest to a point, as a function."""
+    def _cone(self, resolution: Expr, view: str, *, steered: bool) -> FunctionRef:
+        """Return the function ``(uv, size) -> Cone``: thin if no pattern is averaged."""
+        kind = SurfaceAttribute(self.composer, self._scene.material)
+        is_averaged = view == "color" and kind.averages(self._node)
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            site = AttributePoint(given["p"], ZERO_CELL, self.composer.values.all(self._node))
+            if not is_averaged:
+                return self.composer.call(footprint.thin, given)
+            camera = self._camera_of(given["resolution"], steered=steered)
+            asked = {**given, "camera": camera}
+            return self.composer.call(footprint.pixel_cone, asked)
+
+        params = (("uv", VEC2), ("size", FLOAT), ("resolution", VEC2))
+        return self._function("cone", params, make, (resolution,))
+
+    def surface(self, *, averaged: bool = False) -> FunctionRef:
+        """Return the function of the material at a place.
+
+        Args:
+            averaged: Whether it is ``(p, footprint) -> Surface``; otherwise ``(p) -> Surface``.
+        """
+        kind = SurfaceAttribute(self.composer, self._scene.material)
+        return self.known_of_place("surface", kind, averaged=averaged)
+
+    def known_of_place(self, name: str, kind: Attribute, *, averaged: bool = False) -> FunctionRef:
+        """Return an attribute of the place nearest to a point, as a function.
+
+        Args:
+            name: The preferred name of the function.
+            kind: The attribute.
+            averaged: Whether the function takes a footprint after the point.
+        """
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            values = self.composer.values.all(self._node)
+            site = AttributePoint(given["p"], ZERO_CELL, values, given.get("footprint"))
             return attribute(body, kind, self._node, site)
 
-        return self._function(name, (("p", VEC3),), make)
+        params: tuple[tuple[str, Type], ...] = (("p", VEC3),)
+        if averaged:
+            params = (*params, ("footprint", self._assembly.struct(Footprint)))
+        return self._function(name, params, make)
 
     def _samples(self) -> list[Any]:
         return [light.sample for light in self._scene.lights if light.sample is not None]
@@ -293,6 +342,21 @@ class SceneLowering:
             return self._scene.background.emit(self.composer, given)
 
         return self._function("background", (("direction", VEC3),), make)
+
+    def _fog(self) -> FunctionRef:
+        """Return the function of a direction to the fog's color: the author's, or the horizon's."""
+        scene = self._scene
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            if "fog" in self._numbers:
+                return self._numbers["fog"]
+            density = scene.numbers["fog_density"]
+            if not density.may_exceed(0.0):
+                return number(0.0, VEC3)
+            level = self.composer.call(shade.at_horizon, given)
+            return scene.background.emit(self.composer, {"direction": body.let("level", level)})
+
+        return self._function("fog", (("direction", VEC3),), make)
 
     def _steered(self, resolution: Expr) -> FunctionRef:
         """Return the camera moved by the numbers of a ``Steering``."""

@@ -124,7 +124,7 @@ class Material(CalledObject):
 
     @property
     def uses(self) -> frozenset[str]:
-        """Which of "p", "n", "cell" the material depends on."""
+        """Which of ``declarations.PLACE_NAMES`` the material depends on."""
         return self.call.uses
 
     def mix(

@@ -4,8 +4,8 @@ Input: the patterns declared in ``render.patterns``; colors, materials, numbers,
 patterns, authors' own functions of a place. Output: a ``Pattern``, which a material accepts instead
 of a color or a number; a ``Material`` if one of a pattern's two sides is a material; an amount if
 both are numbers. A place is ``p`` (the point in the local space of the painted shape), ``n`` (the
-normal there) and ``cell`` (the index of the repetition that contains it). The formulas are scene
-code.
+normal there), ``cell`` (the index of the repetition that contains it) and ``footprint`` (the part
+of the surface that the pixel shows). The formulas are scene code.
 """
 
 from __future__ import annotations
@@ -57,8 +57,10 @@ def pattern(function: Func, *args: Any, **kwargs: Any) -> Any:
     """Make a pattern from an author's own ``@func`` of a place.
 
     Args:
-        function: A function of any of ``p: vec3``, ``n: vec3``, ``cell: vec3``, and of numbers. It
-            returns a float, a vec3 (a linear color) or a ``Surface``, which makes a material.
+        function: A function of any of ``p: vec3``, ``n: vec3``, ``cell: vec3``, ``footprint:
+            float`` (the width of the pixel on the surface, in the coordinates of p), and of
+            numbers. It returns a float, a vec3 (a linear color) or a ``Surface``, which makes a
+            material.
         args: The function's numbers by position.
         kwargs: The function's numbers by name.
 

@@ -9,21 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from distal.diagnostics import Span
 from distal.frontend import Assembly
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, read_signature
 from distal.ir.nodes import Expr
-from distal.ir.types import BOOL, INT, Type
+from distal.ir.types import BOOL, FLOAT, INT, Type
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
 from distal.lang.resources import Buffer, TextureValue
 from distal.render.declarations import PLACE_NAMES
+from distal.render.footprint import footprint_length
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import Number
+
+FOOTPRINT: Final = "footprint"
 
 
 class Composer(Protocol):
@@ -54,9 +57,15 @@ class FunctionCall(Immutable):
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
         given = dict(site)
+        if FOOTPRINT in site and self._takes_length():
+            given[FOOTPRINT] = composer.assembly.call(footprint_length, site)
         for name, value in self.values.items():
             given[name] = self._emitted(composer, site, name, value)
         return composer.assembly.call(self.func, given)
+
+    def _takes_length(self) -> bool:
+        """Return whether the function takes the length of the footprint, not both sides."""
+        return any(s.name == FOOTPRINT and s.type is FLOAT for s in slots_of(self.func))
 
     def value(self, composer: Composer, name: str) -> Expr:
         """Emit one of the call's values."""
@@ -82,7 +91,7 @@ class FunctionCall(Immutable):
 
     @property
     def uses(self) -> frozenset[str]:
-        """Which of "p", "n", "cell" the call or its values depend on."""
+        """Which of ``PLACE_NAMES`` the call or its values depend on."""
         own = {slot.name for slot in slots_of(self.func)} - set(self.values)
         nested = (value.uses for value in self.values.values() if hasattr(value, "uses"))
         return PLACE_NAMES & own.union(*nested)
