@@ -10,9 +10,11 @@ import pytest
 
 pytest.importorskip("anywidget")
 
-from distal import Box, Camera, Scene, Sphere, time
+from distal import Box, Camera, Plane, Scene, Sphere, time
 from distal.lang import slider
 from distal.notebook.widget import LiveView
+from distal.scene.steering import Steering
+from distal.scene.viewing.guide import Guide, Moment
 from distal.scene.viewing.viewable import viewable
 from tests.browser import BrowserUnavailableError, browser
 from tests.page.looking import looked_at
@@ -166,3 +168,31 @@ def test_keys_in_the_player_are_not_the_notebooks(tmp_path):
         looked.page.keyboard.press("v")
         assert looked.state()["view"] == "coordinate"
         assert looked.page.evaluate("keys") == []
+
+
+def test_a_camera_in_a_cell_stays_above_the_floor_and_has_the_keys(tmp_path):
+    ground = Scene(Sphere(0.5).translate(y=0.5) | Plane(), camera=Camera((1, 0.4, 2), (0, 0.5, 0)))
+    guide, moment = Guide(ground), Moment((96, 72))
+    widget = LiveView(ground, size=(96, 72), playing=False)
+
+    def place():
+        moved = {**widget.steering, "pan": tuple(widget.steering["pan"])}
+        return guide.place(Steering(**moved), moment)
+
+    with cell(tmp_path, widget) as looked:
+        looked.settle()
+        box = looked.page.locator("canvas").bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        for way in ((0, -60), (50, -40), (-50, -40)):
+            looked.page.mouse.move(x, y)
+            looked.page.mouse.down()
+            looked.page.mouse.move(x + way[0], y + way[1], steps=4)
+            looked.page.mouse.up()
+            looked.settle()
+            assert received(looked, widget)["steering"] == widget.steering
+            assert place().position[1] > 0.0
+        looked.page.locator("canvas").focus()
+        looked.page.keyboard.press("Digit7")
+        looked.page.wait_for_timeout(300)
+        assert received(looked, widget)["steering"]["pitch"] > 1.0
+        assert place().position[1] > 1.0

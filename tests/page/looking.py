@@ -85,8 +85,9 @@ class Looked:
                 moved["yaw"], moved["pitch"], moved["zoom"], tuple(moved["pan"])
             )
         height, width = shown.shape[:2]
+        # A page draws one sample a pixel.
         rendering = RenderOptions(
-            size=(width, height), time=state["time"], params=state["parameters"]
+            size=(width, height), time=state["time"], params=state["parameters"], samples=1
         )
         expected = seen.render(rendering, view=state["view"], **options)
         return difference(expected.array, shown)

@@ -1,0 +1,152 @@
+"""Hands on the camera of a page: never inside a solid, never black, and as the CPU's guide says."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from distal import Box, Camera, Plane, PointLight, Scene, Sphere
+from distal.export.page_options import PageOptions
+from distal.export.payload import payload
+from distal.scene.steering import STILL, Steering
+from distal.scene.viewing.guide import Guide, Moment
+from distal.scene.viewing.viewable import viewable
+from tests.browser import BrowserUnavailableError, browser
+from tests.page import player_pages
+from tests.page.looking import Looked, looked_at
+
+FAR = 100
+ROOM = Box((6, 3, 6)).shell(0.1).translate(y=1.5) | Box(1).translate(1, 0.5, -1)
+SCENES = {
+    "ball": Scene(Sphere().translate(y=1) | Plane(), camera=Camera((2, 0.6, 3), (0, 1, 0))),
+    "room": Scene(
+        ROOM, lights=PointLight((0, 2.5, 0), 4), camera=Camera((0, 1.6, 2.5), (0, 1.2, 0))
+    ),
+}
+ASK = """async ([action, now, goal]) => {
+  const { camera } = document.querySelector("[data-distal]").distal;
+  return camera.ask(action, now, goal);
+}"""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _needs_browser() -> None:
+    try:
+        browser()
+    except BrowserUnavailableError as error:
+        pytest.skip(str(error))
+
+
+def page_of(folder: Path, scene: Scene) -> Path:
+    """A page of the scene without controls, 160x120."""
+    data = payload(viewable(scene), PageOptions(size=(160, 120), panel=False, views=("color",)))
+    return player_pages.write(folder / "page.html", data)
+
+
+def numbers_of(steering: Steering) -> dict[str, Any]:
+    """A steering as the player has it."""
+    yaw, pitch, zoom, x, y = steering.numbers
+    return {"yaw": yaw, "pitch": pitch, "zoom": zoom, "pan": [x, y]}
+
+
+def steered(looked: Looked) -> Steering:
+    """How the page's camera was moved."""
+    moved = looked.state()["steering"]
+    return Steering(moved["yaw"], moved["pitch"], moved["zoom"], tuple(moved["pan"]))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_drags_in_eight_directions_and_the_wheel_end_outside(tmp_path: Path, name: str) -> None:
+    scene = SCENES[name]
+    guide, moment = Guide(scene), Moment((160, 120))
+    with looked_at(page_of(tmp_path, scene), viewport={"width": 160, "height": 164}) as looked:
+        looked.settle()
+        mouse = looked.page.mouse
+        stops = 0
+        for k in range(8):
+            looked.page.keyboard.press("r")
+            way = (math.cos(k * math.pi / 4) * FAR, math.sin(k * math.pi / 4) * FAR)
+            mouse.move(80, 60)
+            mouse.down()
+            for step in range(1, 6):
+                mouse.move(80 + way[0] * step / 5, 60 + way[1] * step / 5)
+            mouse.up()
+            mouse.wheel(0, -300)
+            looked.settle()
+            place = guide.place(steered(looked), moment)
+            assert float(scene.shape(np.asarray(place.position))) > 0.0, (k, steered(looked))
+            assert looked.picture()[..., :3].mean() > 8, (k, "black")
+            stops += steered(looked).zoom > 0.7 or place.room < 0.2
+        assert stops > 0, "nothing was in the way"
+
+
+def test_the_pages_guide_is_the_windows(tmp_path: Path) -> None:
+    scene = SCENES["ball"]
+    guide = Guide(scene)
+    with looked_at(page_of(tmp_path, scene), viewport={"width": 160, "height": 164}) as looked:
+        looked.settle()
+        size = looked.page.evaluate(
+            "() => { const c = document.querySelector('[data-distal]').shadowRoot"
+            ".querySelector('canvas'); return [c.width, c.height] }"
+        )
+        moment = Moment(tuple(size))
+        source = np.random.default_rng(5)
+        for _ in range(12):
+            yaw, pitch = source.normal(0, 1.2), source.uniform(-1.2, 1.2)
+            pan = tuple(source.normal(0, 0.4, 2))
+            goal = Steering(yaw, pitch, math.exp(source.uniform(-2.5, 0.7)), pan)
+            found = looked.page.evaluate(ASK, ["go", numbers_of(STILL), numbers_of(goal)])
+            place = guide.place(guide.go(STILL, goal, moment), moment)
+            eye = [found["eyeX"], found["eyeY"], found["eyeZ"]]
+            # The last of a hundred steps along a wall may end one step apart: a fiftieth of 3.6.
+            assert eye == pytest.approx(place.position, abs=0.08)
+        for action in ("frame", "front", "right", "top", "bottom"):
+            now = Steering(0.3, 0.1)
+            found = looked.page.evaluate(ASK, [action, numbers_of(now), numbers_of(now)])
+            expected = guide.show(action, now, moment)
+            names = ("yaw", "pitch", "zoom", "panX", "panY")
+            assert [found[n] for n in names] == pytest.approx(expected.numbers, abs=1e-4)
+
+
+def test_keys_show_the_scene_and_say_where_the_camera_is(tmp_path: Path) -> None:
+    scene = SCENES["ball"]
+    guide, moment = Guide(scene), Moment((160, 120))
+    with looked_at(page_of(tmp_path, scene), viewport={"width": 160, "height": 164}) as looked:
+        looked.settle()
+        text = "() => document.querySelector('[data-distal]').distal.cameraText()"
+        assert looked.page.evaluate(text) == guide.text(guide.place(STILL, moment))
+        for key, wanted in [
+            ("Digit1", (0, 0, 1)),
+            ("Digit3", (1, 0, 0)),
+            ("Digit7", (0, 1, 0)),
+            ("Shift+Digit1", (0, 0, -1)),
+            ("Shift+Digit3", (-1, 0, 0)),
+        ]:
+            before = looked.state()["steering"]
+            looked.page.keyboard.press(key)
+            looked.page.wait_for_function(
+                "(was) => JSON.stringify(document.querySelector('[data-distal]').distal"
+                ".steering()) !== was",
+                arg=looked.page.evaluate("(steering) => JSON.stringify(steering)", before),
+            )
+            place = guide.place(steered(looked), moment)
+            away = np.array(place.position) - np.array(place.target)
+            assert away @ np.array(wanted) > 0.95 * np.linalg.norm(away), key
+
+
+def test_a_camera_without_a_guide_moves_freely(tmp_path: Path) -> None:
+    data = payload(viewable(SCENES["ball"]), PageOptions(size=(160, 120), views=("color",)))
+    data["steering"]["guide"] = -1
+    path = player_pages.write(tmp_path / "page.html", data)
+    with looked_at(path, viewport={"width": 160, "height": 164}) as looked:
+        looked.settle()
+        looked.page.mouse.move(80, 60)
+        looked.page.mouse.down()
+        looked.page.mouse.move(80, 20)
+        looked.page.mouse.up()
+        height = looked.page.locator("canvas").bounding_box()["height"]
+        assert steered(looked).pitch == pytest.approx(-40 / height * math.pi)
