@@ -52,7 +52,8 @@ What a field promises:
 - **approximates**: the shape replaces a curve by simpler pieces, and the other guarantees are about
   these pieces. The number is the largest distance between the curve and the pieces, in percent of
   the shape's size, measured at the shape's own numbers.
-- **box**: whether the shape has an end; its box then holds all of it.
+- **box**: whether the shape has an end, *partly* if only along some axes; its box then holds all of
+  it.
 
 What was measured, by the checks that the tests run too (`make sweep-fields` runs more of them), at
 the shape's own numbers and at random ones: **error** is the largest difference between a value that
@@ -136,7 +137,7 @@ def _shape_cells(row: Primitive) -> tuple[str, ...]:
         numbers or "-",
         _claims(row.claims) + _approximation(row),
         _slope(row),
-        "yes" if row.bounds is not None else "no",
+        _shape_box(row),
         _source(row.distance),
     )
 
@@ -161,6 +162,13 @@ def _claims(claims: frozenset[Guarantee]) -> str:
     if Guarantee.EXACT_OUTSIDE in claims:
         named = [n for n in named if n != Guarantee.LOWER_BOUND.value]  # goes without saying
     return ", ".join(named) or "slope only"
+
+
+def _shape_box(row: Primitive) -> str:
+    if row.bounds is None:
+        return "no"
+    _, low, high, *_ = default_sample(row).promise()
+    return "yes" if np.isfinite([low, high]).all() else "partly"
 
 
 def _approximation(row: Primitive | Operator) -> str:

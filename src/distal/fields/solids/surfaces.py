@@ -10,7 +10,7 @@ import math
 from typing import Final
 
 from distal.fields.constants import TINY
-from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, primitive
+from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, UNBOUNDED, Bounds, primitive
 from distal.fields.solids.cones import opening
 from distal.fields.solids.cylinders import to_segment
 from distal.lang import abs, cross, dot, func, length, max, min, select, vec2, vec3
@@ -62,7 +62,14 @@ def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     return dot(p, normal) - offset
 
 
-@primitive("Slab", EXACT)
+@func
+def slab_bounds(thickness: float) -> Bounds:
+    """Return the box of the slab, which ends only above and below."""
+    reach = vec3(UNBOUNDED, 0.5 * thickness, UNBOUNDED)
+    return Bounds(-reach, reach)
+
+
+@primitive("Slab", EXACT, bounds=slab_bounds)
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:
     """Infinite horizontal slab, centred at y = 0.
