@@ -56,5 +56,6 @@ scene = Scene(
     background="#e9e2d4",
     normals="tetrahedron",
     ambient_occlusion=0.7,
+    tone_map="none",
     bounces=0,
 )

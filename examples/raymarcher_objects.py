@@ -65,6 +65,7 @@ scene = Scene(
     background=Background(sky, sun=SUN),
     fog=(0.52, 0.455, 0.515),
     fog_density=0.06,
+    ambient_occlusion=0.4,
     tone_map="aces",
     far=60.0,
 )

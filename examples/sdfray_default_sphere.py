@@ -24,5 +24,7 @@ scene = Scene(
         (0.0, 0.0, -10.0), yaw=np.pi, screen_height=0.05, screen_distance=0.1, mirror=True
     ),
     background="#000",
+    default_material=(0.8, 0.8, 0.8),
     ambient_occlusion=0.0,
+    tone_map="none",
 )

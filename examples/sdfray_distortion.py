@@ -46,6 +46,7 @@ scene = Scene(
     background=(0.42, 0.47, 0.55),
     fog=(0.42, 0.47, 0.55),
     fog_density=0.03,
+    ambient_occlusion=0.4,
     steps=400,
     tone_map="aces",
     exposure=1.15,

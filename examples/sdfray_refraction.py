@@ -26,6 +26,7 @@ scene = Scene(
     camera=OrbitCamera(5.0, azimuth=0.3 + 0.2 * time, elevation=0.2, fov_deg=38.0),
     fog=(0.4, 0.425, 0.45),
     fog_density=0.03,
+    ambient_occlusion=0.4,
     bounces=8,
     tone_map="aces",
 )

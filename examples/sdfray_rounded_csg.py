@@ -39,4 +39,7 @@ scene = Scene(
         10.0, azimuth=np.pi + 0.6 + 0.3 * time, elevation=0.45, fov_deg=20.0, mirror=True
     ),
     background="#000",
+    default_material=(0.8, 0.8, 0.8),
+    ambient_occlusion=0.4,
+    tone_map="none",
 )

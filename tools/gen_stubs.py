@@ -18,6 +18,7 @@ from typing import Any, Final
 import distal
 from distal.fields.guarantees import Primitive
 from distal.ir.types import Vector
+from distal.scene.looks import rows as looks
 from distal.scene.objects import backgrounds, cameras, lights, materials, patterns, shapes
 from distal.scene.objects.declared import annotation_of
 from distal.scene.tree.arguments import RESERVED_OF_SHAPES, SPLATTED, FunctionParameter, slots_of
@@ -29,6 +30,7 @@ LETTERS: Final = "xyzw"
 
 # The declared objects by module and name.
 DECLARED: Final[Mapping[str, Mapping[str, Any]]] = {
+    "distal.scene.looks.rows": looks.FUNCTIONS,
     f"{OBJECTS}.backgrounds": backgrounds.CLASSES,
     f"{OBJECTS}.cameras": cameras.CLASSES,
     f"{OBJECTS}.lights": lights.CLASSES,

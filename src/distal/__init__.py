@@ -20,6 +20,7 @@ _HAND_WRITTEN = {
     "distal.images.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.loading": ("gallery", "load"),
+    "distal.scene.looks.look": ("Look",),
     "distal.scene.objects.backgrounds": ("Background", "Environment"),
     "distal.scene.objects.letters": ("SvgPath", "Text"),
     "distal.scene.objects.materials": ("Material", "glass"),

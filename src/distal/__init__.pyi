@@ -11,6 +11,7 @@ from distal.images.picture import Picture as Picture
 from distal.lang.expressions import time as time
 from distal.loading import gallery as gallery
 from distal.loading import load as load
+from distal.scene.looks.look import Look as Look
 from distal.scene.objects.backgrounds import Background as Background
 from distal.scene.objects.backgrounds import Environment as Environment
 from distal.scene.objects.letters import SvgPath as SvgPath
@@ -31,6 +32,286 @@ from distal.scene.objects.cameras import PlacedCamera as _PlacedCamera
 from distal.scene.objects.lights import Light as _Light
 
 __version__: str
+
+def blueprint(
+    *,
+    azimuth: Number = 0.5,
+    elevation: Number = 0.5,
+    fov_deg: Number = 14.0,
+    margin: Number = 1.25,
+    exposure: Number = 1.0,
+    light_azimuth: Number = -0.87,
+    light_elevation: Number = 0.87,
+    light_intensity: Number = 0.75,
+    light_color: Color = ...,
+    light_angle: Number = 0.15,
+    rim_azimuth: Number = 0.0,
+    rim_elevation: Number = 0.0,
+    rim_intensity: Number = 0.0,
+    rim_color: Color = ...,
+    fill: Number = 0.62,
+    sky: Color = ...,
+    ground: Color = ...,
+    zenith: Color = ...,
+    horizon: Color = ...,
+    floor_color: Color = ...,
+    material: Color = ...,
+    haze: Number = 0.0,
+) -> Look:
+    """A technical drawing: pale lines in round steps of the scene's unit on blue paper.
+
+    Args:
+        azimuth: The camera's way around the scene, in radians; 0 looks from +z, pi/2 from +x.
+        elevation: The camera's elevation, in radians.
+        fov_deg: The camera's vertical field of view, in degrees.
+        margin: Size of the picture divided by the size of what it shows.
+        exposure: A factor on all light.
+        light_azimuth: How far the main light is to the right of the camera, in radians.
+        light_elevation: Elevation of the main light, in radians.
+        light_intensity: What a white matte surface shows that faces the main light.
+        light_color: Color of the main light.
+        light_angle: Angular size of the main light, in radians.
+        rim_azimuth: How far the second light is to the right of the camera, in radians.
+        rim_elevation: Elevation of the second light, in radians.
+        rim_intensity: What a white matte surface shows that faces the second light.
+        rim_color: Color of the second light.
+        fill: Intensity of the light from all sides.
+        sky: Its color from above.
+        ground: Its color from below.
+        zenith: Color of the background overhead.
+        horizon: Color of the background along the horizon.
+        floor_color: Color of the floor.
+        material: Color of shapes without ``paint``.
+        haze: Density of the fog, for each radius of what the picture shows.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
+
+def night(
+    *,
+    azimuth: Number = 0.5,
+    elevation: Number = 0.12,
+    fov_deg: Number = 30.0,
+    margin: Number = 1.4,
+    exposure: Number = 1.7,
+    light_azimuth: Number = -1.22,
+    light_elevation: Number = 0.77,
+    light_intensity: Number = 0.6,
+    light_color: Color = ...,
+    light_angle: Number = 0.04,
+    rim_azimuth: Number = 2.06,
+    rim_elevation: Number = 0.42,
+    rim_intensity: Number = 2.6,
+    rim_color: Color = ...,
+    fill: Number = 0.36,
+    sky: Color = ...,
+    ground: Color = ...,
+    zenith: Color = ...,
+    horizon: Color = ...,
+    floor_color: Color = ...,
+    material: Color = ...,
+    haze: Number = 0.012,
+) -> Look:
+    """Moonlight under stars, and one warm lamp.
+
+    Args:
+        azimuth: The camera's way around the scene, in radians; 0 looks from +z, pi/2 from +x.
+        elevation: The camera's elevation, in radians.
+        fov_deg: The camera's vertical field of view, in degrees.
+        margin: Size of the picture divided by the size of what it shows.
+        exposure: A factor on all light.
+        light_azimuth: How far the main light is to the right of the camera, in radians.
+        light_elevation: Elevation of the main light, in radians.
+        light_intensity: What a white matte surface shows that faces the main light.
+        light_color: Color of the main light.
+        light_angle: Angular size of the main light, in radians.
+        rim_azimuth: How far the second light is to the right of the camera, in radians.
+        rim_elevation: Elevation of the second light, in radians.
+        rim_intensity: What a white matte surface shows that faces the second light.
+        rim_color: Color of the second light.
+        fill: Intensity of the light from all sides.
+        sky: Its color from above.
+        ground: Its color from below.
+        zenith: Color of the background overhead.
+        horizon: Color of the background along the horizon.
+        floor_color: Color of the floor.
+        material: Color of shapes without ``paint``.
+        haze: Density of the fog, for each radius of what the picture shows.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
+
+def outdoor(
+    *,
+    azimuth: Number = 0.5,
+    elevation: Number = 0.13,
+    fov_deg: Number = 32.0,
+    margin: Number = 1.42,
+    exposure: Number = 0.92,
+    light_azimuth: Number = -1.08,
+    light_elevation: Number = 0.66,
+    light_intensity: Number = 2.3,
+    light_color: Color = ...,
+    light_angle: Number = 0.035,
+    rim_azimuth: Number = 0.0,
+    rim_elevation: Number = 0.0,
+    rim_intensity: Number = 0.0,
+    rim_color: Color = ...,
+    fill: Number = 0.46,
+    sky: Color = ...,
+    ground: Color = ...,
+    zenith: Color = ...,
+    horizon: Color = ...,
+    floor_color: Color = ...,
+    material: Color = ...,
+    haze: Number = 0.012,
+) -> Look:
+    """Daylight: a clear sky, a sun with firm shadows, haze at the horizon.
+
+    Args:
+        azimuth: The camera's way around the scene, in radians; 0 looks from +z, pi/2 from +x.
+        elevation: The camera's elevation, in radians.
+        fov_deg: The camera's vertical field of view, in degrees.
+        margin: Size of the picture divided by the size of what it shows.
+        exposure: A factor on all light.
+        light_azimuth: How far the main light is to the right of the camera, in radians.
+        light_elevation: Elevation of the main light, in radians.
+        light_intensity: What a white matte surface shows that faces the main light.
+        light_color: Color of the main light.
+        light_angle: Angular size of the main light, in radians.
+        rim_azimuth: How far the second light is to the right of the camera, in radians.
+        rim_elevation: Elevation of the second light, in radians.
+        rim_intensity: What a white matte surface shows that faces the second light.
+        rim_color: Color of the second light.
+        fill: Intensity of the light from all sides.
+        sky: Its color from above.
+        ground: Its color from below.
+        zenith: Color of the background overhead.
+        horizon: Color of the background along the horizon.
+        floor_color: Color of the floor.
+        material: Color of shapes without ``paint``.
+        haze: Density of the fog, for each radius of what the picture shows.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
+
+def studio(
+    *,
+    azimuth: Number = 0.5,
+    elevation: Number = 0.27,
+    fov_deg: Number = 28.0,
+    margin: Number = 1.3,
+    exposure: Number = 1.0,
+    light_azimuth: Number = -1.01,
+    light_elevation: Number = 0.8,
+    light_intensity: Number = 2.1,
+    light_color: Color = ...,
+    light_angle: Number = 0.26,
+    rim_azimuth: Number = 2.44,
+    rim_elevation: Number = 0.66,
+    rim_intensity: Number = 0.7,
+    rim_color: Color = ...,
+    fill: Number = 0.36,
+    sky: Color = ...,
+    ground: Color = ...,
+    zenith: Color = ...,
+    horizon: Color = ...,
+    floor_color: Color = ...,
+    material: Color = ...,
+    haze: Number = 0.0,
+) -> Look:
+    """A photographer's studio: a seamless floor, a large soft lamp, a rim light.
+
+    Args:
+        azimuth: The camera's way around the scene, in radians; 0 looks from +z, pi/2 from +x.
+        elevation: The camera's elevation, in radians.
+        fov_deg: The camera's vertical field of view, in degrees.
+        margin: Size of the picture divided by the size of what it shows.
+        exposure: A factor on all light.
+        light_azimuth: How far the main light is to the right of the camera, in radians.
+        light_elevation: Elevation of the main light, in radians.
+        light_intensity: What a white matte surface shows that faces the main light.
+        light_color: Color of the main light.
+        light_angle: Angular size of the main light, in radians.
+        rim_azimuth: How far the second light is to the right of the camera, in radians.
+        rim_elevation: Elevation of the second light, in radians.
+        rim_intensity: What a white matte surface shows that faces the second light.
+        rim_color: Color of the second light.
+        fill: Intensity of the light from all sides.
+        sky: Its color from above.
+        ground: Its color from below.
+        zenith: Color of the background overhead.
+        horizon: Color of the background along the horizon.
+        floor_color: Color of the floor.
+        material: Color of shapes without ``paint``.
+        haze: Density of the fog, for each radius of what the picture shows.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
+
+def sunset(
+    *,
+    azimuth: Number = 0.5,
+    elevation: Number = 0.09,
+    fov_deg: Number = 32.0,
+    margin: Number = 1.5,
+    exposure: Number = 1.05,
+    light_azimuth: Number = -1.74,
+    light_elevation: Number = 0.2,
+    light_intensity: Number = 2.8,
+    light_color: Color = ...,
+    light_angle: Number = 0.05,
+    rim_azimuth: Number = 0.0,
+    rim_elevation: Number = 0.0,
+    rim_intensity: Number = 0.0,
+    rim_color: Color = ...,
+    fill: Number = 0.44,
+    sky: Color = ...,
+    ground: Color = ...,
+    zenith: Color = ...,
+    horizon: Color = ...,
+    floor_color: Color = ...,
+    material: Color = ...,
+    haze: Number = 0.008,
+) -> Look:
+    """The last sun: warm light from behind, long shadows, a blue sky overhead.
+
+    Args:
+        azimuth: The camera's way around the scene, in radians; 0 looks from +z, pi/2 from +x.
+        elevation: The camera's elevation, in radians.
+        fov_deg: The camera's vertical field of view, in degrees.
+        margin: Size of the picture divided by the size of what it shows.
+        exposure: A factor on all light.
+        light_azimuth: How far the main light is to the right of the camera, in radians.
+        light_elevation: Elevation of the main light, in radians.
+        light_intensity: What a white matte surface shows that faces the main light.
+        light_color: Color of the main light.
+        light_angle: Angular size of the main light, in radians.
+        rim_azimuth: How far the second light is to the right of the camera, in radians.
+        rim_elevation: Elevation of the second light, in radians.
+        rim_intensity: What a white matte surface shows that faces the second light.
+        rim_color: Color of the second light.
+        fill: Intensity of the light from all sides.
+        sky: Its color from above.
+        ground: Its color from below.
+        zenith: Color of the background overhead.
+        horizon: Color of the background along the horizon.
+        floor_color: Color of the floor.
+        material: Color of shapes without ``paint``.
+        haze: Density of the fog, for each radius of what the picture shows.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+    """
 
 class GradientBackground(_DeclaredBackground):
     """One color straight down and another straight up, blended linearly by height.
@@ -2953,6 +3234,7 @@ __all__ = [
     "Link",
     "LoadError",
     "LogarithmicSpiral",
+    "Look",
     "Mandelbox",
     "Mandelbulb",
     "Material",
@@ -3052,6 +3334,7 @@ __all__ = [
     "aluminium",
     "aluminum",
     "amber",
+    "blueprint",
     "bone",
     "brass",
     "brick",
@@ -3087,7 +3370,9 @@ __all__ = [
     "metal",
     "mirror",
     "nickel",
+    "night",
     "noise",
+    "outdoor",
     "palette",
     "paper",
     "pattern",
@@ -3105,6 +3390,8 @@ __all__ = [
     "snow",
     "steel",
     "stripes",
+    "studio",
+    "sunset",
     "terracotta",
     "time",
     "titanium",

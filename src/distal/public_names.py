@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 DECLARED_NAMES: Final = {
+    "distal.scene.looks.rows": "blueprint night outdoor studio sunset",
     "distal.scene.objects.backgrounds": "GradientBackground Sky",
     "distal.scene.objects.cameras": (
         "Camera FisheyeCamera OrbitCamera OrthographicCamera PanoramaCamera"

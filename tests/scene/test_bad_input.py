@@ -14,6 +14,9 @@ from distal import (
     Box,
     Camera,
     Circle,
+    DistantLight,
+    GradientBackground,
+    HemisphereLight,
     Plane,
     PointLight,
     Scene,
@@ -25,6 +28,13 @@ from distal import (
 from distal.diagnostics import CompileError
 from distal.lang import Frame, func, image, length, max, slider, vec3, vec4
 
+# The same light, whatever is in the scene.
+PLAIN_LIGHT = {
+    "lights": [DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight()],
+    "background": GradientBackground(),
+    "ambient_occlusion": 0.4,
+    "tone_map": "none",
+}
 LOW = slider("Low", 0.5, -1.0, 1.0)
 HALF = slider("Half", 0.5, 0.1, 1.0)
 
@@ -251,7 +261,7 @@ ERRORS = {
         "the farther out, the steeper it would get",
     ),
     "camera in a solid": (
-        lambda: Scene(Sphere(10)).render(size=(8, 8)),
+        lambda: Scene(Sphere(10), camera=Camera((3, 2, 5)), floor=False).render(size=(8, 8)),
         "the camera is inside 'Sphere', and all around it is dark",
         "move the camera, or look at the shape with view='slice'",
     ),
@@ -361,8 +371,9 @@ def test_an_own_function_that_keeps_its_word_is_not_doubted():
     assert heard(lambda: Scene(Shape.from_function(ball)).render(size=(8, 8))) == []
     told = Shape.from_function(steep, slope=5.0)
     assert heard(lambda: Scene(told).render(size=(8, 8))) == []
-    drawn = Scene(told).render(size=(24, 24), view="normal").array
-    exact = Scene(Sphere(1.0)).render(size=(24, 24), view="normal").array
+    given = {"camera": Camera((3, 2, 5)), "floor": False}
+    drawn = Scene(told, **given).render(size=(24, 24), view="normal").array
+    exact = Scene(Sphere(1.0), **given).render(size=(24, 24), view="normal").array
     assert np.abs(drawn - exact).max() < 0.02
 
 
@@ -404,8 +415,9 @@ def test_a_union_of_one_is_that_one():
 
 def test_what_is_cut_away_wholly_is_not_there():
     rest = Torus() - Torus().offset(0.05)
-    picture = Scene(rest | Sphere(0.2).translate(y=5)).render(size=(24, 18)).array
-    empty = Scene(Sphere(0.2).translate(y=5)).render(size=(24, 18)).array
+    ball, given = Sphere(0.2).translate(y=5), {"camera": Camera((3, 2, 5)), **PLAIN_LIGHT}
+    picture = Scene(rest | ball, **given).render(size=(24, 18)).array
+    empty = Scene(ball, **given).render(size=(24, 18)).array
     assert np.abs(picture - empty).max() == 0.0
 
 
@@ -448,8 +460,9 @@ def test_small_and_large_scenes_look_alike(size):
 
 def test_huge_ground_is_a_plane():
     ball, camera = Sphere(0.5).translate(y=0.5), Camera((0, 1.5, 5))
-    round_earth = Scene(ball | Sphere(1e4).translate(y=-1e4), camera=camera)
-    flat = Scene(ball | Plane(0.0), camera=camera)
+    given = {"camera": camera, "default_material": (0.8, 0.8, 0.8), **PLAIN_LIGHT}
+    round_earth = Scene(ball | Sphere(1e4).translate(y=-1e4), **given)
+    flat = Scene(ball | Plane(0.0), **given)
     first, second = (s.render(size=(48, 36)).array[20:] for s in (round_earth, flat))
     assert np.abs(first - second).mean() < 0.01
 

@@ -13,7 +13,7 @@ FRONT = Camera((0.0, 0.0, 5.0), target=(0.0, 0.0, 0.0), fov_deg=40.0)
 
 
 def test_the_middle_of_a_sphere():
-    found = probe(Scene(Sphere(1.0), camera=FRONT), (50, 50), (101, 101))
+    found = probe(Scene(Sphere(1.0), camera=FRONT, floor=False), (50, 50), (101, 101))
     assert found.hit
     assert found.ended == "hit"
     seen = found.seen
@@ -36,6 +36,7 @@ def test_a_pixel_sees_what_the_picture_shows_there():
     scene = Scene(
         Box(1.2).paint("#ff0000") | Sphere(0.8).translate(1.0, 0.3, 0.0).paint("#00ff00"),
         camera=Camera((1.0, 2.0, 5.0)),
+        floor=False,
     )
     size = (32, 24)
     normals = scene.render(size=size, view="normal").array
@@ -58,14 +59,15 @@ def test_a_ray_that_meets_nothing_says_how_it_ended():
     ended = {}
     for name, shape in (("sphere", Sphere(0.5)), ("plane", Plane(y=-1.0))):
         for y in (2, 30):
-            ended[name, y] = probe(Scene(shape, camera=FRONT), (2, y), (100, 100)).ended
+            ended[name, y] = probe(
+                Scene(shape, camera=FRONT, floor=False), (2, y), (100, 100)
+            ).ended
     assert ended["sphere", 2] == "passed the box"
     assert ended["plane", 2] == "left the scene"
-    corner = probe(
-        Scene(Sphere(1.0), camera=OrthographicCamera((0, 0, 5), height=2)), (1, 1), (50, 50)
-    )
+    level = {"camera": OrthographicCamera((0, 0, 5), height=2), "floor": False}
+    corner = probe(Scene(Sphere(1.0), **level), (1, 1), (50, 50))
     assert corner.ended == "left the box"
-    few = Scene(Sphere(1.0), camera=OrthographicCamera((0, 0, 5), height=2), steps=1)
+    few = Scene(Sphere(1.0), **level, steps=1)
     assert probe(few, (8, 8), (50, 50)).ended == "ran out of steps"
 
 

@@ -41,6 +41,8 @@ OTHERS = {
     "lights": [DistantLight((1.0, 2.0, 0.5), 0.7), AmbientLight(0.3)],
     "camera": Camera((0.4, 1.3, 3.0), (0.1, 0.3, 0.0), fov=0.9),
     "background": GradientBackground((0.2, 0.1, 0.4), (0.9, 0.5, 0.3)),
+    "look": "blueprint",
+    "floor": True,
     "exposure": 1.2,
     "tone_map": "reinhard",
     "default_material": (0.7, 0.8, 0.8),
@@ -60,7 +62,7 @@ STRIDES = {"stride", "stride_growth"}
 
 
 # Choices that are constants of the program; "tone_map" one of the program that encodes it.
-CHOICES = {"tone_map", "shadows", "bounces", "normals", "march", "steps"}
+CHOICES = {"look", "floor", "tone_map", "shadows", "bounces", "normals", "march", "steps"}
 
 
 def picture(**changed):

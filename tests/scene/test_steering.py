@@ -5,7 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from distal import Box, Camera, OrbitCamera, OrthographicCamera, PanoramaCamera, Scene, Sphere
+from distal import (
+    Box,
+    Camera,
+    DistantLight,
+    GradientBackground,
+    HemisphereLight,
+    OrbitCamera,
+    OrthographicCamera,
+    PanoramaCamera,
+    Scene,
+    Sphere,
+)
 from distal.lang import slider
 from distal.lang.render_options import RenderOptions
 from distal.scene.steering import Steering
@@ -16,8 +27,14 @@ FOV = 0.7
 SHAPE = (Box((1.0, 0.6, 1.4)) | Sphere(0.4).translate(0.7, 0.4, 0.2)).paint("#c96")
 
 
+def scene_of(camera):
+    # Lights of a look stand around the camera; these stand where they are for every camera.
+    lights = [DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight()]
+    return Scene(SHAPE, lights, camera, GradientBackground(), tone_map="none")
+
+
 def picture(camera, steering=None, view="color"):
-    seen = viewable(Scene(SHAPE, camera=camera))
+    seen = viewable(scene_of(camera))
     return seen.render(RenderOptions(size=SIZE), view=view, steering=steering).array
 
 
@@ -113,7 +130,7 @@ def test_elevation_tells_how_high_the_camera_stands():
 def test_a_target_that_is_a_parameter_is_what_it_turns_around():
     height = slider("Height", 0.0, 0.0, 2.0)
     camera = Camera((0.0, height, 4.0), (0.0, height, 0.0), fov=FOV)
-    seen = viewable(Scene(SHAPE, camera=camera))
+    seen = viewable(scene_of(camera))
     options = RenderOptions(size=SIZE, params={"height": 1.0})
     found = seen.render(options, steering=Steering(yaw=0.9))
     wanted = OrbitCamera(4.0, azimuth=0.9, target=(0.0, 1.0, 0.0), fov=FOV)

@@ -83,7 +83,7 @@ def test_shapes_and_lights_come_in_any_row():
     lights = (PointLight((i, 2.0, 3.0)) for i in range(2))
     scene = Scene((ball for ball in BALLS), lights=lights)
     assert len(scene.lights) == 2
-    assert len(Scene(np.array(BALLS)).shape.node.children) == 3
+    assert len(Scene(np.array(BALLS), floor=False).shape.node.children) == 3
 
 
 def test_a_material_that_was_not_called_is_told():

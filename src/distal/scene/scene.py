@@ -21,21 +21,12 @@ from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import copy_loaded_from
 from distal.render import film, tonemap, views
+from distal.scene.looks.dressed import Dressed, GivenArguments
+from distal.scene.looks.rows import as_look
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer
 from distal.scene.lowering.picture import NORMALS, SceneLowering
-from distal.scene.objects.backgrounds import as_background
-from distal.scene.objects.materials import as_material
-from distal.scene.scene_arguments import (
-    all_lights,
-    checked_camera,
-    checked_exposure,
-    checked_lights,
-    checked_numbers,
-    one_of,
-    one_shape,
-    whole,
-)
+from distal.scene.scene_arguments import checked_exposure, checked_numbers, one_of, whole
 from distal.scene.steering import Steering
 from distal.scene.tree.source_places import author_place
 from distal.scene.view_options import ViewOptions
@@ -43,6 +34,7 @@ from distal.scene.view_options import ViewOptions
 if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.scene import rendering
+    from distal.scene.looks.look import Look
     from distal.scene.objects.argument_types import Color, Number, Varying
     from distal.scene.objects.backgrounds import Background, Surroundings
     from distal.scene.objects.cameras import BaseCamera
@@ -56,12 +48,19 @@ else:
 class Scene(Composed, Presentable):
     """Shapes, lights and a camera.
 
+    What is not given comes from a look: lights, background, camera, floor, exposure, tone map,
+    material and fog. Each argument replaces that part of the look alone.
+
     Args:
         shape: One solid shape, or several, which are united.
-        lights: One light or several. None adds a sun and a sky, unless the background is a light.
-        camera: The camera. None looks at the origin from (3, 2, 5).
+        lights: One light or several. None uses the look's, unless the background is a light.
+        camera: The camera. None frames the finite parts of the scene.
         background: What rays that hit nothing show: a color, a ``Sky``, an ``Environment``, or a
             ``@func`` of the direction.
+        look: "studio" (the default), "outdoor", "sunset", "night" or "blueprint"; or one of these
+            with other numbers: ``outdoor(exposure=1.2)``.
+        floor: Whether the scene stands on the look's floor. None: if it has no infinite part, and
+            a look is named or neither lights nor background are given.
         exposure: A factor on all light, applied before the tone map.
         tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
             or "neutral".
@@ -71,7 +70,7 @@ class Scene(Composed, Presentable):
             light is left. 0 disables fog.
         shadows: Whether lights cast shadows.
         ambient_occlusion: How far, in scene units, to search for surfaces that block ambient light;
-            0 disables it.
+            0 disables it. None: half the radius of the finite parts.
         bounces: The maximum number of reflections and refractions that a ray follows.
         normals: How normals are computed: "exact", or by finite differences: "six_taps",
             "tetrahedron" or "forward".
@@ -105,55 +104,107 @@ class Scene(Composed, Presentable):
         camera: BaseCamera | None = None,
         background: Background | Surroundings | Color | Func | None = None,
         *,
-        exposure: Number = 1.0,
-        tone_map: str = "none",
-        default_material: Material | Color | Varying = (0.8, 0.8, 0.8),
+        look: str | Look | None = None,
+        floor: bool | None = None,
+        exposure: Number | None = None,
+        tone_map: str | None = None,
+        default_material: Material | Color | Varying | None = None,
         fog: Color | None = None,
-        fog_density: Number = 0.0,
+        fog_density: Number | None = None,
         shadows: bool = True,
-        ambient_occlusion: Number = 0.4,
+        ambient_occlusion: Number | None = None,
         bounces: int = 6,
         normals: str = "exact",
         march: str = "sphere",
         stride: Number = 0.03,
         stride_growth: Number = 1.05,
         steps: int | None = None,
-        near: Number = 0.001,
+        near: Number | None = None,
         far: Number | None = None,
         name: str = "scene",
     ) -> None:
-        place = self.place = author_place()
+        # Set before by ``of_shape`` and ``in_look``.
+        place = self.place = self.__dict__.get("place") or author_place()
         self.name = name
-        self.shape = one_shape(shape, place)
+        numbers = {
+            "exposure": exposure,
+            "fog": fog,
+            "fog_density": fog_density,
+            "ambient_occlusion": ambient_occlusion,
+            "near": near,
+            "far": far,
+        }
+        given = GivenArguments(
+            shape, lights, camera, background, default_material, tone_map, numbers
+        )
+        made = Dressed(given, as_look(look, place), place, self.__dict__.get("staged"))
+        standing = floor if floor is not None else made.wants_floor(named=look is not None)
+        self.shape = made.shown_shape(floor=standing)
         check_cells(self.shape.node)
-        given_lights = checked_lights(lights, place)
-        self.background = as_background(background, given_lights, place)
-        self.lights = all_lights(lights is None, given_lights, self.background.light)
-        self.camera = checked_camera(camera, place)
-        self.material = as_material(default_material)
-        self.tone_map = one_of("tone map", tone_map, tonemap.NAMES, place)
+        self.lights, self.background, self.camera = made.lights, made.background, made.camera
+        self.material = made.material
+        self.tone_map = one_of("tone map", made.tone_map, tonemap.NAMES, place)
         self.normals = one_of("way to find normals", normals, NORMALS, place)
         self.march = one_of("march", march, ("sphere", "heightfield"), place)
         self.shadows = bool(shadows)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
         self.steps = None if steps is None else whole("steps", steps, Limit.POSITIVE, place)
         self.numbers = checked_numbers(
-            place,
-            exposure=exposure,
-            fog=fog,
-            fog_density=fog_density,
-            ambient_occlusion=ambient_occlusion,
-            near=near,
-            far=far,
-            stride=stride,
-            stride_growth=stride_growth,
+            place, **made.numbers, stride=stride, stride_growth=stride_growth
         )
         self.display = DisplayEncoding(self)
-        # Recorded in pictures: the arguments of ``developed`` and of ``stage``.
+        # Recorded in pictures: the arguments of ``developed`` and of ``of_shape``.
         self.asked_display: Mapping[str, Any] = {}
-        self.staged: tuple[Mapping[str, Any], float] | None = None
+        self.staged: tuple[Mapping[str, Any], float] | None = self.__dict__.get("staged")
         self._pictures: dict[tuple[Any, ...], Composed] = {}
+        self._given: dict[str, Any] = {
+            "shape": shape,
+            "lights": lights,
+            "camera": camera,
+            "background": background,
+            "floor": floor,
+            **numbers,
+            "tone_map": tone_map,
+            "default_material": default_material,
+            "shadows": shadows,
+            "bounces": bounces,
+            "normals": normals,
+            "march": march,
+            "stride": stride,
+            "stride_growth": stride_growth,
+            "steps": steps,
+            "name": name,
+        }
         self._whole = True
+
+    @classmethod
+    def of_shape(
+        cls, shape: Shape, params: Mapping[str, Any], time: float, look: str | None = None
+    ) -> Scene:
+        """Return ``Scene(shape)``, framed for other values of the shape's parameters.
+
+        Args:
+            shape: A solid.
+            params: Values of parameters by name.
+            time: Time in seconds.
+            look: The name of a look; None for the default.
+        """
+        made = cls.__new__(cls)
+        made.__dict__.update(staged=(params, time), place=shape.node.place)
+        cls.__init__(made, shape, look=look, name=shape.name)
+        copy_loaded_from(shape, made)
+        return made
+
+    def in_look(self, look: str | None) -> Scene:
+        """Return the scene in another look; what its author gave stays. None keeps the look."""
+        if look is None:
+            return self
+        made = Scene.__new__(Scene)
+        made.__dict__.update(staged=self.staged, place=self.place)
+        Scene.__init__(made, **self._given, look=look)
+        made.__dict__["asked_display"] = {**self.asked_display, "look": look}
+        copy_loaded_from(self, made)
+        return made
 
     # The kernel is compiled once: a later change would have no effect.
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from distal import Camera, DistantLight, HemisphereLight
 from distal.diagnostics import Span
 from distal.fields.guarantees import UNBOUNDED, Limit
 from distal.ir.types import FLOAT, INT
@@ -127,9 +126,7 @@ def listed(given: Any) -> list[Any]:
 
 
 def checked_camera(camera: Any, place: Span | None) -> BaseCamera:
-    """Return the author's camera, or a default camera that looks at the origin."""
-    if camera is None:
-        return Camera((3.0, 2.0, 5.0))
+    """Return the author's camera."""
     if not isinstance(camera, BaseCamera):
         refuse_kind(f"a camera is wanted, not {camera!r:.60}", "Camera(position=…)", place)
     return camera
@@ -146,17 +143,8 @@ def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
     return given
 
 
-def all_lights(unsaid: bool, given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
-    """Return the lights of a scene.
-
-    Args:
-        unsaid: Whether the author passed no lights.
-        given: The author's lights.
-        around: The light of the background, or None. It is added to the others. If there is none
-            and no lights were passed, a sun and a sky are used.
-    """
-    if around is not None:  # if it is also among the lights, it counts once
-        return (*given, around) if around not in given else tuple(given)
-    if unsaid:
-        return (DistantLight((0.6, 1.0, 0.7), 0.8, angle=0.05), HemisphereLight())
-    return tuple(given)
+def with_surroundings(given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
+    """Return lights and the light of the background, which counts once if it is among them."""
+    if around is None or around in given:
+        return tuple(given)
+    return (*given, around)

@@ -1,0 +1,1 @@
+"""Looks: light, backdrop, camera and floor of a scene by one word."""
