@@ -111,6 +111,13 @@ SceneArgument = Annotated[
 SizeOption = Annotated[
     str, typer.Option("--size", metavar="WxH", help="Width and height in pixels.")
 ]
+LookOption = Annotated[
+    str | None,
+    typer.Option(
+        help="studio, outdoor, sunset, night or blueprint; what the scene gives itself stays.",
+        show_default=False,
+    ),
+]
 TimeOption = Annotated[str, typer.Option("--time", metavar="S", help="Seconds.")]
 SetOption = Annotated[
     list[str] | None,

@@ -15,6 +15,7 @@ import typer
 from distal.backends import TEXT_TARGETS
 from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
+    LookOption,
     SceneArgument,
     SetOption,
     TimeOption,
@@ -70,6 +71,7 @@ def export(
             metavar="S", help="Of a page: when the time starts again.", show_default=False
         ),
     ] = None,
+    look: LookOption = None,
     title: Annotated[
         str | None, typer.Option(help="Of a page: what it is called.", show_default=False)
     ] = None,
@@ -104,7 +106,7 @@ def export(
     options: ExportOptions = {"view": view or "color", "time": read_time(at)}
     options.update(cast("ExportOptions", dict(given.values())))
     _check(scene, output, target, {flag: name for flag, (name, _) in given.items()})
-    _write(scene, output, target, assignments or [], options)
+    _write(scene, output, target, assignments or [], look, options)
 
 
 def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str]) -> None:
@@ -137,13 +139,18 @@ def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str
 
 
 def _write(
-    scene: str, output: Path, target: str | None, assignments: list[str], options: ExportOptions
+    scene: str,
+    output: Path,
+    target: str | None,
+    assignments: list[str],
+    look: str | None,
+    options: ExportOptions,
 ) -> None:
     from distal.export.registry import export as write
     from distal.scene.viewing.viewable import viewable
 
     obj, values = load_picture(scene, assignments)
-    seen = viewable(obj, values, options["time"])
+    seen = viewable(obj, values, options["time"], look)
     for name in (options["view"], *(options.get("views") or ())):
         check_view(seen, name)
     options["params"] = values

@@ -19,6 +19,7 @@ from distal.cli.base import (
     AdapterOption,
     Device,
     DeviceOption,
+    LookOption,
     SamplesOption,
     SceneArgument,
     SetOption,
@@ -102,6 +103,7 @@ def render(
     tone_map: Annotated[
         str | None, typer.Option(help="none, reinhard, aces, agx or neutral.", show_default=False)
     ] = None,
+    look: LookOption = None,
     bits: Annotated[
         int | None,
         typer.Option(help="Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR."),
@@ -135,7 +137,7 @@ def render(
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
     obj, values = load_picture(scene, assignments)
-    seen = viewable(obj, values, seconds)
+    seen = viewable(obj, values, seconds, look)
     wanted = read_layers(layers, suffix, seen, arguments.view)
     check_shown(seen, arguments, wanted)
     loaded = time.perf_counter()

@@ -16,6 +16,7 @@ from distal.cli.base import (
     AdapterOption,
     Device,
     DeviceOption,
+    LookOption,
     SceneArgument,
     SetOption,
     SizeOption,
@@ -44,6 +45,7 @@ def view(
         typer.Option(min=0.05, max=4.0, help="Rendered pixels for each of the window's, a side."),
     ] = 1.0,
     paused: Annotated[bool, typer.Option("--paused", help="Begin with the time paused.")] = False,
+    look: LookOption = None,
 ) -> None:
     """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
@@ -62,7 +64,14 @@ def view(
             device=chosen_device(device, adapter),
         )
         code, ended = show(
-            obj, path, name, options, first_view=first_view, scale=scale, paused=paused
+            obj,
+            path,
+            name,
+            options,
+            first_view=first_view,
+            scale=scale,
+            paused=paused,
+            look=look,
         )
     except ValueError as error:
         raise UsageError(str(error)) from None

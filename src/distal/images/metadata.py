@@ -57,6 +57,7 @@ class Provenance:
         steering: The movement of the camera: yaw, pitch, zoom, pan x and y; None if not moved.
         stage: The parameters and the time for which the default scene of a single shape was made;
             None for a scene.
+        look: The given look; None if the scene's own was used.
         layers: The layers that were rendered with it.
         freeze: Whether the scene's numbers were compiled as constants.
         device: The device that rendered it.
@@ -78,6 +79,7 @@ class Provenance:
     tone_map: str | None = None
     steering: tuple[float, ...] | None = None
     stage: tuple[Mapping[str, Any], float] | None = None
+    look: str | None = None
     layers: tuple[str, ...] = ()
     freeze: bool = False
     device: str = ""
@@ -114,6 +116,8 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
     if origin.stage is not None:
         values, time = origin.stage
         found["distal:stage"] = json.dumps([dict(values), float(time)], sort_keys=True)
+    if origin.look is not None:
+        found["distal:look"] = origin.look
     if origin.layers:
         found["distal:layers"] = ",".join(origin.layers)
     if origin.freeze:
@@ -156,6 +160,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             tone_map=found.get("distal:tone-map"),
             steering=None if steering is None else _numbers(steering, 5),
             stage=None if stage is None else _pair(stage, _values),
+            look=found.get("distal:look"),
             layers=tuple(filter(None, found.get("distal:layers", "").split(","))),
             freeze=_flag(found.get("distal:freeze", "false")),
             device=found.get("distal:device", ""),

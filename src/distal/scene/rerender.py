@@ -169,7 +169,7 @@ def rerender(
 
 
 def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Picture:
-    seen = viewable(obj, *(origin.stage or ({}, 0.0)))
+    seen = viewable(obj, *(origin.stage or ({}, 0.0)), origin.look)
     if seen.scene is None:
         return seen.render(options, view=origin.view)
     scene = seen.scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)

@@ -192,6 +192,7 @@ class Scene(Composed, Presentable):
         made = cls.__new__(cls)
         made.__dict__.update(staged=(params, time), place=shape.node.place)
         cls.__init__(made, shape, look=look, name=shape.name)
+        made.__dict__["asked_display"] = {} if look is None else {"look": look}
         copy_loaded_from(shape, made)
         return made
 

@@ -53,11 +53,13 @@ class SceneSource:
         path: The path for ``distal.load``.
         name: The name of the object in the file; None for the default.
         files: The file and the modules that it imported.
+        look: The name of a look to show it in; None for its own.
     """
 
     path: str
     name: str | None
     files: tuple[Path, ...]
+    look: str | None = None
 
     @property
     def title(self) -> str:
@@ -272,7 +274,7 @@ class Application:
         shot, renderer = session.shot(time.monotonic()), self._scheduler.renderer
 
         def job(_: object) -> ReloadedScene:
-            return load_again(source.path, source.name, shot, renderer)
+            return load_again(source.path, source.name, shot, renderer, source.look)
 
         self._worker.submit(job, self._loaded)
         self.wake()

@@ -29,6 +29,7 @@ def view(
     first_view: str = "color",
     scale: float = 1.0,
     paused: bool = False,
+    look: str | None = None,
 ) -> tuple[int, bool]:
     """Show a loaded object until the window is closed.
 
@@ -41,6 +42,7 @@ def view(
         first_view: The initial view.
         scale: Rendered pixels per pixel of the window, along each side.
         paused: Whether the time is paused at the start.
+        look: The name of a look to show it in; None for its own.
 
     Returns:
         The exit code, 0 or 130, and whether the worker has ended: a running compilation cannot
@@ -53,8 +55,8 @@ def view(
     """
     check_display()
     known = loaded_from(obj)
-    origin = SceneSource(path, name, known.files if known is not None else ())
-    shown = viewable(obj, options.params, options.time)
+    origin = SceneSource(path, name, known.files if known is not None else (), look)
+    shown = viewable(obj, options.params, options.time, look)
     if first_view not in shown.views:
         raise ValueError(f"there is no view '{first_view:.40}'; views: {', '.join(shown.views)}")
     canvas = open_canvas(options.size, f"{origin.title} - distal")

@@ -88,7 +88,9 @@ class ReloadedScene:
     files: tuple[Path, ...]
 
 
-def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) -> ReloadedScene:
+def load_again(
+    path: str, name: str | None, shot: Shot, maker: FrameRenderer, look: str | None = None
+) -> ReloadedScene:
     """Load a scene again and compile it for the current shot.
 
     Args:
@@ -96,6 +98,7 @@ def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) ->
         name: The name of the object in the file; None for the default.
         shot: The current shot.
         maker: Compiles and renders the frames.
+        look: The name of a look to show it in; None for its own.
 
     Raises:
         LoadError, CompileError: There is a mistake; the scene that was loaded before still works.
@@ -105,7 +108,7 @@ def load_again(path: str, name: str | None, shot: Shot, maker: FrameRenderer) ->
     origin = loaded_from(obj)
     assert origin is not None, "it was loaded just now"
     values = valid_values(obj.parameters(), dict(shot.parameters))
-    shown = viewable(obj, values, shot.time)
+    shown = viewable(obj, values, shot.time, look)
     view = shot.view if shot.view in shown.views else shown.views[0]
     parameters = tuple(sorted(values.items()))
     steering = (shot.steering or STILL) if shown.steers else None

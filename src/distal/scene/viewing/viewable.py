@@ -136,7 +136,8 @@ class Viewable:
             picture = executor().render(image, replace(options, settings=settings))
         numbers = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
-        return picture.with_provenance(view=view, steering=numbers, stage=staged)
+        asked = {} if self.scene is None else self.scene.asked_display
+        return picture.with_provenance(view=view, steering=numbers, stage=staged, **asked)
 
     def _has(self, view: str) -> bool:
         try:
@@ -167,22 +168,33 @@ def view_label(view: str) -> str:
     return label[:1].upper() + label[1:]
 
 
-def viewable(obj: Any, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Viewable:
+def viewable(
+    obj: Any,
+    params: Mapping[str, Any] | None = None,
+    time: float = 0.0,
+    look: str | None = None,
+) -> Viewable:
     """Return the common interface of a scene, a shape or an ``@image``.
 
     Args:
         obj: The object to show; a ``Viewable`` is returned unchanged.
         params: Values of parameters by name, for the framing of a single shape.
         time: Time in seconds, for the framing of a single shape.
+        look: The name of a look that a scene or shape is shown in; None for its own.
 
     Raises:
-        LoadError: The object is not a picture.
+        LoadError: The object is not a picture, or an ``@image``, which has no look.
+        ValueError: There is no such look.
     """
     if isinstance(obj, Viewable):
         return obj
     picture = checked_picture(obj)
     if isinstance(picture, BaseShape):
-        return Viewable(picture.name, stage(picture, params, time))
+        return Viewable(picture.name, stage(picture, params, time, look))
+    if isinstance(picture, Scene):
+        return Viewable(picture.name, picture.in_look(look))
+    if look is not None:
+        raise LoadError(f"looks are for scenes and shapes; '{picture.name}' is an @image")
     return Viewable(picture.name, picture)
 
 
