@@ -1,20 +1,19 @@
-"""A sitting bunny of ellipsoids and capsules that melt into each other, under two lamps.
+"""A sitting bunny of ellipsoids and capsules that melt into each other, on a sunny meadow.
 
 Turn the camera and change the weight. Try: softness 0 shows the separate pieces.
 After the bunny of a graphics blog, whose mouse turned the camera and changed the weight.
 """
 
 from distal import (
-    AmbientLight,
     CapsuleBetween,
     Ellipsoid,
     OrbitCamera,
-    PointLight,
     RoundConeBetween,
     Scene,
     Sphere,
     gradient,
     matte,
+    outdoor,
     plastic,
 )
 from distal.lang import slider
@@ -27,7 +26,7 @@ BROWN = matte("#c19a76")
 FUR = matte(gradient("#f6ecdf", "#bd946e", start=(0.3, 0.0, 0.0), end=(0.05, 0.8, 0.0)))
 PINK = matte("#e09a94")
 WHITE = matte("#f6efe4")
-GRASS = "#7c9c58"
+GRASS = "#5f8048"
 
 fat = weight - 1.0
 
@@ -62,13 +61,9 @@ meadow = Sphere(25.0).translate(y=-25.0).paint(matte(GRASS)).named("meadow")
 
 scene = Scene(
     bunny | meadow,
-    lights=[
-        AmbientLight(0.55, color="#cfe0ff"),
-        PointLight((2.5, 4.0, 3.0), intensity=17.0, color="#fff0d8", radius=0.4),
-        PointLight((-3.0, 2.5, 1.5), intensity=5.0, color="#bcd4ff", radius=0.4),
-    ],
+    look=outdoor(light_azimuth=-0.8, light_elevation=0.5, light_intensity=2.0, horizon="#dbe6ea"),
+    floor=False,
     camera=OrbitCamera(5.2, azimuth=turn, elevation=0.2, target=(0.0, 1.0, 0.0), fov_deg=32.0),
-    background="#bcd8ea",
     ambient_occlusion=0.35,
-    tone_map="aces",
+    fog_density=0.012,
 )

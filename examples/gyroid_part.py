@@ -10,9 +10,7 @@ from distal import (
     Box,
     Camera,
     Cylinder,
-    DistantLight,
     Gyroid,
-    HemisphereLight,
     Plane,
     RoundBox,
     RoundedCylinder,
@@ -53,16 +51,8 @@ part = (skin.paint(PAINT) - cut) | (filling & body).paint(INSIDE)
 part = (part | bushings.paint(PAINT)) - holes.cut_material(STEEL)
 
 scene = Scene(
-    part.named("bracket") | Plane(y=-1.2).paint("#d9d6cf"),
-    lights=[
-        DistantLight((-0.5, 1.0, 0.8), intensity=0.9, color="#fff1dc", angle=0.12),
-        DistantLight((1.0, 0.35, 0.3), intensity=0.25, color="#a8c8ff", angle=0.2),
-        HemisphereLight(sky=(0.9, 0.95, 1.0), ground=(0.5, 0.47, 0.44), intensity=0.38),
-    ],
+    part.named("bracket") | Plane(y=-1.2).paint("#a9a8a6"),
     camera=Camera((2.6, 1.9, 5.4), target=(0.0, -0.15, 0.0), fov_deg=36.0),
-    background="#e9e6df",
     ambient_occlusion=0.35,
-    tone_map="aces",
-    exposure=1.25,
     bounces=2,
 )

@@ -130,7 +130,8 @@ def test_in_even_light_nothing_white_is_seen(kind):
 
 def test_white_in_is_white_out_to_the_last_bit():
     floor = Plane(y=0.0).paint("#ffffff")
-    scene = Scene(floor, lights=[AmbientLight(1.0)], camera=Camera((0, 2, 3)), background="#ffffff")
+    lights, camera = [AmbientLight(1.0)], Camera((0, 2, 3))
+    scene = Scene(floor, lights, camera, background="#ffffff", tone_map="none")
     picture = scene.render(size=(32, 24))
     assert np.all(picture.linear[..., :3] == 1.0)
     assert np.all(picture.array >= 1.0 - 2.0**-23)
@@ -145,13 +146,15 @@ def test_a_color_comes_out_as_it_was_written(code):
         lights=[AmbientLight(1.0)],
         camera=Camera((0, 2, 3)),
         background=code,
+        tone_map="none",
     )
     pixels = scene.render(size=(16, 16)).array[..., :3] * 255.0
     assert np.abs(pixels - wanted).max() < 0.01
 
 
 def test_exposure_is_a_factor_on_light_before_it_is_shown():
-    scene = Scene(FLOOR, lights=[AmbientLight(0.1)], camera=Camera((0, 2, 3)), exposure=2.0)
+    lights, camera = [AmbientLight(0.1)], Camera((0, 2, 3))
+    scene = Scene(FLOOR, lights, camera, exposure=2.0, tone_map="none")
     picture = scene.render(size=(16, 16))
     shown = 1.055 * 0.2 ** (1 / 2.4) - 0.055
     assert picture.array[-1, 8, :3] == pytest.approx([shown] * 3, abs=1e-3)
