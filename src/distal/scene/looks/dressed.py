@@ -170,7 +170,6 @@ class Dressed:
         return NEAR if self._own_camera is not None else self._dressing.near
 
 
-
 def _is_painted(root: Node) -> bool:
     return any(node.material is not None for node in root.walk())
 
