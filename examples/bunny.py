@@ -61,7 +61,7 @@ meadow = Sphere(25.0).translate(y=-25.0).paint(matte(GRASS)).named("meadow")
 
 scene = Scene(
     bunny | meadow,
-    look=outdoor(light_azimuth=-0.8, light_elevation=0.5, light_intensity=2.0, horizon="#dbe6ea"),
+    look=outdoor(light_azimuth=-0.8, light_elevation=0.5, horizon="#a9c9e4"),
     floor=False,
     camera=OrbitCamera(5.2, azimuth=turn, elevation=0.2, target=(0.0, 1.0, 0.0), fov_deg=32.0),
     ambient_occlusion=0.35,

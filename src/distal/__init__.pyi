@@ -210,7 +210,7 @@ def studio(
     exposure: Number = 1.0,
     light_azimuth: Number = -1.01,
     light_elevation: Number = 0.8,
-    light_intensity: Number = 2.1,
+    light_intensity: Number = 1.9,
     light_color: Color = ...,
     light_angle: Number = 0.26,
     rim_azimuth: Number = 2.44,

@@ -36,7 +36,7 @@ ROWS: Final[dict[str, LookRow]] = {
             "exposure": 1.0,
             "light_azimuth": -1.01,
             "light_elevation": 0.80,
-            "light_intensity": 2.1,
+            "light_intensity": 1.9,
             "light_color": (1.0, 0.955, 0.89),
             "light_angle": 0.26,
             "rim_azimuth": 2.44,
