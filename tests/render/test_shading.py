@@ -1,4 +1,4 @@
-"""Occlusion, soft shadows, fog, skies and highlights where their answer is a formula.
+"""Soft shadows, fog, skies and highlights where their answer is a formula.
 
 One place for what the present estimators promise: each test states the formula in its words and
 computes it in NumPy. Scene functions are asked by the reference, which compiles nothing.
@@ -27,72 +27,6 @@ UP = (0.0, 1.0, 0.0)
 def asked(function: Any, *args: Any) -> Any:
     """A scene function's values by the reference."""
     return executor().call(function, args, {}, device="reference")
-
-
-# Ambient occlusion: five distances along the normal, from a twentieth of the reach to all of it,
-# evenly; what each lacks counts 0.6 times as much as the one before; 1.2 of the sum, in units of
-# the reach, is dark.
-
-SHARES = np.array([0.05, 0.2875, 0.525, 0.7625, 1.0])
-WEIGHTS = 1.2 * np.array([1.0, 0.6, 0.36, 0.216, 0.1296])
-
-
-def open_share(reach: float, distance: Any) -> float:
-    """What is left open where the field at height h is ``distance(h)``."""
-    heights = reach * SHARES
-    lacking = np.maximum(heights - [distance(h) for h in heights], 0.0)
-    return float(np.clip(1.0 - (WEIGHTS * lacking).sum() / reach, 0.0, 1.0))
-
-
-@func
-def occlusion_in_a_corner(at: vec3, reach: float) -> float:
-    """On a floor, ``at.x`` from a wall, ``at.y`` below a ceiling."""
-    return shade.ambient_occlusion(
-        lambda p: min(p.y, min(p.x, at.y - p.y)),
-        vec3(at.x, 0.0, 0.0),
-        vec3(0.0, 1.0, 0.0),
-        reach,
-        1.0,
-    )
-
-
-@func
-def occlusion_of_a_share(at: vec2, reach: float, divisor: float) -> float:
-    """Where the field grows by ``at.x`` for each unit of height, off by ``at.y``."""
-    return shade.ambient_occlusion(
-        lambda p: at.x * p.y + at.y, vec3(0.3, 0.0, -0.2), vec3(0.0, 1.0, 0.0), reach, divisor
-    )
-
-
-@pytest.mark.parametrize("reach", [0.4, 1.7])
-def test_a_wall_and_a_ceiling_hide_what_they_take_of_the_heights(reach):
-    places = np.array([[x, y, 0.0] for x in (0.02, 0.1, 0.35, 0.8, 3) for y in (0.3, 0.7, 2, 9)])
-    places = places * [reach, reach, 1.0]
-    found = asked(occlusion_in_a_corner, places, reach)
-    expected = [open_share(reach, lambda h, p=p: min_of(h, p[0], p[1] - h)) for p in places]
-    assert found == pytest.approx(expected, abs=1e-6)
-    assert expected[-1] == 1.0, "far from all walls nothing is hidden"
-    assert sum(0.05 < share < 0.95 for share in expected) >= 8
-
-
-def min_of(*values: float) -> float:
-    return float(np.min(values))
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.8, 1.0, 1.5])
-def test_a_field_that_grows_slower_than_the_height_hides_in_proportion(share):
-    """Each height lacks (1 - share) of itself: the sum is a number of the tap's own."""
-    hidden = (1.0 - share) * float(WEIGHTS @ SHARES)
-    expected = min_of(np.clip(1.0 - hidden, 0.0, 1.0), 1.0)
-    for reach in (0.4, 2.0):
-        found = asked(occlusion_of_a_share, np.array([[share, 0.0]]), reach, 1.0)
-        assert found[0] == pytest.approx(expected, abs=1e-6)
-
-
-def test_deep_inside_nothing_is_left_and_a_steep_field_is_divided():
-    assert asked(occlusion_of_a_share, np.array([[0.0, -1.0]]), 0.5, 1.0)[0] == 0.0
-    steep = asked(occlusion_of_a_share, np.array([[3.0, 0.0]]), 0.5, 4.0)[0]
-    assert steep == pytest.approx(asked(occlusion_of_a_share, np.array([[0.75, 0.0]]), 0.5, 1.0)[0])
 
 
 # Soft shadows: the closest approach to the ray, in radii of the light as wide as it is there, is s;
@@ -343,7 +277,7 @@ def unit(*v: float) -> Any:
 @pytest.mark.parametrize("roughness", [0.2, 0.6, 1.0])
 def test_a_highlight_is_the_microfacet_formula(roughness, widened):
     """D G2 / (4 cos cos) cos pi by Trowbridge, Reitz and Smith, as Heitz (2014) writes them."""
-    alpha = min_of(roughness**2 + 0.5 * widened, 1.0)
+    alpha = float(np.minimum(roughness**2 + 0.5 * widened, 1.0))
     n = np.array(UP)
     for view, light in (
         (unit(0.3, 1.0, 0.2), unit(-0.5, 0.8, 0.1)),
@@ -401,12 +335,21 @@ def lit(weights: vec3, occlusion: float, shadow_steps: int) -> vec3:
     )
 
 
+@func
+def occlusion_beside_a_wall(distance: float, reach: float) -> float:
+    """On a floor, by ``test_occlusion``, as high above it as rays start."""
+    above = vec3(distance, trace.ray_offset(March(1.0, 0.0, 50.0, 1e-4), 4.5, False), 0.0)
+    return shade.ambient_occlusion(
+        lambda p: min(p.y, p.x), above, vec3(0.0, 1.0, 0.0), reach, 1.0
+    )
+
+
 def test_direct_light_is_the_sum_of_its_parts():
     """0.5 scattered, 0.3 mirrored at a roughness of 0.4, with what is around occluded."""
     light = 2.0 * np.array([1.0, 0.5, 0.25])
     emission = np.array([0.01, 0.02, 0.03])
     around = 0.5 * np.array([0.1, 0.3, 0.1]) + 0.3 * 0.4 * np.array([0.1, 0.26, 0.1])
-    hidden = open_share(1.0, lambda h: min_of(h + 1e-3, 0.3))
+    hidden = occlusion_beside_a_wall(0.3, 1.0)
     toward = (0.6, 0.8, 0.0)
     gloss = shine(toward, toward, 0.4, 0.0)
     for occlusion, share in ((0.0, 1.0), (1.0, hidden)):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
-from distal.lang import Field3, exp, func, reflect, refract, vec3, vec4
+from distal.lang import Field3, abs, dot, exp, func, reflect, refract, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
@@ -18,7 +18,7 @@ from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
 from distal.render.shade import Look, direct_light, fogged
-from distal.render.trace import ray_offset, surface_point
+from distal.render.trace import at_surface, ray_offset, surface_point, way_off
 
 # Alpha of a ray that starts inside a solid and does not leave it.
 ALL_INSIDE = -1.0
@@ -45,6 +45,7 @@ def seen_plain(
     normal_step: float = 1e-3,
     hybrid: bool = False,
     cone: Cone = THIN,
+    steep: bool = False,
 ) -> vec4:
     """Return the direct light at the first surface.
 
@@ -66,6 +67,7 @@ def seen_plain(
         normal_step: Step of the normals' differences, in scene units at distance 1.
         hybrid: Whether the march for terrain and water finds the hits; a constant.
         cone: The cone of the ray.
+        steep: Whether values of the field may be less than distances; a constant.
 
     Returns:
         Linear light; alpha is 1 on a surface, 0 if there is none, ``ALL_INSIDE`` if the ray does
@@ -76,8 +78,9 @@ def seen_plain(
         return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
     point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
     color = direct_light(
-        ray, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps, hybrid
-    )
+        ray, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
+        hybrid, steep, cone.sample, cone.samples,
+    )  # fmt: skip
     return vec4(fogged(color, point.t, fog(ray.direction), look.fog_density), 1.0)
 
 
@@ -101,6 +104,7 @@ def seen_mirrored(
     normal_step: float = 1e-3,
     hybrid: bool = False,
     cone: Cone = THIN,
+    steep: bool = False,
 ) -> vec4:
     """As ``seen_plain``, with mirrors: one ray continues, at most ``bounces`` times."""
     color = vec3(0.0)
@@ -123,7 +127,7 @@ def seen_mirrored(
         point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
         light = direct_light(
             here, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
-            hybrid,
+            hybrid, steep, cone.sample, cone.samples,
         )  # fmt: skip
         color += throughput * fogged(light, point.t, fog(direction), look.fog_density)
         clear = exp(-look.fog_density * point.t)
@@ -142,6 +146,7 @@ def seen_mirrored(
 def seen_refracted(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
+    next_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3, Footprint], Surface],
     lights: Callable[[int, vec3], LightSample],
@@ -157,13 +162,20 @@ def seen_refracted(
     normals: int = EXACT,
     normal_step: float = 1e-3,
     cone: Cone = THIN,
+    steep: bool = False,
 ) -> vec4:
-    """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue."""
+    """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue.
+
+    Both start on the surface itself and know their side of it, so that a pane may be as thin as a
+    few rounding errors of its distance. ``next_hit`` is the first surface along a ray that starts
+    on a surface; the other arguments are those of ``seen_mirrored``.
+    """
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
     widths = [cone.width] * STACK
     depths = [0] * STACK
+    ways = [0.0] * STACK  # how far a ray has already come from the surface on which it starts
     insides = [True] * STACK  # whether a ray may start inside a solid; the camera's ray may
     waiting = 1
     color = vec3(0.0)
@@ -174,10 +186,10 @@ def seen_refracted(
         waiting -= 1
         direction = directions[waiting]
         throughput = throughputs[waiting]
-        width = Cone(widths[waiting], cone.spread)
+        width = Cone(widths[waiting], cone.spread, cone.sample, cone.samples)
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
-        hit = first_hit(here)
+        hit = first_hit(here) if depth == 0 else next_hit(here)
         if hit.side < 0.0 and not insides[waiting]:
             continue  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
@@ -187,12 +199,13 @@ def seen_refracted(
             continue
         alpha = 1.0
         point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
+        exact = at_surface(field, here, hit, numbers)
         if point.inside:
-            throughput = throughput * exp(-point.surface.absorption * point.t)
+            throughput = throughput * exp(-point.surface.absorption * (exact + ways[waiting]))
         else:
             light = direct_light(
                 here, point, field, lights, ambient, bounds, numbers, look, light_count,
-                shadow_steps, False,
+                shadow_steps, False, steep, cone.sample, cone.samples,
             )  # fmt: skip
             color += throughput * fogged(light, point.t, fog(direction), look.fog_density)
             throughput = throughput * exp(-look.fog_density * point.t)
@@ -203,21 +216,22 @@ def seen_refracted(
         bent = refract(direction, point.n, eta)
         mirror_share = throughput * point.shares.mirrored * (1.0 - point.surface.roughness)
         through_share = throughput * point.shares.transmitted
-        offset = ray_offset(numbers, hit.t, False)
-        if brightest(mirror_share) >= DIMMEST and waiting < STACK:
-            origins[waiting] = point.p + offset * point.n
-            directions[waiting] = reflect(direction, point.n)
-            throughputs[waiting] = mirror_share
-            widths[waiting] = continued(width, point.t).width
-            depths[waiting] = depth + 1
-            insides[waiting] = point.inside
-            waiting += 1
-        if brightest(through_share) >= DIMMEST and waiting < STACK:
-            origins[waiting] = point.p - offset * point.n
-            directions[waiting] = bent
-            throughputs[waiting] = through_share
-            widths[waiting] = continued(width, point.t).width
-            depths[waiting] = depth + 1
-            insides[waiting] = not point.inside
-            waiting += 1
+        place = here.origin + exact * direction
+        side = -1.0 if point.inside else 1.0
+        for kind in range(2):
+            through = kind == 1
+            share = through_share if through else mirror_share
+            onward = bent if through else reflect(direction, point.n)
+            if brightest(share) >= DIMMEST and waiting < STACK:
+                slope = point.slope * abs(dot(onward, point.n))
+                goes = -side if through else side
+                way = way_off(field, Ray(place, onward), goes, slope, exact)
+                origins[waiting] = place + way * onward
+                ways[waiting] = way
+                directions[waiting] = onward
+                throughputs[waiting] = share
+                widths[waiting] = continued(width, point.t).width
+                depths[waiting] = depth + 1
+                insides[waiting] = point.inside != through
+                waiting += 1
     return vec4(color, alpha)

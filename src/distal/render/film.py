@@ -151,7 +151,8 @@ def gathered(
     for i in range(max(samples, 1)):
         place = coord + sample_offset(i, row, samples)
         row = select(row + step >= samples, row + step - samples, row + step)
-        seen = radiance(camera((2.0 * place - resolution) / resolution.y), spread)
+        part = Cone(spread.width, spread.spread, i, samples)
+        seen = radiance(camera((2.0 * place - resolution) / resolution.y), part)
         weight = max(seen.w, 0.0) if transparent else select(seen.w < 0.0, 0.0, 1.0)
         total += vec4(seen.xyz * weight, weight)
     return total

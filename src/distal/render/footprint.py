@@ -41,10 +41,14 @@ class Cone:
     Attributes:
         width: The width at the origin of the ray, in scene units.
         spread: The growth of the width per unit of distance.
+        sample: The number of the sample in the pixel, from 0: each has its own ray to a wide light.
+        samples: How many samples the pixel has.
     """
 
     width: float
     spread: float
+    sample: int = 0
+    samples: int = 1
 
 
 @struct
@@ -101,7 +105,7 @@ def pixel_cone(camera: Callable[[vec2], Ray], uv: vec2, size: float) -> Cone:
 @func
 def continued(cone: Cone, t: float) -> Cone:
     """Return the cone of a ray that continues at distance ``t``, mirrored or refracted."""
-    return Cone(cone.width + cone.spread * t, cone.spread)
+    return Cone(cone.width + cone.spread * t, cone.spread, cone.sample, cone.samples)
 
 
 @func

@@ -38,12 +38,15 @@ class March:
         far: Distance along the ray where rays end.
         threshold: Largest distance to the surface of a hit, as a fraction of the distance along
             the ray.
+        steepest: The largest number by which the field already divides one of its parts (a safe
+            field); 1 for other fields.
     """
 
     divisor: float
     near: float
     far: float
     threshold: float
+    steepest: float = 1.0
 
 
 @struct
@@ -119,12 +122,16 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
             step = free
         else:
             # A hit depends on the value, not on the safe step: where the field is steep, the
-            # safe step is small far away from the surface too.
-            error = value / max(t, 1e-3)
+            # safe step is small far away from the surface too. A value that a safe field has
+            # divided counts as the distance along the ray at which the last two values predict
+            # the surface, but not as more than the undivided value.
+            remaining = clamp(step / max(free - d, 1e-9), 1.0, numbers.steepest)
+            error = value * remaining / max(t, 1e-3)
             if error < best:
                 best = error
                 best_t = t
-            if error < numbers.threshold:
+            # A ray that leaves the surface on which it starts has not hit it.
+            if error < numbers.threshold and (d < free or value <= 0.0):
                 found = True
                 # Go to where the line through the last two values is 0.
                 beyond = d * step / max(free - d, 1e-9)

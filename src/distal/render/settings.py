@@ -22,7 +22,9 @@ FAR_DISTANCES = 40.0
 
 
 @func
-def march_numbers(divisor: float, near: float, far: float, resolution: vec2) -> March:
+def march_numbers(
+    divisor: float, near: float, far: float, resolution: vec2, steepest: float = 1.0
+) -> March:
     """Return the parameters of a march.
 
     The threshold is a third of a pixel of a usual lens, but not below 32-bit precision.
@@ -32,8 +34,10 @@ def march_numbers(divisor: float, near: float, far: float, resolution: vec2) -> 
         near: Distance along the ray where rays begin.
         far: Distance along the ray where rays end.
         resolution: Size of the picture in pixels.
+        steepest: The largest number by which the field already divides one of its parts.
     """
-    return March(max(divisor, 1.0), near, far, clamp(0.25 / resolution.y, 1e-4, 1e-3))
+    threshold = clamp(0.25 / resolution.y, 1e-4, 1e-3)
+    return March(max(divisor, 1.0), near, far, threshold, max(steepest, 1.0))
 
 
 @func

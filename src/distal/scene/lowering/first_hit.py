@@ -104,10 +104,11 @@ class FirstHit:
         """
         planes, others = split_planes(self._root)
         if hybrid or not planes:
-            return self._bound(trace.first_surface, given, {"field": self._field(self._root)})
+            field = self._field(self._root) if hybrid else self._safe_field(self._root)
+            return self._bound(trace.first_surface, given, {"field": field})
         values = {**given, **self._without_planes(body, others)}
         functions = {
-            "field": self._field(united(self._root, others)) if others else self._nothing(),
+            "field": self._safe_field(united(self._root, others)) if others else self._nothing(),
             "planes": self._field(united(self._root, planes)),
             "nearest_plane": self._nearest_plane(planes),
         }
@@ -115,6 +116,9 @@ class FirstHit:
 
     def _field(self, node: Node) -> FunctionRef:
         return self._composer.field(node, self._composer.values.all(node), ZERO_CELL)
+
+    def _safe_field(self, node: Node) -> FunctionRef:
+        return self._composer.safe_field(node, self._composer.values.all(node), ZERO_CELL)
 
     def _nothing(self) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:

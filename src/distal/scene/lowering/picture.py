@@ -178,10 +178,14 @@ class SceneLowering:
         composer, scene, node = self.composer, self._scene, self._node
         values = composer.values.all(node)
         bounds_of_scene = composer.bounds.of(body, node, values)
+        # The hybrid march searches the crossing of the author's field itself.
+        own = self._hybrid or composer.parts.has_safe_values(node)
         given: dict[str, Expr] = {
             **self._numbers,
             "resolution": resolution,
-            "divisor": bounds_of_scene.divisor,
+            "divisor": bounds_of_scene.divisor if own else number(1.0),
+            "steepest": number(1.0) if own else bounds_of_scene.divisor,
+            "steep": boolean(not composer.parts.has_safe_values(node)),
             "slope": bounds_of_scene.slope,
             "field": composer.field(node, values, ZERO_CELL),
             "surface": self.surface(),
@@ -209,6 +213,10 @@ class SceneLowering:
         given["look"] = body.let("look", composer.call(settings.look, given))
         first_hit = FirstHit(composer, node, self._function)
         given["first_hit"] = first_hit.function(body, given, hybrid=self._hybrid)
+        if scene.renderer == "refracted":
+            on_surface = {**given, "near": number(0.0)}
+            on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
+            given["next_hit"] = first_hit.function(body, on_surface, hybrid=self._hybrid)
         return given
 
     @property
@@ -252,6 +260,9 @@ class SceneLowering:
             asked = {**self.given(body, given["resolution"], steered=steered), **given}
             if shown in RENDERERS.values():
                 asked["surface"] = self.surface(averaged=True)
+            if shown in RENDERERS.values() and not self._hybrid:
+                values = self.composer.values.all(self._node)
+                asked["field"] = self.composer.safe_field(self._node, values, ZERO_CELL)
             if shown is views.view_slice:
                 asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
                 asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)

@@ -3,6 +3,12 @@
 Input: nodes. Output: calls of the field library's functions, bound by parameter name. Floats become
 uniforms. A subtree that occurs several times, even with other numbers, becomes one function that
 takes its numbers as parameters. Materials are lowered by ``attributes``.
+
+There are two functions of a tree. The *field* is the author's: its values are shown, probed and
+compared. The *safe field* has the same zero set, and its values are never more than the distance to
+it: each part of a hard union is divided by the part's own divisor, so that a steep part does not
+shorten the steps near the others. Rays are marched through the safe field. Both are the same
+function if no part needs a divisor.
 """
 
 from __future__ import annotations
@@ -12,6 +18,7 @@ from typing import Any, Final
 
 from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Operator, Primitive
 from distal.frontend import Assembly
+from distal.ir.build import builtin, divide, multiply
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, Expr, FunctionRef, Param, Read, Return
@@ -19,12 +26,14 @@ from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
+from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 
 # The cell outside of any repetition.
 ZERO_CELL: Final = constant_number(0.0, VEC3)
+ONE: Final = constant_number(1.0)
 
 
 class ShapeComposer:
@@ -35,9 +44,10 @@ class ShapeComposer:
         self.call = assembly.call
         self.values = Values(assembly)
         self.bounds = BoundsComposer(self.values)
+        self.parts = SafeParts()
         self._keys: dict[int, int] = {}
         self._known_keys: dict[Any, int] = {}
-        self._functions: dict[tuple[int, str, int | None], str] = {}
+        self._functions: dict[tuple[int, str, int | None, bool], str] = {}
         self._uses_cell: dict[int, bool] = {}
         self._count: dict[int, int] = {}
         self._kinds: dict[int, set[int]] = {}
@@ -90,8 +100,42 @@ class ShapeComposer:
         point = VEC2 if node.flat else VEC3
         return FunctionRef(name, captures, FunctionType((point,), FLOAT))
 
+    def safe_field(self, node: Node, values: Sequence[Expr], cell: Expr) -> FunctionRef:
+        """Return a subtree's safe field, as a function of the point alone.
+
+        Args:
+            node: The root of the subtree, which is closed: its numbers are uniforms.
+            values: The numbers of the subtree.
+            cell: The index of the repetition.
+        """
+        if self.parts.has_safe_values(node):
+            return self.field(node, values, cell)
+        name, captures = self._function(node, values, cell, safe=True)
+        point = VEC2 if node.flat else VEC3
+        return FunctionRef(name, captures, FunctionType((point,), FLOAT))
+
+    def _factors(
+        self, body: StatementList, node: Node, values: Sequence[Expr]
+    ) -> tuple[Expr, ...]:
+        """Return the factors of a subtree's safe field: one for each part with its own divisor."""
+        if self.parts.has_safe_values(node):
+            return ()
+        if not self.parts.splits(node):
+            divisor = self.bounds.of(body, node, values).divisor
+            safe = body.let("divisor", builtin("max", divisor, ONE))
+            return (body.let("factor", divide(ONE, safe)),)
+        _, shares = self.values.split(node, values)
+        pairs = zip(node.children, shares, strict=True)
+        return tuple(f for child, share in pairs for f in self._factors(body, child, share))
+
     def _function(
-        self, node: Node, values: Sequence[Expr], cell: Expr
+        self,
+        node: Node,
+        values: Sequence[Expr],
+        cell: Expr,
+        *,
+        safe: bool = False,
+        factors: Sequence[Expr] = (),
     ) -> tuple[str, tuple[Expr, ...]]:
         """Return the function of a subtree: its name, and the arguments to pass besides the point.
 
@@ -100,27 +144,43 @@ class ShapeComposer:
         key = self.key(node)
         closed = len(self._kinds.get(key, ())) <= 1 and tuple(values) == self.values.all(node)
         passed = () if closed else tuple(values)
+        if safe and not closed and not factors:
+            closed = True  # the root of a safe field computes its factors itself
+            passed = ()
         uses_cell = self.uses_cell(node)
-        whole = (key, node.label, id(node) if closed else None)
+        whole = (key, node.label, id(node) if closed else None, safe)
         if whole not in self._functions:
-            self._functions[whole] = self._define(node, passed, uses_cell)
+            self._functions[whole] = self._define(node, passed, uses_cell, safe=safe)
+        passed = (*passed, *factors) if passed else ()
         return self._functions[whole], ((*passed, cell) if uses_cell else passed)
 
-    def _define(self, node: Node, passed: tuple[Expr, ...], uses_cell: bool) -> str:
+    def _define(self, node: Node, passed: tuple[Expr, ...], uses_cell: bool, *, safe: bool) -> str:
         point = VEC2 if node.flat else VEC3
         names = fresh_names(node) if passed else []
         params = [Param(n, v.type) for n, v in zip(names, passed, strict=True)]
         values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
-        body = StatementList(taken={"p", "cell", *names})
+        extra = self.parts.factor_names(node, names) if safe and passed else []
+        params += [Param(n, FLOAT) for n in extra]
+        body = StatementList(taken={"p", "cell", *names, *extra})
         cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
-        result = self._emit(body, node, Read("p", point), cell, values)
+        factors: Sequence[Expr] | None = None
+        if safe:
+            given = tuple(Read(n, FLOAT) for n in extra)
+            factors = given if passed else self._factors(body, node, values)
+        result = self._emit(body, node, Read("p", point), cell, values, factors)
         body.statements.append(Return(result))
         params = [Param("p", point), *params, *([Param("cell", VEC3)] if uses_cell else [])]
-        stem = f"{plain_name(node.name)}_distance"
+        stem = f"{plain_name(node.name)}_{'safe_distance' if safe else 'distance'}"
         return self.assembly.define(stem, params, FLOAT, body.statements, node.place)
 
     def distance(
-        self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+        self,
+        body: StatementList,
+        node: Node,
+        p: Expr,
+        cell: Expr,
+        values: Sequence[Expr],
+        factors: Sequence[Expr] | None = None,
     ) -> Expr:
         """Return a subtree's distance at a point.
 
@@ -130,16 +190,43 @@ class ShapeComposer:
             p: The point.
             cell: The index of the repetition.
             values: The numbers of the subtree.
+            factors: The factors of its safe field; None or empty for the field itself.
         """
         shared = self._count.get(self.key(node), 0) > 1 and len(node.children) > 0
         if not shared and not node.label:
-            return self._emit(body, node, p, cell, values)
-        name, passed = self._function(node, values, cell)
+            return self._emit(body, node, p, cell, values, factors)
+        if factors and not self.parts.splits(node):
+            return self._scaled(body, node, p, cell, values, factors)
+        name, passed = self._function(
+            node, values, cell, safe=bool(factors), factors=factors or ()
+        )
         return body.let("d", Call(name, (p, *passed), FLOAT))
 
-    def _emit(
-        self, body: StatementList, node: Node, p: Expr, cell: Expr, values: Sequence[Expr]
+    def _scaled(
+        self,
+        body: StatementList,
+        node: Node,
+        p: Expr,
+        cell: Expr,
+        values: Sequence[Expr],
+        factors: Sequence[Expr],
     ) -> Expr:
+        """Return the distance of a part with its own divisor, times its factor."""
+        (factor,) = factors
+        d = self.distance(body, node, p, cell, values)
+        return body.let("d", multiply(d, factor))
+
+    def _emit(
+        self,
+        body: StatementList,
+        node: Node,
+        p: Expr,
+        cell: Expr,
+        values: Sequence[Expr],
+        factors: Sequence[Expr] | None = None,
+    ) -> Expr:
+        if factors and not self.parts.splits(node):
+            return self._scaled(body, node, p, cell, values, factors)
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -154,9 +241,10 @@ class ShapeComposer:
             given["field"] = self.field(node.children[0], shares[0], cell)
             return body.let("d", self.call(rule.around, given))
         inner_p, inner_cell = self.moved(body, rule, given)
+        of_children = self.parts.shared_out(node, factors)
         parts = [
-            self.distance(body, child, inner_p, inner_cell, share)
-            for child, share in zip(node.children, shares, strict=True)
+            self.distance(body, child, inner_p, inner_cell, share, own)
+            for child, share, own in zip(node.children, shares, of_children, strict=True)
         ]
         result = parts[0]
         if rule.combine is not None:
