@@ -136,7 +136,9 @@ def ball(p: vec3) -> float:
 
 
 def test_a_safer_slope_does_not_change_occlusion():
-    pictures = [rendered(Plane(y=0.0) | Shape.from_function(ball, slope=k)) for k in (1.0, 3.0, 10.0)]
+    pictures = [
+        rendered(Plane(y=0.0) | Shape.from_function(ball, slope=k)) for k in (1.0, 3.0, 10.0)
+    ]
     for safer in pictures[1:]:
         error = np.abs(safer - pictures[0])
         assert np.percentile(error, 98.0) < 0.01

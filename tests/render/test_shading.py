@@ -339,9 +339,7 @@ def lit(weights: vec3, occlusion: float, shadow_steps: int) -> vec3:
 def occlusion_beside_a_wall(distance: float, reach: float) -> float:
     """On a floor, by ``test_occlusion``, as high above it as rays start."""
     above = vec3(distance, trace.ray_offset(March(1.0, 0.0, 50.0, 1e-4), 4.5, False), 0.0)
-    return shade.ambient_occlusion(
-        lambda p: min(p.y, p.x), above, vec3(0.0, 1.0, 0.0), reach, 1.0
-    )
+    return shade.ambient_occlusion(lambda p: min(p.y, p.x), above, vec3(0.0, 1.0, 0.0), reach, 1.0)
 
 
 def test_direct_light_is_the_sum_of_its_parts():

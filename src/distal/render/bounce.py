@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.guarantees import Bounds
-from distal.lang import Field3, abs, dot, exp, func, reflect, refract, vec3, vec4
+from distal.lang import Field3, abs, dot, exp, func, reflect, refract, select, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
+from distal.render.lost_rays import SHADOWS, marked, reason
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
@@ -24,6 +25,14 @@ from distal.render.trace import at_surface, ray_offset, surface_point, way_off
 ALL_INSIDE = -1.0
 STACK = 12
 DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display are not followed
+
+
+@func
+def _marked(alpha: float, lost: int, counted: bool) -> float:
+    """Return an alpha that carries why rays were lost, if they are counted."""
+    if counted:
+        return marked(alpha, lost)
+    return alpha
 
 
 @func
@@ -46,6 +55,7 @@ def seen_plain(
     hybrid: bool = False,
     cone: Cone = THIN,
     steep: bool = False,
+    counted: bool = False,
 ) -> vec4:
     """Return the direct light at the first surface.
 
@@ -68,20 +78,25 @@ def seen_plain(
         hybrid: Whether the march for terrain and water finds the hits; a constant.
         cone: The cone of the ray.
         steep: Whether values of the field may be less than distances; a constant.
+        counted: Whether alpha is marked with why rays were lost (``lost_rays``); a constant.
 
     Returns:
         Linear light; alpha is 1 on a surface, 0 if there is none, ``ALL_INSIDE`` if the ray does
         not leave a solid.
     """
     hit = first_hit(ray)
+    lost = reason(hit.lost)
     if not hit.found:
-        return vec4(background(ray.direction), ALL_INSIDE if hit.side < 0.0 else 0.0)
+        alpha = ALL_INSIDE if hit.side < 0.0 else 0.0
+        return vec4(background(ray.direction), _marked(alpha, lost, counted))
     point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
-    color = direct_light(
+    light = direct_light(
         ray, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
         hybrid, steep, cone.sample, cone.samples,
     )  # fmt: skip
-    return vec4(fogged(color, point.t, fog(ray.direction), look.fog_density), 1.0)
+    lost |= select(light.lost, SHADOWS, 0)
+    color = fogged(light.color, point.t, fog(ray.direction), look.fog_density)
+    return vec4(color, _marked(1.0, lost, counted))
 
 
 @func
@@ -105,17 +120,20 @@ def seen_mirrored(
     hybrid: bool = False,
     cone: Cone = THIN,
     steep: bool = False,
+    counted: bool = False,
 ) -> vec4:
     """As ``seen_plain``, with mirrors: one ray continues, at most ``bounces`` times."""
     color = vec3(0.0)
     throughput = vec3(1.0)
     alpha = 0.0
+    lost = 0
     origin = ray.origin
     direction = ray.direction
     width = cone
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
         hit = first_hit(here)
+        lost |= reason(hit.lost)
         if hit.side < 0.0 and alpha > 0.0:
             break  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
@@ -129,7 +147,8 @@ def seen_mirrored(
             here, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
             hybrid, steep, cone.sample, cone.samples,
         )  # fmt: skip
-        color += throughput * fogged(light, point.t, fog(direction), look.fog_density)
+        lost |= select(light.lost, SHADOWS, 0)
+        color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
         clear = exp(-look.fog_density * point.t)
         throughput = throughput * point.shares.mirrored * ((1.0 - point.surface.roughness) * clear)
         if brightest(throughput) < DIMMEST:
@@ -139,7 +158,7 @@ def seen_mirrored(
         origin = point.p + ray_offset(numbers, hit.t, False) * point.n
         direction = reflect(direction, point.n)
         width = continued(width, point.t)
-    return vec4(color, alpha)
+    return vec4(color, _marked(alpha, lost, counted))
 
 
 @func
@@ -163,6 +182,7 @@ def seen_refracted(
     normal_step: float = 1e-3,
     cone: Cone = THIN,
     steep: bool = False,
+    counted: bool = False,
 ) -> vec4:
     """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue.
 
@@ -180,6 +200,7 @@ def seen_refracted(
     waiting = 1
     color = vec3(0.0)
     alpha = 0.0
+    lost = 0
     for _ in range(4 * bounces + 4):
         if waiting == 0:
             break
@@ -190,6 +211,7 @@ def seen_refracted(
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
         hit = first_hit(here) if depth == 0 else next_hit(here)
+        lost |= reason(hit.lost)
         if hit.side < 0.0 and not insides[waiting]:
             continue  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
@@ -207,7 +229,8 @@ def seen_refracted(
                 here, point, field, lights, ambient, bounds, numbers, look, light_count,
                 shadow_steps, False, steep, cone.sample, cone.samples,
             )  # fmt: skip
-            color += throughput * fogged(light, point.t, fog(direction), look.fog_density)
+            lost |= select(light.lost, SHADOWS, 0)
+            color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
             throughput = throughput * exp(-look.fog_density * point.t)
         if depth >= bounces:
             continue
@@ -234,4 +257,4 @@ def seen_refracted(
                 depths[waiting] = depth + 1
                 insides[waiting] = point.inside != through
                 waiting += 1
-    return vec4(color, alpha)
+    return vec4(color, _marked(alpha, lost, counted))

@@ -24,6 +24,7 @@ from distal.lang import (
     select,
     sign,
     sqrt,
+    struct,
     vec2,
     vec3,
     vec4,
@@ -31,6 +32,7 @@ from distal.lang import (
 from distal.lang.srgb import decode_srgb, encode_srgb
 from distal.render.camera import Ray
 from distal.render.footprint import Cone
+from distal.render.lost_rays import marked, unmarked
 
 GOLDEN = 0.6180339887
 # Adaptive sampling: a pixel whose contrast is larger gets so many samples besides the first one.
@@ -117,6 +119,19 @@ def sample_offset(column: int, row: int, count: int) -> vec2:
     return vec2(tent(across), tent(along))
 
 
+@struct
+class Gathered:
+    """The sum of a pixel's samples.
+
+    Attributes:
+        light: Linear light, weighted by alpha; the sum of the weights in w.
+        lost: Why rays were lost; see ``lost_rays``.
+    """
+
+    light: vec4
+    lost: int
+
+
 @func
 def gathered(
     coord: vec2,
@@ -127,8 +142,9 @@ def gathered(
     samples: int,
     step: int,
     transparent: bool,
-) -> vec4:
-    """Return the sum of a pixel's samples, weighted by alpha; the sum of the weights in w.
+    counted: bool = False,
+) -> Gathered:
+    """Return the sum of a pixel's samples.
 
     Alpha is 1 unless ``transparent``, except for rays that start inside a solid and do not leave
     it.
@@ -142,20 +158,27 @@ def gathered(
         samples: Number of samples.
         step: ``lattice_step`` of this number.
         transparent: Whether alpha is 0 where a ray hits nothing.
+        counted: Whether alpha is marked with why rays were lost; a constant.
     """
     pixel = 2.0 / resolution.y
     # Each sample stands for a part of the pixel.
     spread = cone(pixel * (coord - 0.5 * resolution), pixel * inversesqrt(float(max(samples, 1))))
     total = vec4(0.0)
+    lost = 0
     row = 0
     for i in range(max(samples, 1)):
         place = coord + sample_offset(i, row, samples)
         row = select(row + step >= samples, row + step - samples, row + step)
         part = Cone(spread.width, spread.spread, i, samples)
         seen = radiance(camera((2.0 * place - resolution) / resolution.y), part)
-        weight = max(seen.w, 0.0) if transparent else select(seen.w < 0.0, 0.0, 1.0)
+        alpha = seen.w
+        if counted:
+            found = unmarked(seen.w)
+            alpha = found.alpha
+            lost |= found.lost
+        weight = max(alpha, 0.0) if transparent else select(alpha < 0.0, 0.0, 1.0)
         total += vec4(seen.xyz * weight, weight)
-    return total
+    return Gathered(total, lost)
 
 
 @func
@@ -177,13 +200,15 @@ def exposed(
     samples: int,
     step: int,
     transparent: bool,
+    counted: bool = False,
 ) -> vec4:
     """Return linear light and straight alpha of a pixel: the mean of its samples.
 
-    Arguments as for ``gathered``.
+    Arguments as for ``gathered``; if rays are counted, alpha is marked.
     """
-    total = gathered(coord, resolution, camera, radiance, cone, samples, step, transparent)
-    return mean_light(total, samples)
+    sums = gathered(coord, resolution, camera, radiance, cone, samples, step, transparent, counted)
+    mean = mean_light(sums.light, samples)
+    return vec4(mean.xyz, marked(mean.w, sums.lost)) if counted else mean
 
 
 @func
@@ -200,6 +225,7 @@ def exposed_again(
     again: bool,
     places: Buffer[int],
     firsts: Buffer[vec4],
+    counted: bool = False,
 ) -> vec4:
     """Return a pixel of one of the two passes of adaptive sampling.
 
@@ -221,7 +247,8 @@ def exposed_again(
         transparent: Whether alpha is 0 where a ray hits nothing.
         again: Whether this is the second pass.
         places: Index of each pixel in the picture, from the top row on.
-        firsts: Linear light and alpha of the first pass.
+        firsts: Linear light and alpha of the first pass, without marks.
+        counted: As for ``exposed``.
     """
     column = int(coord.x)
     strip = column // STRIP_PX
@@ -230,12 +257,11 @@ def exposed_again(
     place = places[index]
     listed = vec2(float(place % width) + 0.5, resolution.y - 0.5 - float(place // width))
     at = select(again, listed, coord)
-    total = gathered(at, resolution, camera, radiance, cone, samples, step, transparent)
+    sums = gathered(at, resolution, camera, radiance, cone, samples, step, transparent, counted)
     first = firsts[index]
-    known = vec4(first.xyz * first.w, first.w)
-    return mean_light(
-        total + select(again, known, vec4(0.0)), max(samples, 1) + select(again, 1, 0)
-    )
+    known = select(again, vec4(first.xyz * first.w, first.w), vec4(0.0))
+    mean = mean_light(sums.light + known, max(samples, 1) + select(again, 1, 0))
+    return vec4(mean.xyz, marked(mean.w, sums.lost)) if counted else mean
 
 
 @func

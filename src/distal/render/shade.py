@@ -71,6 +71,32 @@ class Look:
     fog_density: float
 
 
+@struct
+class Opening:
+    """What a shadow ray finds.
+
+    Attributes:
+        share: How far a light's disc is from the shadow; or how much of it is visible, 0 to 1.
+        lost: Whether the steps of a ray ran out.
+    """
+
+    share: float
+    lost: bool = False
+
+
+@struct
+class Lit:
+    """The light that a surface sends to the eye.
+
+    Attributes:
+        color: Linear light.
+        lost: Whether the steps of a shadow ray ran out.
+    """
+
+    color: vec3
+    lost: bool = False
+
+
 @func
 def open_share(
     field: Field3,
@@ -81,7 +107,7 @@ def open_share(
     numbers: March,
     steps: int,
     steep: bool,
-) -> float:
+) -> Opening:
     """Return how far the disc of a light is from the shadow, as one ray to its middle finds it.
 
     Args:
@@ -178,11 +204,12 @@ def open_share(
                     # The free ball ends before the ray does: try the longer step at the ray's end.
                     step = last - t
             t += step
+    lost = t <= last and share > -1.0
     if steep and share < 1.0 and share > -1.0:
         # The local gradient makes a distance of a value that is too small.
         p = ray.origin + closest * ray.direction
         share = share / true_slope(length(gradient(field, p)) / numbers.divisor, numbers)
-    return share
+    return Opening(share, lost)
 
 
 @func
@@ -229,7 +256,7 @@ def soft_shadow(
     steep: bool = False,
     sample: int = 0,
     samples: int = 1,
-) -> float:
+) -> Opening:
     """Return the visible fraction of a light: 1 in full light, 0 in full shadow.
 
     Args:
@@ -247,13 +274,13 @@ def soft_shadow(
     whole = max(light.radius, SHARPEST)
     middle = Ray(origin, light.direction)
     if light.radius < NARROW:
-        return share_of_disc(
-            open_share(field, middle, whole, end, bounds, numbers, steps, steep)
-        )
+        only = open_share(field, middle, whole, end, bounds, numbers, steps, steep)
+        return Opening(share_of_disc(only.share), only.lost)
     by_sample = samples >= ENOUGH_SAMPLES
     count = samples if by_sample else rays_to(light.radius)
     part = inversesqrt(float(count))
     total = 0.0
+    lost = False
     # Ray 0 goes to the middle of the whole disc. Only if it crosses something, which hides a part
     # of the disc that one ray does not tell, the others share the disc.
     for k in range(MOST_RAYS + 1):
@@ -264,10 +291,11 @@ def soft_shadow(
         ray = Ray(origin, toward_light(light, max(number, 0), count, spread))
         width = select(number < 0, whole, whole * part)
         found = open_share(field, ray, width, end, bounds, numbers, steps, steep)
-        if number < 0 and found > CROSSED:
-            return share_of_disc(found)
-        total += select(number < 0, 0.0, share_of_disc(found))
-    return total / (1.0 if by_sample else float(count))
+        lost = lost or found.lost
+        if number < 0 and found.share > CROSSED:
+            return Opening(share_of_disc(found.share), lost)
+        total += select(number < 0, 0.0, share_of_disc(found.share))
+    return Opening(total / (1.0 if by_sample else float(count)), lost)
 
 
 @func
@@ -373,7 +401,7 @@ def direct_light(
     steep: bool = False,
     sample: int = 0,
     samples: int = 1,
-) -> vec3:
+) -> Lit:
     """Return the light that a surface emits and scatters from the lights, before fog.
 
     Reflections are not included, except blurred ones: a rough surface mirrors a blurred picture of
@@ -409,16 +437,19 @@ def direct_light(
             field, lifted, n, look.occlusion, slope, flattest, steep
         )
     color = point.surface.emission + around
+    lost = False
     for i in range(light_count):
         light = lights(i, point.p)
         facing = dot(n, light.direction)
         if facing > 0.0:
             shadow = 1.0
             if shadow_steps > 0:
-                shadow = soft_shadow(
+                seen = soft_shadow(
                     field, lifted, light, bounds, numbers, shadow_steps, steep, sample, samples
                 )
+                shadow = seen.share
+                lost = lost or seen.lost
             shine = highlight(point.surface, n, view, light.direction, light.radius)
             scattered = point.shares.diffuse * facing + point.shares.mirrored * shine
             color += light.radiance * shadow * scattered
-    return color
+    return Lit(color, lost)

@@ -29,7 +29,7 @@ from distal.lang import (
 from distal.render.camera import Ray
 from distal.render.footprint import Cone, Footprint, footprint_at
 from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
-from distal.render.march import FORGIVING, Hit, March, march
+from distal.render.march import FORGIVING, PASSED, TOO_FAR, Hit, March, march
 from distal.render.material import Shares, Surface, shares
 from distal.render.normals import EXACT, normal, unit_or_up
 
@@ -144,7 +144,8 @@ def first_surface_or_plane(
     hit = march(nearest, ray, box, limited, steps)
     if hit.found or met >= farthest_plane:
         return hit
-    return Hit(met, True, hit.steps, 1.0, hit.lost)
+    lost = select(hit.lost == TOO_FAR, PASSED, hit.lost)  # the plane ended it, not the far limit
+    return Hit(met, True, hit.steps, 1.0, lost)
 
 
 @func

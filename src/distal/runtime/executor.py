@@ -10,7 +10,7 @@ import threading
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakKeyDictionary
@@ -38,6 +38,7 @@ from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
 from distal.runtime.kernels import KernelCache, automatic_device
+from distal.runtime.lost_rays import LostRays
 from distal.runtime.lowered import Lowered, Types
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
@@ -139,6 +140,7 @@ class PythonExecutor:
                 linear, pixels = pixels, passes.shown(pixels)
         stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
         stats["render_s"] = time.perf_counter() - compiled
+        stats["lost"] = passes.lost.shares
         if contrast is not None:
             stats["samples"] = samples
         known = loaded_from(image)
@@ -274,6 +276,7 @@ class _Passes:
     declared: DeclaredUniforms
     values: tuple[Mapping[str, Any], Mapping[str, Any]]
     options: RenderOptions
+    lost: LostRays = field(default_factory=LostRays)
 
     def light(
         self,
@@ -282,11 +285,14 @@ class _Passes:
         buffers: Mapping[Any, Any],
         progress: Progress | None,
     ) -> NDArray[np.float32]:
-        """Render the first kernel; see ``sampling.Programs``."""
+        """Render the first kernel; see ``sampling.Programs``.
+
+        Linear light of a scene carries marks of lost rays, which are counted and removed.
+        """
         parameters, others = self.values
         changed = {**others, **numbers, "resolution": (float(size[0]), float(size[1]))}
         resources = self.parts[0].resources
-        return self.kernels[0].render(
+        pixels = self.kernels[0].render(
             *size,
             self.declared.for_kernel(0, parameters, changed),
             {name: buffers.get(source, source) for name, source in resources.items()},
@@ -294,6 +300,9 @@ class _Passes:
             progress=progress,
             cancel=self.options.cancel,
         )
+        if len(self.parts) > 1:
+            self.lost.remove_marks(pixels)
+        return pixels
 
     def shown(self, light: NDArray[np.float32]) -> NDArray[np.float32]:
         """Encode linear light for display by the second kernel."""

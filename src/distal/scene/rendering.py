@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from distal.lang.render_options import Progress, RenderOptions
 from distal.lang.runtime_access import executor
-from distal.scene.checks.warnings import check_slopes, shows, warn_of_black, warn_of_functions
+from distal.scene.checks.warnings import (
+    check_slopes,
+    shows,
+    warn_of_black,
+    warn_of_functions,
+    warn_of_lost_rays,
+)
 from distal.scene.lowering.layers import values
 from distal.scene.tree.errors import refuse
 from distal.scene.view_options import ViewOptions
@@ -45,6 +51,7 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     picture = executor().render(image, replace(options, settings=settings, progress=shares[0]))
     if view.view == "color":
         _check_visible(scene, view, picture, options)
+        warn_of_lost_rays(scene, picture.stats["lost"])
     layers = {
         name: _layer(scene, name, view, replace(options, settings=moved, progress=share))
         for name, share in zip(view.layers, shares[1:], strict=True)

@@ -46,6 +46,9 @@ SLACK: Final = 1.05
 # inside, where rays rarely are.
 LOOSE: Final = 1.5
 
+# The largest share of pixels with lost rays that gives no warning.
+MOST_LOST: Final = 1e-3
+
 _looked_at: WeakSet[Node] = WeakSet()
 
 
@@ -147,7 +150,11 @@ def _box(node: Node, params: Mapping[str, Any], time: float) -> tuple[Points, Po
         return np.full(n, -REACH), np.full(n, REACH)
     promised = bounds_of_nodes(node, params, time)[id(node)]
     n = 2 if node.flat else 3
-    return np.array(promised.low[:n]), np.array(promised.high[:n])
+    low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
+    # An infinite side is cut near the origin, or near the opposite side.
+    cut_low = np.where(np.isfinite(low), low, np.minimum(-REACH, high - 2.0 * REACH))
+    cut_high = np.where(np.isfinite(high), high, np.maximum(REACH, low + 2.0 * REACH))
+    return cut_low, cut_high
 
 
 def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
@@ -173,6 +180,31 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
             scene.place,
         )
     _warn("the picture is black: no light comes from what the camera sees", scene)
+
+
+def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
+    """Warn if more than 0.1 % of a picture's pixels have rays that ended without an answer.
+
+    Args:
+        scene: The scene.
+        lost: The share of such pixels, by reason (``runtime.lost_rays``).
+    """
+    found = {why: share for why, share in lost.items() if share > MOST_LOST}
+    if not found:
+        return
+    steps = "their steps" if scene.steps is None else f"their {scene.steps} steps"
+    causes = {
+        "steps": (f"rays used up {steps} before they met a surface", "steps"),
+        "shadow steps": ("rays to a light used up their steps", "steps"),
+        "far": ("rays ended at the far limit on their way to a surface", "far"),
+    }
+    told = "; ".join(f"in {share:.1%} of the pixels {causes[w][0]}" for w, share in found.items())
+    more = []
+    if found.keys() & {"steps", "shadow steps"}:
+        more.append(f"steps={2 * (scene.steps or 160)} or more")
+    if "far" in found:
+        more.append("a larger far, or fog that hides what is far away")
+    _warn(f"{told}: give {' and '.join(more)}", scene)
 
 
 def shows(values: NDArray[np.float32]) -> bool:

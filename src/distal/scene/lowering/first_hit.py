@@ -13,7 +13,7 @@ from typing import Final, TypeAlias
 
 from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
-from distal.ir.build import builtin, cast, multiply
+from distal.ir.build import builtin, cast, integer, multiply
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Const, Expr, FunctionRef
 from distal.ir.types import VEC3, Kind, Type
@@ -28,8 +28,7 @@ from distal.scene.tree.values import StatementList
 # The number of steps of a ray through an exact field; a field that grows faster needs more.
 STEPS: Final = 160
 MOST_STEPS: Final = 4096
-# A shadow ray takes this share of the steps of other rays, and at least this many.
-SHADOW_SHARE: Final = 0.4
+# A shadow ray takes as many steps as other rays, and at least this many.
 LEAST_SHADOW_STEPS: Final = 64
 
 # What the marches take besides the ray and the fields.
@@ -49,8 +48,7 @@ def step_limit(divisor: Expr) -> Expr:
 
 def shadow_step_limit(steps: Expr) -> Expr:
     """Return the number of steps of a shadow ray, given that of other rays."""
-    share = multiply(cast(steps, Kind.FLOAT), constant_number(SHADOW_SHARE))
-    return _whole(builtin("max", share, constant_number(float(LEAST_SHADOW_STEPS))))
+    return fold_expression(builtin("max", steps, integer(LEAST_SHADOW_STEPS)), 32)
 
 
 def _whole(value: Expr) -> Expr:

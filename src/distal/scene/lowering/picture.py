@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 # Methods to compute normals, in the order of ``render.normals``.
 NORMALS: Final = ("exact", "six_taps", "tetrahedron", "forward")
 
+FALSE: Final = boolean(False)
+
 RENDERERS: Final[dict[str, Func]] = {
     "plain": bounce.seen_plain,
     "mirrored": bounce.seen_mirrored,
@@ -111,7 +113,11 @@ class SceneLowering:
             "step": integer(1),
             **again,
         }
-        given["radiance"] = self._radiance(self._shown(view), resolution, steered=steered)
+        # Pictures of linear light carry marks, which the executor counts and removes.
+        given["counted"] = boolean(view == "color" and not encoded)
+        given["radiance"] = self._radiance(
+            self._shown(view), resolution, steered=steered, counted=given["counted"]
+        )
         if sampled or adaptive:
             given["step"] = self.composer.call(film.lattice_step, {"count": samples})
         exposed = film.exposed_again if adaptive else film.exposed
@@ -255,9 +261,12 @@ class SceneLowering:
         """Return the library function that computes a view along a ray."""
         return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
 
-    def _radiance(self, shown: Func, resolution: Expr, *, steered: bool) -> FunctionRef:
+    def _radiance(
+        self, shown: Func, resolution: Expr, *, steered: bool, counted: Expr = FALSE
+    ) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, given["resolution"], steered=steered), **given}
+            asked["counted"] = counted
             if shown in RENDERERS.values():
                 asked["surface"] = self.surface(averaged=True)
             if shown in RENDERERS.values() and not self._hybrid:

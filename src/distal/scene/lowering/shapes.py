@@ -114,9 +114,7 @@ class ShapeComposer:
         point = VEC2 if node.flat else VEC3
         return FunctionRef(name, captures, FunctionType((point,), FLOAT))
 
-    def _factors(
-        self, body: StatementList, node: Node, values: Sequence[Expr]
-    ) -> tuple[Expr, ...]:
+    def _factors(self, body: StatementList, node: Node, values: Sequence[Expr]) -> tuple[Expr, ...]:
         """Return the factors of a subtree's safe field: one for each part with its own divisor."""
         if self.parts.has_safe_values(node):
             return ()
@@ -197,9 +195,7 @@ class ShapeComposer:
             return self._emit(body, node, p, cell, values, factors)
         if factors and not self.parts.splits(node):
             return self._scaled(body, node, p, cell, values, factors)
-        name, passed = self._function(
-            node, values, cell, safe=bool(factors), factors=factors or ()
-        )
+        name, passed = self._function(node, values, cell, safe=bool(factors), factors=factors or ())
         return body.let("d", Call(name, (p, *passed), FLOAT))
 
     def _scaled(

@@ -1,0 +1,49 @@
+"""Rays that end without an answer: marks in a pixel's alpha, so that they can be counted.
+
+Input: alpha, from -1 to 1, and why rays of the pixel were lost. Output: one number that carries
+both. Only pictures of linear light are marked; the executor removes the marks and counts them.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from distal.lang import floor, func, struct
+from distal.render.march import OUT_OF_STEPS, TOO_FAR
+
+# Why rays were lost, as bits.
+STEPS: Final = 1
+FAR: Final = 2
+SHADOWS: Final = 4
+# Alpha is between -1 and 1, so marks that are multiples of 4 can be told from it.
+MARK: Final = 4.0
+LOWEST: Final = 1.5
+
+
+@struct
+class Marked:
+    """An alpha, and why rays were lost: a sum of STEPS, FAR and SHADOWS."""
+
+    alpha: float
+    lost: int
+
+
+@func
+def reason(lost: int) -> int:
+    """Return the bit for the way in which a ray ended (``march.Hit.lost``)."""
+    if lost == OUT_OF_STEPS:
+        return STEPS
+    return FAR if lost == TOO_FAR else 0
+
+
+@func
+def marked(alpha: float, lost: int) -> float:
+    """Return an alpha that carries why rays were lost."""
+    return alpha + MARK * float(lost)
+
+
+@func
+def unmarked(alpha: float) -> Marked:
+    """Return the alpha and the marks of a marked alpha."""
+    lost = floor((alpha + LOWEST) / MARK)
+    return Marked(alpha - MARK * lost, int(lost))

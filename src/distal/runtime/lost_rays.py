@@ -1,0 +1,55 @@
+"""The count of rays that a picture lost.
+
+Input: pixels of linear light whose alpha carries marks (``render.lost_rays``). Output: the same
+pixels without marks, and the shares of pixels with each mark.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.render import lost_rays
+
+# Why rays were lost, by mark.
+REASONS: Final[Mapping[str, int]] = {
+    "steps": lost_rays.STEPS,
+    "far": lost_rays.FAR,
+    "shadow steps": lost_rays.SHADOWS,
+}
+
+
+@dataclass(slots=True)
+class LostRays:
+    """The marks of the pixels that were rendered so far.
+
+    Attributes:
+        pixels: Number of pixels.
+        marks: Number of pixels with each combination of marks.
+    """
+
+    pixels: int = 0
+    marks: NDArray[np.int64] = field(default_factory=lambda: np.zeros(8, np.int64))
+
+    def remove_marks(self, pixels: NDArray[np.float32]) -> None:
+        """Remove the marks from alpha, and count them.
+
+        Args:
+            pixels: Linear light, (height, width, 4); changed in place.
+        """
+        alpha = pixels[..., 3]
+        lost = np.floor((np.nan_to_num(alpha) + lost_rays.LOWEST) / lost_rays.MARK)
+        alpha -= np.float32(lost_rays.MARK) * lost
+        self.marks += np.bincount(lost.astype(np.int64).ravel() & 7, minlength=8)
+        self.pixels += lost.size
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """The share of pixels with a lost ray, by reason; those that occur."""
+        kinds = np.arange(8)
+        counts = {why: int(self.marks[kinds & bit > 0].sum()) for why, bit in REASONS.items()}
+        return {why: count / max(self.pixels, 1) for why, count in counts.items() if count}
