@@ -157,7 +157,7 @@ def _flat(shape: Any, size_px: int) -> tuple[Any, float]:
         for i in range(9):
             at = frame.coord + vec2(float(i % 3) - 1.0, float(i // 3) - 1.0) / 3.0
             p = middle + reach * (2.0 * at - frame.resolution) / across
-            color += vec4(isolines(shape(p), 0.1), 1.0) / 9.0
+            color += vec4(isolines(shape(p), 2.0 * reach / across, 0.1, 1.0), 1.0) / 9.0
         return color
 
     picture = lines.render(size=(size_px, size_px))

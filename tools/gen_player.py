@@ -1,8 +1,10 @@
 """Write the parts of the page's player whose one definition is Python: ``web/src/generated/``.
 
-The rules of camera movement (``distal/scene/viewing/interaction.py``), sRGB's curve
-(``distal/lang/srgb.py``), the key bindings (``distal/scene/viewing/key_bindings.py``) and the names
-of what guides a camera (``distal/render/guide.py``) are translated to TypeScript. Run it after any change of these, then build the player; a test fails when
+The rules of camera movement (``distal/scene/viewing/interaction.py``), the range of a view's values
+(``distal/scene/packed_values.py``), sRGB's curve (``distal/lang/srgb.py``), the key bindings
+(``distal/scene/viewing/key_bindings.py``) and the names of what guides a camera
+(``distal/render/guide.py``) are translated to TypeScript. Run it after any change of these, then
+build the player; a test fails when
 it was forgotten.
 """
 
@@ -177,6 +179,8 @@ class Translator:
         match node:
             case ast.Name(name) if name in TYPES:
                 return TYPES[name]
+            case ast.Subscript(ast.Name("Sequence"), element):
+                return f"readonly {self.type(element)}[]"
             case ast.BinOp(left, ast.BitOr(), ast.Constant(None)):
                 return f"{self.type(left)} | null"
             case _:
@@ -203,6 +207,14 @@ def interaction() -> str:
     functions = [made.function(f) for f in made.tree.body if isinstance(f, ast.FunctionDef)]
     head = NOTE.format(path) + '\nimport { fixed, precise } from "../numbers";\n'
     return "\n".join([head, made.constants(), *functions])
+
+
+def packed_values() -> str:
+    """The range of a view's values."""
+    path = "scene/packed_values.py"
+    made = Translator(path)
+    functions = [made.function(f) for f in made.tree.body if isinstance(f, ast.FunctionDef)]
+    return "\n".join([NOTE.format(path), made.constants(), *functions])
 
 
 def srgb() -> str:
@@ -255,6 +267,7 @@ def guide() -> str:
 
 FILES = {
     "interaction.ts": interaction,
+    "packed_values.ts": packed_values,
     "srgb.ts": srgb,
     "bindings.ts": bindings,
     "guide.ts": guide,

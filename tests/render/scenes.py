@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from distal.fields.guarantees import Bounds
-from distal.lang import Frame, exp, func, image, length, min, sin, vec2, vec3, vec4
+from distal.lang import Frame, exp, func, image, ivec4, length, min, sin, vec2, vec3, vec4
 from distal.render import (
     bounce,
     heightfield_march,
     legend,
+    lettering,
     march,
     material,
     patterns,
@@ -175,8 +176,39 @@ def first_wave(ray: Ray) -> march.Hit:
     return heightfield_march.march_heightfield(sea, ray, everywhere(), sea_numbers(), stride, 64)
 
 
+COST = ivec4(*lettering.word("steps"))
+LEGEND_SIZE = vec2(320.0, 240.0)
+SLICE = vec3(0.0, 0.6, 0.8)
+
+
+@func
+def sliced_ray(uv: vec2) -> Ray:
+    return look_at(uv, vec3(0.3, 0.5, 5.0), vec3(0.0, 0.3, 0.0), fov=0.8)
+
+
 @image
 def cost(frame: Frame) -> vec4:
     """The steps of the hybrid march, under a legend."""
     seen = views.view_steps(sea_ray(frame), first_wave, 64)
-    return legend.with_legend(seen, frame.coord, frame.resolution, 64)
+    return legend.with_steps(seen, frame.coord, LEGEND_SIZE, COST, 64)
+
+
+@image
+def sliced(frame: Frame) -> vec4:
+    """Lines of equal distance with labels and a legend."""
+    lines = views.lines_on(sliced_ray, frame.resolution, SLICE, 0.0)
+    uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
+    seen = views.view_slice(sliced_ray(uv), field, SLICE, 0.0, 60.0, lines)
+    # As in a picture that is large enough for a legend.
+    large = LEGEND_SIZE.y / frame.resolution.y
+    return legend.with_lines(
+        seen,
+        large * frame.coord,
+        large * frame.resolution,
+        COST,
+        sliced_ray,
+        field,
+        SLICE,
+        0.0,
+        views.Lines(lines.spread, lines.step, 1.0),
+    )

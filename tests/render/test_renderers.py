@@ -10,7 +10,7 @@ import pytest
 import distal
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, vec2, vec3
-from distal.render import heightfield_march, legend, march, normals, settings
+from distal.render import heightfield_march, march, normals, settings
 from distal.render.camera import Ray
 from tests.pictures.comparison import difference
 from tests.render import scenes
@@ -20,6 +20,7 @@ IMAGES = {
     "mirrored": scenes.mirrored,
     "refracted": scenes.refracted,
     "cost": scenes.cost,
+    "sliced": scenes.sliced,
 }
 SIZE = (96, 64)
 
@@ -219,15 +220,3 @@ def test_wgsl_draws_the_cpus_picture(name, target, on_the_cpu):
         pytest.skip(str(error))
     found = difference(drawn, on_the_cpu[name])
     assert found.is_agreement, found
-
-
-@pytest.mark.parametrize(("number", "shown"), [(0, "0"), (7, "7"), (96, "96"), (1234, "1234")])
-def test_a_legends_numbers_have_the_squares_of_their_digits(number, shown):
-    @func
-    def covers(place: vec2) -> bool:
-        return legend.number_covers(number, place)
-
-    x, y = np.meshgrid(np.arange(-20, 4) + 0.5, np.arange(-2, 8) + 0.5)
-    found = np.asarray(covers(np.stack([x.ravel(), y.ravel()], axis=1)))
-    squares = sum(bin(legend.DIGITS[int(digit)]).count("1") for digit in shown)
-    assert found.sum() == squares

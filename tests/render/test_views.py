@@ -11,10 +11,11 @@ import pytest
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, vec2, vec3, vec4
 from distal.lang.runtime_access import executor
-from distal.render import camera, layers, legend, local_views, settings, views
+from distal.render import camera, layers, local_views, settings, views
 from distal.render.camera import Ray
 from distal.render.march import Hit, March, march
 from distal.render.material import Surface
+from distal.render.ranges import Range
 
 AHEAD = (0.0, 0.0, -1.0)
 
@@ -52,6 +53,10 @@ def march_of(divisor: float) -> March:
     return March(divisor, 0.0, 50.0, 1e-5)
 
 
+# One ray for each pixel, parallel to the others, 0.02 apart: a line each 0.5.
+LINES = views.Lines(vec2(0.02, 0.0), 0.5, 1.0)
+
+
 @func
 def ball_hit(ray: Ray) -> Hit:
     return march(ball, ray, everywhere(), march_of(1.0), 100)
@@ -68,11 +73,11 @@ def view_of(name: int, origin: vec3, direction: vec3) -> vec4:
     if name == 0:
         return views.view_normal(ray, ball_hit, ball, march_of(1.0))
     if name == 1:
-        return views.view_depth(ray, ball_hit)
+        return views.view_depth(ray, ball_hit, Range(2.0, 3.5, 5.0))
     if name == 2:
         return views.view_coordinate(ray)
     if name == 3:
-        return views.view_signal(ray, ball_hit)
+        return views.view_signal(ray, ball_hit, Range(2.0, 3.5, 5.0))
     if name == 4:
         return views.view_slope(ray, steep_hit, steep_ball, march_of(2.0), 4.0)
     if name == 5:
@@ -80,9 +85,9 @@ def view_of(name: int, origin: vec3, direction: vec3) -> vec4:
     if name == 6:
         return views.view_material(ray, ball_hit, shiny)
     if name == 7:
-        return views.view_distance(ray, ball)
+        return views.view_distance(ray, ball, vec3(0.6, 0.0, 0.8), 30.0, LINES)
     if name == 8:
-        return views.view_slice(ray, ball, vec3(0.6, 0.0, 0.8), 0.5, 30.0)
+        return views.view_slice(ray, ball, vec3(0.6, 0.0, 0.8), 0.5, 30.0, LINES)
     return views.view_steps(ray, ball_hit, 100)
 
 
@@ -106,16 +111,36 @@ def test_views_show_what_they_say():
     # From inside: toward the eye.
     assert seen("normal", (0.0, 0.6, 0.0))[:3] == pytest.approx([0.5, 0.2, 0.9], abs=1e-4)
     assert seen("coordinate", HIT, (0.48, 0.6, -0.64))[:3] == pytest.approx([0.74, 0.8, 0.18])
-    assert seen("signal", HIT)[:3] == pytest.approx([math.exp(-0.2 * 4.2)] * 3, abs=1e-4)
+    # 4.2 is at 22/30 of the range of 2 to 5, whose middle has no curve.
+    assert seen("signal", HIT)[:3] == pytest.approx([1.0 - 0.9 * 2.2 / 3.0] * 3, abs=1e-4)
     assert seen("material", HIT)[:3] == pytest.approx([srgb(0.5), srgb(0.8), srgb(0.75)], abs=1e-4)
-    assert seen("slope", HIT)[:3] == pytest.approx(asked(views.heat, np.array([0.5]))[0], abs=1e-4)
+    assert seen("slope", HIT)[:3] == pytest.approx(slope_colors(2.0)[0], abs=1e-4)
     assert tuple(seen("too steep", HIT)[:3]) == (1.0, 0.0, 1.0)
 
 
-def test_depth_is_bright_near_and_halves_at_twenty_thirds():
-    near, far = seen("depth", HIT)[0], seen("depth", (0.0, 0.0, 1.0 + 20.0 / 3.0))[0]
-    assert near == pytest.approx(1.0 / (1.0 + 0.15 * 4.2), abs=1e-4)
-    assert far == pytest.approx(0.5, abs=1e-4)
+def slope_colors(*slopes: float) -> Any:
+    return asked(views.slope_color, np.array(slopes))
+
+
+def test_slope_1_is_calm_less_is_blue_more_is_red():
+    """LOOKS.md: the colors and the slopes where they stand."""
+    found = slope_colors(0.2, 1.0, 1.5, 2.5, 9.0)
+    calm, warm, red = (0.80, 0.84, 0.86), (0.96, 0.70, 0.25), (0.78, 0.10, 0.10)
+    expected = [(0.45, 0.62, 0.80), calm, warm, red, red]
+    assert found == pytest.approx(np.array(expected), abs=1e-6)
+    # Between them each channel goes straight from one color to the next.
+    between = slope_colors(1.25, 2.0)
+    assert between[0] == pytest.approx((np.array(calm) + warm) / 2.0, abs=1e-6)
+    assert between[1] == pytest.approx((np.array(warm) + red) / 2.0, abs=1e-6)
+
+
+def test_depth_is_shown_within_its_range():
+    shown = asked(views.depth_color, np.array([2.2 / 3.0]))[0]
+    assert seen("depth", HIT)[:3] == pytest.approx(shown, abs=1e-4)
+    near, middle, far = asked(views.depth_color, np.array([0.0, 0.5, 1.0]))
+    assert near == pytest.approx((0.99, 0.94, 0.78))
+    assert middle == pytest.approx((0.24, 0.62, 0.62))
+    assert far == pytest.approx((0.08, 0.09, 0.26))
 
 
 @pytest.mark.parametrize("view", ["normal", "depth", "slope", "material"])
@@ -128,26 +153,45 @@ def test_a_signal_of_nothing_is_black():
     assert tuple(seen("signal", MISS)) == (0.0, 0.0, 0.0, 1.0)
 
 
-def test_distance_is_shown_on_the_plane_through_the_origin_that_faces_the_camera():
-    origin, way = np.array([0.4, 0.3, 5.0]), np.array([0.48, 0.0, -0.64]) / 0.8
-    t = -(origin @ way)
-    d = float(np.linalg.norm(origin + t * way) - 1.0)
-    assert seen("distance", origin, way)[:3] == pytest.approx(lines_at(d), abs=1e-4)
+def changed(origin: Any, way: Any, offset: float) -> tuple[float, float]:
+    """The ball's distance on the plane, and how much it changes 0.02 beside the ray: measured."""
+    normal, way = np.array([0.6, 0.0, 0.8]), np.asarray(way)
+    side = np.cross(way, [0.0, 0.6, -0.8])
+    side /= np.linalg.norm(side)
+    over = np.cross(way, side)
+
+    def at(moved: Any) -> float:
+        start = np.asarray(origin) + moved
+        t = (offset - start @ normal) / (way @ normal)
+        return float(np.linalg.norm(start + t * way) - 1.0)
+
+    h = 1e-4
+    slopes = [(at(h * axis) - at(-h * axis)) / (2.0 * h) for axis in (side, over)]
+    return at(0.0 * side), 0.02 * math.hypot(*slopes)
 
 
-def test_a_slice_is_shown_where_the_ray_meets_its_plane():
-    """0.6 x + 0.8 z = 0.5, within the far end and before the eye."""
-    d = math.hypot(0.1, 0.6, (0.5 - 0.06) / 0.8) - 1.0
-    found = seen("slice", (0.1, 0.6, 5.0))
-    assert found[:3] == pytest.approx(lines_at(d), abs=1e-4)
+@pytest.mark.parametrize("way", [AHEAD, (0.48, 0.0, -0.64)])
+def test_a_slice_is_shown_where_the_ray_meets_its_plane(way):
+    unit = np.array(way) / np.linalg.norm(way)
+    d, change = changed((0.1, 0.6, 5.0), unit, 0.5)
+    found = seen("slice", (0.1, 0.6, 5.0), unit)
+    assert found[:3] == pytest.approx(lines_at(d, change), abs=1e-4)
     assert found[3] == 1.0
+
+
+def test_distance_is_shown_on_the_plane_through_the_origin():
+    d, change = changed((0.4, 0.3, 5.0), AHEAD, 0.0)
+    assert seen("distance", (0.4, 0.3, 5.0))[:3] == pytest.approx(lines_at(d, change), abs=1e-4)
+
+
+def test_a_slice_ends_before_the_eye_and_at_the_far_end():
     assert seen("slice", (0.1, 0.6, 5.0), (0.0, 0.0, 1.0))[3] == 0.0
-    assert seen("slice", (0.1, 0.6, 35.0))[3] == 0.0
+    assert seen("slice", (0.1, 0.6, 40.0))[3] == 0.0
     assert seen("slice", (0.1, 0.6, 5.0), (0.0, 1.0, 0.0))[3] == 0.0
 
 
-def lines_at(d: float) -> Any:
-    return asked(views.isolines, np.array([d]), 0.1)[0]
+def lines_at(d: float, change: float = 0.02, step: float = 0.5, width: float = 1.0) -> Any:
+    return asked(views.isolines, np.array([d]), change, step, width)[0]
 
 
 def test_views_and_layers_are_called_by_their_names():
@@ -156,17 +200,70 @@ def test_views_and_layers_are_called_by_their_names():
     assert {n: f.__name__ for n, f in known.items()} == {n: f"layer_{n}" for n in known}
 
 
-def test_lines_of_equal_distance_lie_a_spacing_apart():
-    """White at 0; far from there brightest at every spacing and 0.7 of that halfway."""
-    assert lines_at(0.0) == pytest.approx([1.0] * 3)
-    for side in (1.0, -1.0):
-        far = side * 20.0  # where the fade with the distance is over
-        line, between = lines_at(far), lines_at(far + 0.05)
-        assert between == pytest.approx(0.7 * line, abs=1e-3)
-        assert lines_at(far + 0.1) == pytest.approx(line, abs=1e-3)
-        near = lines_at(side * 0.4)
-        assert near == pytest.approx(line * (1.0 - math.exp(-1.2)), abs=1e-3)
-        assert (line[0] > line[2]) == (side > 0.0), "warm outside, cool inside"
+def test_lines_have_a_constant_width_in_pixels():
+    """One pixel wide, every fifth two, that at 0 three, whatever the distance changes by."""
+    across = np.arange(-4.0, 4.0, 1.0 / 64.0)  # pixels
+    for change in (0.01, 0.002):
+
+        def dark_at(level: float, change: float = change) -> Any:
+            d = level + across * change
+            color = asked(views.isolines, d, change, 0.5, 1.0)
+            plain = asked(views.isolines, d, 1e-9, 0.5, 1.0)  # lines of no width
+            plain = np.where(np.abs(across)[:, None] < 0.01, plain[[0]], plain)
+            return 1.0 - (color / plain).mean(1)
+
+        for level in (1.0, -1.5):
+            dark = dark_at(level)
+            assert dark.max() == pytest.approx(0.35, abs=0.01)
+            assert dark.sum() / 64.0 == pytest.approx(0.35 * 1.0, rel=0.03)
+        bold = dark_at(2.5)
+        assert bold.max() == pytest.approx(1.0 - 0.65 * 0.55, abs=0.01)
+        assert (bold > 0.2).sum() / 64.0 == pytest.approx(2.0, abs=0.2)
+        zero = asked(views.isolines, across * change, change, 0.5, 1.0)
+        assert (zero.max(1) < 0.5).sum() / 64.0 == pytest.approx(3.0, abs=0.2)
+        assert zero[256] == pytest.approx([0.05] * 3, abs=1e-3)
+
+
+def test_a_slice_is_warm_outside_and_blue_inside():
+    for d in (0.3, 4.0):
+        outside, inside = lines_at(d), lines_at(-d)
+        assert outside[0] > outside[2]
+        assert inside[0] < inside[2]
+
+
+def test_lines_too_close_to_be_told_apart_are_left_out():
+    d = np.arange(3.9, 4.1, 0.01)
+    far = asked(views.isolines, d, 0.5, 0.01, 1.0)
+    assert np.ptp(far, axis=0).max() == pytest.approx(0.0, abs=1e-6)
+
+
+@func
+def lines_seen(height: float, fov: float) -> vec2:
+    lines = views.lines_on(
+        lambda uv: camera.look_at(uv, vec3(0.0, 0.0, 5.0), vec3(0.0), vec3(0.0, 1.0, 0.0), fov),
+        vec2(1.5 * height, height),
+        vec3(0.0, 0.0, 1.0),
+        1.0,
+    )
+    return vec2(lines.step, lines.width)
+
+
+@pytest.mark.parametrize(("height", "fov"), [(240.0, 0.7), (480.0, 0.1), (2160.0, 1.2)])
+def test_lines_are_about_twenty_pixels_apart_in_round_steps(height, fov):
+    """At the plane, 4 away: within the ratio of two neighboring round steps."""
+    step, width = (float(x) for x in asked(lines_seen, height, fov))
+    pixel = 2.0 * 4.0 * math.tan(0.5 * fov) / height
+    scale = max(height / 480.0, 1.0)
+    assert width == pytest.approx(scale)
+    assert 20.0 / 1.6 < step / pixel / scale < 20.0 * 1.6
+    part = step / 10.0 ** math.floor(math.log10(step) + 1e-6)
+    assert min(abs(part - n) for n in (1.0, 2.0, 5.0)) < 1e-4
+
+
+def test_round_steps_are_the_nearest_by_ratio():
+    given = np.array([1.0, 1.4, 1.42, 3.1, 3.2, 7.0, 7.1, 0.0099, 0.001, 1000.0, 3e-5])
+    expected = [1.0, 1.0, 2.0, 2.0, 5.0, 5.0, 10.0, 0.01, 0.001, 1000.0, 2e-5]
+    assert asked(views.round_step, given) == pytest.approx(np.array(expected), rel=1e-5)
 
 
 def test_heat_goes_from_dark_blue_over_green_to_red():
@@ -186,58 +283,6 @@ def test_steps_are_shown_of_the_most_allowed():
     """A ray that misses everything at once takes one step of 100."""
     found = seen("steps", (0.0, 60.0, 5.0))[:3]
     assert found == pytest.approx(asked(views.heat, np.array([0.01]))[0], abs=1e-5)
-
-
-# Legends
-
-
-@func
-def legend_at(coord: vec2, most: int) -> vec4:
-    return legend.with_legend(vec4(0.2, 0.4, 0.6, 0.5), coord, vec2(400.0, 240.0), most)
-
-
-def test_a_legend_is_a_bar_under_numbers_along_the_lower_edge():
-    """A unit is a 120th of the shorter side: 2 pixels. The bar is 8 high, 8 from the rim."""
-    x = np.array([8.5, 104.0, 200.0, 391.0])
-    bar = asked(legend_at, np.stack([x, np.full(4, 11.0)], axis=1), 96)
-    assert bar[:, :3] == pytest.approx(asked(views.heat, (x - 8.0) / 384.0), abs=1e-5)
-    beside = np.array([(7.5, 11.0), (392.5, 11.0), (200.0, 7.5), (200.0, 32.5), (200.0, 100.0)])
-    assert asked(legend_at, beside, 96) == pytest.approx(np.tile([0.2, 0.4, 0.6, 0.5], (5, 1)))
-    rows, columns = np.mgrid[0:33, 0:400] + 0.5
-    places = np.stack([columns.ravel(), rows.ravel()], axis=1)
-    ink = (asked(legend_at, places, 96)[:, :3] > 0.99).all(1).reshape(33, 400)
-    # A digit is 3 by 5 squares of 2 pixels, 4 above the bar; "0" has 12 squares inked.
-    assert ink[:20].sum() == 0
-    assert ink[20:30, :200].sum() == 12 * 4
-    assert ink[20:30, 8:16].sum() == 12 * 4, "the 0 stands at the bar's left end"
-    right = ink[20:30, 200:]
-    assert right.sum() == 4 * sum(bin(legend.DIGITS[d]).count("1") for d in (9, 6))
-    assert right[:, -8:].sum() == 0
-    assert right[:, -24:].sum() == right.sum(), "96 ends where the bar does"
-
-
-def test_digits_look_as_they_are_drawn_here():
-    """Rows from the top, three squares each."""
-    full, left, right = "###", "#..", "..#"
-    sides = "#.#"
-    drawn = [
-        [full, sides, sides, sides, full],
-        [".#.", "##.", ".#.", ".#.", "###"],
-        [full, right, full, left, full],
-        [full, right, ".##", right, full],
-        [sides, sides, full, right, right],
-        [full, left, full, right, full],
-        [full, left, full, sides, full],
-        [full, right, right, right, right],
-        [full, sides, full, sides, full],
-        [full, sides, full, right, full],
-    ]
-    x, y = np.meshgrid(np.arange(3), np.arange(4, -1, -1))
-    squares = np.stack([x.ravel(), y.ravel()], axis=1).astype(float)
-    for digit, rows in enumerate(drawn):
-        found = asked(legend.digit_covers, digit, squares)
-        text = "".join("#" if square else "." for square in found)
-        assert [text[i : i + 3] for i in range(0, 15, 3)] == rows, digit
 
 
 # The numbers of a march

@@ -47,8 +47,10 @@ def test_a_shape_stands_on_a_stage():
 
 
 def test_an_image_has_the_views_that_it_can_show():
-    assert viewable(plain).views == ("color", "coordinate")
-    assert viewable(moving).views == ("color", "coordinate", "signal")
+    assert viewable(plain).views == ("color", "coordinate", "signal")
+    views = viewable(moving).views
+    assert views[:3] == ("color", "coordinate", "signal")
+    assert all(view.startswith("local:") for view in views[3:])
     assert not viewable(moving).steers
     assert viewable(moving).settings(Steering(yaw=1.0)) == {}
 

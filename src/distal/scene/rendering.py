@@ -21,6 +21,7 @@ from distal.scene.checks.warnings import (
 from distal.scene.lowering.layers import values
 from distal.scene.tree.errors import refuse
 from distal.scene.view_options import ViewOptions
+from distal.scene.view_ranges import with_range
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
@@ -48,7 +49,8 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
         view.view, options.samples, transparent=view.transparent, steered=steered
     )
     settings = {**sampled, **sliced, **moved}
-    picture = executor().render(image, replace(options, settings=settings, progress=shares[0]))
+    asked = with_range(image, replace(options, settings=settings, progress=shares[0]))
+    picture = executor().render(image, asked)
     if view.view == "color":
         _check_visible(scene, view, picture, options)
         warn_of_lost_rays(scene, picture.stats["lost"])

@@ -25,7 +25,7 @@ from distal.scene.looks.dressed import Dressed, GivenArguments
 from distal.scene.looks.rows import as_look
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer
-from distal.scene.lowering.picture import NORMALS, SceneLowering
+from distal.scene.lowering.picture import NORMALS, RANGED, SceneLowering
 from distal.scene.scene_arguments import checked_exposure, checked_numbers, one_of, whole
 from distal.scene.steering import Steering
 from distal.scene.tree.source_places import author_place
@@ -432,6 +432,7 @@ class View(Composed):
         self._steered = steered
         self.adaptive = adaptive
         self.display = scene.display if view == "color" and not encoded else None
+        self.ranged = view in RANGED
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function that maps the frame to a pixel, and return its name."""

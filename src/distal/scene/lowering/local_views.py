@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Final
 
 from distal.frontend import Assembly, lower
 from distal.frontend.signatures.signatures import read_signature
-from distal.ir.build import boolean, cast, field, number
+from distal.ir.build import boolean, cast, field, number, swizzle
 from distal.ir.nodes import (
     Assign,
     Call,
@@ -28,20 +28,35 @@ from distal.ir.nodes import (
     Stmt,
     Var,
 )
-from distal.ir.types import BOOL, FLOAT, FRAME, INT, UINT, VEC2, VEC3, VEC4, Kind, Type
+from distal.ir.types import (
+    BOOL,
+    FLOAT,
+    FRAME,
+    INT,
+    IVEC4,
+    UINT,
+    VEC2,
+    VEC3,
+    VEC4,
+    Kind,
+    Struct,
+    Type,
+)
 from distal.ir.walk import expressions, map_statement, nodes_in, root_of, statements_in
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.loading import copy_loaded_from
+from distal.render import lettering, ranges
 from distal.render import local_views as library
+from distal.scene.lowering.picture import RANGE
 
 PREFIX: Final = "local:"
 VIEWS: Final = ("coordinate", "signal")
 _NUMBERS: Final = (FLOAT, INT, UINT, BOOL)
 SHOWN: Final[Mapping[Type, Func]] = {
-    **dict.fromkeys(_NUMBERS, library.shown_number),
-    VEC2: library.shown_coordinate,
-    VEC3: library.shown_vector,
+    **dict.fromkeys(_NUMBERS, library.local_number),
+    VEC2: library.local_coordinate,
+    VEC3: library.local_direction,
 }
 
 
@@ -50,14 +65,24 @@ class Local:
     """A local variable of an image's function that can be shown.
 
     Attributes:
-        name: The name that the author wrote; a second local of the same name ends in ``_2``.
+        name: The name that the author wrote; a second local of the same name ends in ``_2``. A
+            field of a struct has the names of both: "hit.distance".
         type: The type, one that can be shown.
         varies: Whether the value differs from pixel to pixel.
+        of: The name of the local itself.
     """
 
     name: str
     type: Type
     varies: bool
+    of: str
+
+    def read(self, whole: Type) -> Expr:
+        """Return the value, read from the local of type ``whole``."""
+        value: Expr = Read(self.of, whole)
+        for part in self.name.split(".")[1:]:
+            value = field(value, part)
+        return value
 
 
 def view_of_image(image: Image, view: str) -> Composed:
@@ -66,7 +91,8 @@ def view_of_image(image: Image, view: str) -> Composed:
     Args:
         image: An author's image.
         view: "coordinate": the first vec2, or the pixel's own coordinate. "signal": the first
-            number that differs from pixel to pixel. "local:NAME": any local.
+            number that differs from pixel to pixel, or the picture's brightness. "local:NAME":
+            any local.
 
     Raises:
         ValueError: There is no such local; the message lists those that can be shown.
@@ -78,10 +104,7 @@ def view_of_image(image: Image, view: str) -> Composed:
         return LocalView(image, vectors[0]) if vectors else PixelCoordinate(image)
     if view == "signal":
         numbers = [x for x in found if x.type is FLOAT and x.varies]
-        if numbers:
-            return LocalView(image, numbers[0])
-        message = f"'{image.name}' has no number that differs from pixel to pixel"
-        raise ValueError(f"{message}\n{_listed(found)}")
+        return LocalView(image, numbers[0]) if numbers else PictureBrightness(image)
     if not view.startswith(PREFIX):
         known = ", ".join(("color", *VIEWS, f"{PREFIX}NAME"))
         raise ValueError(f"an @image has no view '{view}'; views: {known}\n{_listed(found)}")
@@ -101,9 +124,19 @@ def locals_of(image: Image) -> list[Local]:
     varying = _varying(function)
     found: dict[str, Local] = {}
     for stmt in statements_in(function.body):
-        if isinstance(stmt, Let | Var) and stmt.value.type in SHOWN and _is_own(stmt.name, written):
-            found[stmt.name] = Local(stmt.name, stmt.value.type, stmt.name in varying)
+        if isinstance(stmt, Let | Var) and _is_own(stmt.name, written):
+            for name, type in _parts(stmt.name, stmt.value.type):
+                found[name] = Local(name, type, stmt.name in varying, stmt.name)
     return list(found.values())
+
+
+def _parts(name: str, type: Type) -> Iterator[tuple[str, Type]]:
+    """Yield a local that can be shown, or the fields of a struct that can."""
+    if type in SHOWN:
+        yield name, type
+    elif isinstance(type, Struct):
+        for part, its in type.fields:
+            yield from _parts(f"{name}.{part}", its)
 
 
 def _is_own(name: str, written: set[str]) -> bool:
@@ -147,15 +180,31 @@ class _ImageView(Composed):
     kind: ClassVar[EntryKind] = EntryKind.IMAGE
     signature = (("frame", FRAME),)
     result = VEC4
+    ranged: ClassVar[bool] = True  # shows values in a range (``scene/view_ranges.py``)
 
     def __init__(self, image: Image, what: str) -> None:
         copy_loaded_from(image, self)
         self.name = f"{image.name} ({what})"
         self._image = image
+        self._title = what
 
     def functions(self) -> Iterable[Func]:
         """Yield the scene functions that the image calls."""
         return (self._image,)
+
+    def _shown(self, assembly: Assembly, frame: Read, value: Expr, reached: Expr) -> Expr:
+        """Return a value as a color with a legend."""
+        asked = {f"view_{n}": assembly.number(f"View_{n}", FLOAT, 0.0) for n in RANGE}
+        given = {
+            "value": cast(value, Kind.FLOAT) if value.type in _NUMBERS else value,
+            "whole": boolean(value.type is not FLOAT),
+            "reached": reached,
+            "shown": assembly.call(ranges.range_of_host, asked),
+            "coord": field(frame, "coord"),
+            "resolution": field(frame, "resolution"),
+            "title": assembly.constant(lettering.word(self._title), IVEC4),
+        }
+        return assembly.call(SHOWN[value.type], given)
 
 
 class PixelCoordinate(_ImageView):
@@ -169,8 +218,24 @@ class PixelCoordinate(_ImageView):
         frame = Read("frame", FRAME)
         given = {n: field(frame, n) for n in ("coord", "resolution")}
         place = assembly.call(library.pixel_place, given)
-        color = assembly.call(SHOWN[VEC2], {"value": place, "reached": boolean(True)})
+        color = self._shown(assembly, frame, place, boolean(True))
         return assembly.define("coordinate", (Param("frame", FRAME),), VEC4, (Return(color),))
+
+
+class PictureBrightness(_ImageView):
+    """The brightness of a pixel, as a color."""
+
+    def __init__(self, image: Image) -> None:
+        super().__init__(image, "brightness")
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function of the frame, and return its name."""
+        frame = Read("frame", FRAME)
+        slot = read_signature(self._image.overloads[0]).parameters[0].name
+        color = assembly.call(self._image, {slot: frame})
+        light = assembly.call(library.brightness, {"color": swizzle(color, "xyz")})
+        shown = self._shown(assembly, frame, light, boolean(True))
+        return assembly.define("brightness", (Param("frame", FRAME),), VEC4, (Return(shown),))
 
 
 class LocalView(_ImageView):
@@ -183,21 +248,19 @@ class LocalView(_ImageView):
     def compose(self, assembly: Assembly) -> str:
         """Add the image's own function with changed returns, and return its name."""
         slot = read_signature(self._image.overloads[0]).parameters[0].name
-        call: Any = assembly.call(self._image, {slot: Read(slot, FRAME)})
+        frame = Read(slot, FRAME)
+        call: Any = assembly.call(self._image, {slot: frame})
         function = assembly.function(call.function)
         local = self._local
         value = Read(_free("shown", function), local.type)
         reached = Read(_free("reached", function), BOOL)
-        plain: Expr = value
-        if local.type in _NUMBERS:
-            plain = cast(value, Kind.FLOAT)
-        color = assembly.call(SHOWN[local.type], {"value": plain, "reached": reached})
-        body = tuple(_watched(function.body, local.name, (value, reached), color))
+        color = self._shown(assembly, frame, value, reached)
+        body = tuple(_watched(function.body, local, (value, reached), color))
         declared = (
             Var(value.name, number(0, local.type)),
             Var(reached.name, boolean(False)),
         )
-        name = f"{function.name}_{local.name}"
+        name = f"{function.name}_{local.of}"
         return assembly.define(name, function.params, VEC4, (*declared, *body), function.span)
 
 
@@ -212,22 +275,23 @@ def _free(stem: str, function: Function) -> str:
 
 
 def _watched(
-    body: tuple[Stmt, ...], name: str, kept: tuple[Read, Read], color: Expr
+    body: tuple[Stmt, ...], local: Local, kept: tuple[Read, Read], color: Expr
 ) -> Iterator[Stmt]:
     """Yield a block that records each value of a local and returns the last one as a color."""
+    name = local.of
     ahead = {id(s.span) for s in statements_in(body) if isinstance(s, Assign) and _gives(s, name)}
     for stmt in body:
         if isinstance(stmt, Return):
             yield Return(color, span=stmt.span)
             continue
         yield map_statement(
-            stmt, lambda e: e, lambda inner: tuple(_watched(inner, name, kept, color))
+            stmt, lambda e: e, lambda inner: tuple(_watched(inner, local, kept, color))
         )
         # A local that is first assigned in an inner block is declared before it, as zero.
         hoisted = isinstance(stmt, Var) and stmt.name == name and id(stmt.span) in ahead
         if _gives(stmt, name) and not hoisted:
             value, reached = kept
-            yield Assign(value, Read(name, value.type), span=stmt.span)
+            yield Assign(value, local.read(_type_of(stmt)), span=stmt.span)
             yield Assign(reached, boolean(True), span=stmt.span)
 
 
@@ -239,3 +303,14 @@ def _gives(stmt: Stmt, name: str) -> bool:
             return root_of(target).name == name
         case _:
             return False
+
+
+def _type_of(stmt: Stmt) -> Type:
+    """Return the type of the local that a statement gives a value."""
+    match stmt:
+        case Let(value=value) | Var(value=value):
+            return value.type
+        case Assign(target):
+            return root_of(target).type
+        case _:
+            raise AssertionError(stmt)

@@ -13,7 +13,7 @@ from distal.fields.guarantees import UNBOUNDED
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
 from distal.ir.nodes import CompareOp, Construct, Expr, FunctionRef, If, Param, Read, Return
-from distal.ir.types import BOOL, FLOAT, FRAME, INT, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.ir.types import BOOL, FLOAT, FRAME, INT, IVEC4, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
 from distal.render import (
     bounce,
@@ -21,6 +21,8 @@ from distal.render import (
     footprint,
     layers,
     legend,
+    lettering,
+    ranges,
     settings,
     shade,
     steer,
@@ -58,7 +60,11 @@ RENDERERS: Final[dict[str, Func]] = {
 }
 # The type checker infers only ``object`` for tables of different functions.
 LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
+LEGENDS: Final = cast(Mapping[str, Func], legend.LEGENDS)
 VIEWS: Final = cast(Mapping[str, Func], views.VIEWS)
+# The views whose values have a range, and the numbers of the range (``render.ranges``).
+RANGED: Final = ("depth", "signal")
+RANGE: Final = ("low", "middle", "high")
 
 
 class SceneLowering:
@@ -69,6 +75,7 @@ class SceneLowering:
         self._scene = scene
         self._node = scene.shape.node
         self.composer = ShapeComposer(assembly, [self._node])
+        self._view_numbers: dict[str, Expr] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
         }
@@ -116,16 +123,18 @@ class SceneLowering:
         # Pictures of linear light carry marks, which the executor counts and removes.
         given["counted"] = boolean(view == "color" and not encoded)
         given["radiance"] = self._radiance(
-            self._shown(view), resolution, steered=steered, counted=given["counted"]
+            self._shown(view), resolution, view, steered=steered, counted=given["counted"]
         )
         if sampled or adaptive:
             given["step"] = self.composer.call(film.lattice_step, {"count": samples})
         exposed = film.exposed_again if adaptive else film.exposed
         color = body.let("color", self.composer.call(exposed, given))
-        if view == "steps":
-            given["color"] = color
-            given["most"] = self._steps(body)
-            color = body.let("color", self.composer.call(legend.with_legend, given))
+        if view in LEGENDS:
+            title = self._assembly.constant(lettering.word(legend.TITLES[view]), IVEC4)
+            asked = {**self.given(body, resolution, steered=steered), **given}
+            asked |= {"color": color, "title": title}
+            asked |= self._shown_numbers(view, body, asked)
+            color = body.let("color", self.composer.call(LEGENDS[view], asked))
         if encoded:
             color = self.displayed(color)
         body.statements.append(Return(color))
@@ -156,7 +165,7 @@ class SceneLowering:
             "coord": field(frame, "coord"),
             "resolution": resolution,
             "camera": self._camera_of(resolution, steered=steered),
-            "radiance": self._radiance(LAYERS[name], resolution, steered=steered),
+            "radiance": self._radiance(LAYERS[name], resolution, name, steered=steered),
         }
         value = self.composer.call(layers.through_middle, given)
         params = (Param("frame", FRAME),)
@@ -262,8 +271,24 @@ class SceneLowering:
         return RENDERERS[self._scene.renderer] if view == "color" else VIEWS[view]
 
     def _radiance(
-        self, shown: Func, resolution: Expr, *, steered: bool, counted: Expr = FALSE
+        self,
+        shown: Func,
+        resolution: Expr,
+        view: str,
+        *,
+        steered: bool,
+        counted: Expr = FALSE,
     ) -> FunctionRef:
+        """Return the function of a ray to its light, or to its value in a view or layer.
+
+        Args:
+            shown: The renderer, view or layer.
+            resolution: Size of the picture in pixels.
+            view: The name of the view.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+            counted: Whether alpha is marked with why rays were lost; a constant.
+        """
+
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             asked = {**self.given(body, given["resolution"], steered=steered), **given}
             asked["counted"] = counted
@@ -272,9 +297,8 @@ class SceneLowering:
             if shown in RENDERERS.values() and not self._hybrid:
                 values = self.composer.values.all(self._node)
                 asked["field"] = self.composer.safe_field(self._node, values, ZERO_CELL)
-            if shown is views.view_slice:
-                asked["slice_normal"] = self._assembly.number("Slice_normal", VEC3, (0.0, 0.0, 1.0))
-                asked["slice_offset"] = self._assembly.number("Slice_offset", FLOAT, 0.0)
+            if shown is VIEWS.get(view):
+                asked |= self._shown_numbers(view, body, asked)
             if shown is layers.layer_material:
                 kind = MaterialNumber(self.composer, self._scene.material)
                 asked["identity"] = self.known_of_place("material_number", kind)
@@ -283,6 +307,40 @@ class SceneLowering:
         ray, cone = self._assembly.struct(Ray), self._assembly.struct(Cone)
         params = (("ray", ray), ("cone", cone), ("resolution", VEC2))
         return self._function("radiance", params, make, (resolution,))
+
+    def _shown_numbers(
+        self, view: str, body: StatementList, given: Mapping[str, Expr]
+    ) -> dict[str, Expr]:
+        """Return the numbers that only one view reads: a range of values, a plane and its lines.
+
+        Args:
+            view: The view.
+            body: Takes the statements.
+            given: The values of ``given``.
+        """
+        number_of = self._view_number
+        if view in RANGED:
+            asked = {f"view_{n}": number_of(f"View_{n}", FLOAT, 0.0) for n in RANGE}
+            shown = self.composer.call(ranges.range_of_scene, {**given, **asked})
+            return {"shown": body.let("shown", shown)}
+        if view == "slice":
+            plane = {
+                "slice_normal": number_of("Slice_normal", VEC3, (0.0, 0.0, 1.0)),
+                "slice_offset": number_of("Slice_offset", FLOAT, 0.0),
+            }
+        elif view == "distance":
+            normal = body.let("slice_normal", self.composer.call(views.facing_plane, given))
+            plane = {"slice_normal": normal, "slice_offset": number(0.0)}
+        else:
+            return {}
+        lines = self.composer.call(views.lines_on, {**given, **plane})
+        return {**plane, "lines": body.let("lines", lines)}
+
+    def _view_number(self, name: str, type: Type, value: Any) -> Expr:
+        """Return a number of a view; its picture and its legend read the same uniform."""
+        if name not in self._view_numbers:
+            self._view_numbers[name] = self._assembly.number(name, type, value)
+        return self._view_numbers[name]
 
     def _cone(self, resolution: Expr, view: str, *, steered: bool) -> FunctionRef:
         """Return the function ``(uv, size) -> Cone``: thin if no pattern is averaged."""

@@ -21,12 +21,13 @@ from distal.lang.parameters import Parameter
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.render.views import VIEWS
+from distal.scene.lowering.local_views import PREFIX, locals_of, view_of_image
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
-from distal.scene.lowering.local_views import view_of_image
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.steering import STILL, Steering
+from distal.scene.view_ranges import with_range
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.stage import stage
 
@@ -53,10 +54,12 @@ class Viewable:
 
     @cached_property
     def views(self) -> tuple[str, ...]:
-        """The names of the views that ``image`` accepts."""
+        """The names of the views, of an ``@image`` also of its locals that differ among pixels."""
         if self.scene is not None:
             return (COLOR, *VIEWS)
-        return (COLOR, *(view for view in IMAGE_VIEWS if self._has(view)))
+        assert isinstance(self._source, Image)
+        varying = (f"{PREFIX}{x.name}" for x in locals_of(self._source) if x.varies)
+        return (COLOR, *IMAGE_VIEWS, *varying)
 
     @cached_property
     def parameters(self) -> list[Parameter]:
@@ -129,22 +132,15 @@ class Viewable:
         """
         moved = {} if steering is None else self.settings(steering)
         if self.scene is None:
-            picture = executor().render(self.image(view), options)
+            image, settings = self.image(view), {}
         else:
             image, sampled = self.scene.program(view, options.samples, steered=steering is not None)
             settings = {**moved, **sampled}
-            picture = executor().render(image, replace(options, settings=settings))
+        picture = executor().render(image, with_range(image, replace(options, settings=settings)))
         numbers = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
         asked = {} if self.scene is None else self.scene.asked_display
         return picture.with_provenance(view=view, steering=numbers, stage=staged, **asked)
-
-    def _has(self, view: str) -> bool:
-        try:
-            self.image(view)
-        except ValueError:
-            return False
-        return True
 
 
 class _Elevation(Composed):
@@ -164,7 +160,7 @@ class _Elevation(Composed):
 
 def view_label(view: str) -> str:
     """Return a view's name for people: "Half way" for "local:half_way"."""
-    label = view.removeprefix("local:").replace("_", " ")
+    label = view.removeprefix(PREFIX).replace("_", " ")
     return label[:1].upper() + label[1:]
 
 
