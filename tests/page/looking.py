@@ -33,7 +33,7 @@ _SETTLE = """async (number) => {
   if (!player.playing) await player.settled();
 }"""
 _PICTURE = """async (number) => {
-  const blob = await document.querySelectorAll("[data-distal]")[number].distal.screenshot();
+  const blob = await document.querySelectorAll("[data-distal]")[number].distal.screenshot(1);
   const bytes = new Uint8Array(await blob.arrayBuffer());
   return btoa(Array.from(bytes, (b) => String.fromCharCode(b)).join(""));
 }"""

@@ -88,7 +88,7 @@ def payload(*programs: dict[str, Any], **changes: Any) -> dict[str, Any]:
         "distal": "0.1.0",
         "name": "trial",
         "description": "A trial.",
-        "size": [160, 120],
+        "size": [160, 200],
         "embed": False,
         "panel": True,
         "steering": None,

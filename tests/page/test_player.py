@@ -21,7 +21,7 @@ from tests.browser import BrowserUnavailableError, browser, offline_page
 from tests.page import player_pages as pages
 from tests.page.player_pages import parameter, payload, program, uniform
 
-SIZE = {"width": 160, "height": 120}
+SIZE = {"width": 160, "height": 200}  # the bar is at the lower edge
 WIDE = {"width": 700, "height": 120}
 PLAYER = "document.querySelector('[data-distal]').distal"
 TINT = parameter("tint", "color", [0.0, 0.0, 0.0])
@@ -55,10 +55,11 @@ class Page:
         self.ask("await player.settled()")
 
     def color(self, x: int, y: int) -> tuple[int, ...]:
-        """The color on the screen, x and y in CSS pixels from the canvas's upper left."""
+        """The color of the canvas under all else, in CSS pixels from its upper left."""
         box = self.canvas.bounding_box()
         clip = {"x": box["x"] + x, "y": box["y"] + y, "width": 1, "height": 1}
-        shot = Image.open(io.BytesIO(self.page.screenshot(clip=clip))).convert("RGB")
+        bare = ".title, .bar, .panel { visibility: hidden !important }"
+        shot = Image.open(io.BytesIO(self.page.screenshot(clip=clip, style=bare))).convert("RGB")
         return shot.getpixel((0, 0))
 
     def frames(self, wait_ms: int) -> int:
@@ -210,7 +211,7 @@ def test_uniforms_of_all_types_and_the_frame_arrive(tmp_path: Path) -> None:
         "uvec2 u": "u == uvec2(1u, 4294967295u)",
         "bvec2 w": "w.x && !w.y",
         "vec4 v": "v == vec4(0.5, 1.0, 1.5, 2.0)",
-        "vec2 resolution": "resolution == vec2(160.0, 76.0)",
+        "vec2 resolution": "resolution == vec2(160.0, 200.0)",
         "float time_2": "time_2 == 0.25",
         "float time": "time == 1.5",
     }
@@ -246,6 +247,7 @@ def test_uniforms_of_all_types_and_the_frame_arrive(tmp_path: Path) -> None:
         program(body, *uniforms),
         parameters=[parameter("time", "slider", 0.25, low=0.0, high=1.0)],
         time={"start": 1.5, "duration": None, "animated": False},
+        embed=True,  # nothing covers it
     )
     with opened(tmp_path, told) as page:
         wrong = [name for i, name in enumerate(checks) if page.color(i, 20) != (0, 255, 0)]
@@ -301,7 +303,7 @@ void main() {
     )
     with opened(tmp_path, told) as page:
         assert close(page.color(80, 2), (0, 0, 255))  # the upper edge
-        assert close(page.color(80, 74), (255, 0, 0))
+        assert close(page.color(80, 198), (255, 0, 0))
 
 
 # The camera and the mouse
@@ -395,7 +397,7 @@ def test_without_a_camera_a_drag_is_the_mouse(tmp_path: Path) -> None:
     body = "uniform vec4 mouse;\nvoid main() { fragment_color = vec4(mouse.xy / 200.0, 0.0, 1.0);"
     body += " if (gl_FragCoord.x < 20.0) fragment_color = vec4(abs(mouse.zw) / 200.0,"
     body += " mouse.z > 0.0 ? 1.0 : 0.0, 1.0); }\n"
-    with opened(tmp_path, payload(program(body, pages.MOUSE))) as page:
+    with opened(tmp_path, payload(program(body, pages.MOUSE), embed=True)) as page:
         height = round(page.canvas.bounding_box()["height"])
         mouse = page.page.mouse
         mouse.move(50, 20)
@@ -808,7 +810,8 @@ void main() {
         "WebGL2RenderingContext.prototype.scissor = function (...box) {"
         " window.bands.push(box); real.apply(this, box) }"
     )
-    with opened(tmp_path, payload(program(body, pages.RESOLUTION)), before=before) as page:
+    told = payload(program(body, pages.RESOLUTION), embed=True)
+    with opened(tmp_path, told, before=before) as page:
         width, height = page.ask(
             "[...document.querySelectorAll('[data-distal]')].map((h) => {"
             " const c = h.shadowRoot.querySelector('canvas');"

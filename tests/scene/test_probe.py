@@ -5,9 +5,11 @@ import json
 import numpy as np
 import pytest
 
+import distal
 from distal import Box, Camera, OrthographicCamera, Plane, Scene, Sphere, matte, mirror
-from distal.lang import slider
+from distal.lang import Frame, image, slider, struct, vec3, vec4
 from distal.scene.checks.probe import probe
+from distal.scene.checks.probe_image import probe_image
 
 FRONT = Camera((0.0, 0.0, 5.0), target=(0.0, 0.0, 0.0), fov_deg=40.0)
 
@@ -137,3 +139,72 @@ def test_plain_values_are_json():
 def test_no_such_pixel(pixel):
     with pytest.raises(ValueError, match="a picture of 4x3 has no pixel"):
         probe(Scene(Sphere(1.0), camera=FRONT), pixel, (4, 3))
+
+
+# Images
+
+
+@struct
+class Met:
+    distance: float
+    material: int
+
+
+@image
+def drawn(frame: Frame) -> vec3:
+    uv = frame.coord / frame.resolution
+    met = Met(4.0 * uv.x, 3)
+    inside = uv.x < 0.5
+    total = 0.0
+    for i in range(3):
+        total += uv.y * float(i)
+    if inside:
+        return vec3(uv, 0.25)
+    late = vec4(uv, met.distance, frame.time)
+    return late.xyz * total
+
+
+def test_a_pixel_of_an_image_has_the_values_of_its_locals():
+    found = probe_image(drawn, (3, 1), (4, 4), time=2.5)
+    # The middle of the fourth column, and of the third row from below.
+    u, v = 3.5 / 4.0, 2.5 / 4.0
+    values = {each.name: each.value for each in found.locals}
+    assert tuple(values["uv"]) == pytest.approx((u, v))
+    assert values["met.distance"] == pytest.approx(4.0 * u)
+    assert values["met.material"] == 3
+    assert values["inside"] is False
+    assert values["total"] == pytest.approx(3.0 * v)
+    assert tuple(values["late"]) == pytest.approx((u, v, 4.0 * u, 2.5))
+    assert found.color == pytest.approx((3 * v * u, 3 * v * v, 3 * v * 4 * u, 1.0))
+    types = {each.name: str(each.type) for each in found.locals}
+    assert types["late"] == "vec4" and types["inside"] == "bool" and types["met.material"] == "int"
+    lines = {each.name: each.place.text.strip() for each in found.locals}
+    assert lines["uv"] == "uv = frame.coord / frame.resolution"
+    assert lines["met.distance"] == "met = Met(4.0 * uv.x, 3)"
+
+
+def test_a_local_that_a_pixel_did_not_reach_has_no_value():
+    found = probe_image(drawn, (0, 0), (4, 4))
+    values = {each.name: each.value for each in found.locals}
+    assert values["late"] is None and values["inside"] is True
+    assert found.color == pytest.approx((0.125, 0.875, 0.25, 1.0))
+    made = json.loads(json.dumps(found.as_json()))
+    assert made["version"] == 1 and made["image"] == "drawn" and made["pixel"] == [0, 0]
+    by_name = {each["name"]: each for each in made["locals"]}
+    assert by_name["late"]["value"] is None
+    assert by_name["uv"]["value"] == pytest.approx([0.125, 0.875])
+    assert by_name["uv"]["type"] == "vec2"
+    assert by_name["uv"]["place"]["line"] > 0
+
+
+def test_an_image_has_no_pixel_outside_its_picture():
+    with pytest.raises(ValueError, match="a picture of 4x4 has no pixel 4,0"):
+        probe_image(drawn, (4, 0), (4, 4))
+
+
+def test_the_color_of_a_pixel_is_the_pictures():
+    example = distal.load("example:course_6_exercise")
+    picture = example.render(size=(32, 24), time=0.7).array
+    for x, y in ((16, 12), (3, 20), (28, 14), (10, 1)):
+        found = probe_image(example, (x, y), (32, 24), time=0.7)
+        assert picture[y, x] == pytest.approx(found.color, abs=2e-3)

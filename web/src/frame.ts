@@ -1,12 +1,13 @@
 /**
- * The elements around a picture: canvas, poster, bar, panel, notices, all in a shadow root.
+ * The elements over a picture: poster, title, bar, panel, notices, all in a shadow root.
  *
- * Input: a player. Output: elements; the size and visibility of the canvas as they change. It decides
- * what is beside what, and nothing about pictures.
+ * Input: a player. Output: elements; the size and visibility of the canvas as they change, and how much
+ * of it they cover. It decides what is over what, and nothing about pictures.
  */
 
 import { make } from "./dom";
 import type { Needs } from "./generated/bindings";
+import { NOTHING_COVERED, frameOn, type Covered } from "./framing";
 import { listen } from "./gestures";
 import { helpOf } from "./help";
 import { press } from "./keyboard";
@@ -33,9 +34,12 @@ export class Frame {
   #box: HTMLElement;
   #stage: HTMLElement;
   #panel: HTMLElement | null = null;
+  #bar: HTMLElement;
+  #covered = NOTHING_COVERED;
   #isOpen: boolean | null = null;
   #end = new AbortController();
   #onPanel: (isOpen: boolean) => void = () => {};
+  #onCovered: () => void = () => {};
   #onSize: (entry: ResizeObserverEntry) => void = () => {};
   #sizes = new ResizeObserver((entries) => entries.forEach((entry) => this.#onSize(entry)));
 
@@ -53,13 +57,19 @@ export class Frame {
     const still = make("slot", { className: "still" }, poster || "");
     this.#stage = make("div", { className: "stage" }, still, this.canvas, this.notices.element);
     const classes = `player ${theme} ${payload.embed ? "embed" : ""}`;
-    this.#box = make("div", { className: classes }, this.#stage, this.notices.status);
+    this.#bar = toolbarOf(player);
+    this.#box = make("div", { className: classes }, this.#stage, this.notices.status, this.#bar);
     this.root.replaceChildren(this.#box);
-    this.#stage.after(toolbarOf(player));
     if (!payload.embed) {
       this.#panel = panelOf(player);
+      this.#stage.after(make("h2", { className: "title glass" }, payload.name));
       this.#box.append(this.#panel);
     }
+  }
+
+  /** How much of the picture bar and panel cover; the author's frame lies in the rest. */
+  get covered(): Covered {
+    return this.#covered;
   }
 
   set live(isLive: boolean) {
@@ -82,15 +92,18 @@ export class Frame {
     this.#arrange();
   }
 
-  /** Reports the canvas's size in pixels, whether it can be seen, whether the panel is open. */
+  /** Reports the canvas's size in pixels, whether it and the panel can be seen, what is covered. */
   follow(
     onSize: (width: number, height: number) => void,
     onSight: (isVisible: boolean) => void,
     onPanel: (isOpen: boolean) => void,
+    onCovered: () => void,
   ): void {
     this.#onPanel = onPanel;
+    this.#onCovered = onCovered;
     this.#onSize = (entry) => {
-      if (entry.target !== this.canvas) return this.#arrange();
+      if (entry.target === this.#player.host) this.#arrange();
+      if (entry.target !== this.canvas) return this.#measure();
       const density = devicePixelRatio || 1;
       const exact = entry.devicePixelContentBoxSize?.[0];
       const width = exact?.inlineSize ?? entry.contentRect.width * density;
@@ -98,7 +111,9 @@ export class Frame {
       const share = Math.min(1, FINEST / density);
       onSize(Math.max(1, Math.round(width * share)), Math.max(1, Math.round(height * share)));
     };
-    this.#sizes.observe(this.#player.host);
+    for (const element of [this.#player.host, this.#bar, this.#panel]) {
+      if (element) this.#sizes.observe(element);
+    }
     this.#observeCanvas();
     let isNear = false;
     const tell = () => onSight(isNear && !document.hidden);
@@ -177,7 +192,34 @@ export class Frame {
     this.#box.classList.toggle("narrow", isNarrow);
     this.#box.classList.toggle("open", isOpen);
     if (this.#panel) this.#panel.inert = !isOpen;
+    this.#measure();
     this.#onPanel(isOpen);
+  }
+
+  /** What bar and panel cover. Those of an embedded picture appear only under the hand. */
+  #measure(): void {
+    const { payload, host } = this.#player;
+    const { clientWidth: width, clientHeight: height } = host;
+    // A sheet stands on the bar, whose rows are as many as fit.
+    this.#box.style.setProperty("--bar", `${this.#bar.offsetHeight}px`);
+    let covered = NOTHING_COVERED;
+    if (!payload.embed && width && height) {
+      const isNarrow = this.#box.classList.contains("narrow");
+      const panel = this.#box.classList.contains("open") ? this.#panel : null;
+      const lowest = isNarrow && panel ? panel : this.#bar;
+      const side = !isNarrow && panel ? width - panel.offsetLeft : 0;
+      const bottom = (height - lowest.offsetTop) / height;
+      covered = { left: 0, right: side / width, top: 0, bottom };
+    }
+    const isNew = JSON.stringify(covered) !== JSON.stringify(this.#covered);
+    this.#covered = covered;
+    const [wide, high] = payload.size;
+    const { size, offset } = frameOn(width, height, covered, wide / high);
+    const place = { left: offset[0], width: size[0], bottom: offset[1], height: size[1] };
+    for (const [name, value] of Object.entries(place)) {
+      this.#box.style.setProperty(`--${name}`, `${value}px`);
+    }
+    if (isNew) this.#onCovered();
   }
 
   #has(needs: Needs): boolean {

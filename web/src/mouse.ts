@@ -38,13 +38,17 @@ export class Mouse {
     this.#down = this.#fresh = false;
   }
 
-  /** The uniform for a picture of so many pixels. */
-  pixels(width: number, height: number): number[] {
+  /** The uniform for a picture of so many pixels, counted from the corner of the author's frame. */
+  pixels(width: number, height: number, [left, low]: [number, number] = [0, 0]): number[] {
     const [x, y] = this.#at as [number, number];
     const [fromX, fromY] = this.#from as [number, number];
     const signX = this.#down ? 1 : -1;
     const signY = this.#fresh ? 1 : -1;
-    return [x * width, y * height, signX * fromX * width, signY * fromY * height];
+    // Where nothing was pressed yet, the author's code reads 0.
+    if (![x, y, fromX, fromY].some(Boolean)) return [0, 0, 0, 0];
+    const at = [x * width - left, y * height - low];
+    const from = [Math.max(fromX * width - left, 0), Math.max(fromY * height - low, 0)];
+    return [...at, signX * from[0]!, signY * from[1]!];
   }
 
   /** A frame was drawn: the press is no news any more. Returns whether that changes the uniform. */

@@ -136,6 +136,25 @@ export class Painter {
     gl.disable(gl.SCISSOR_TEST);
   }
 
+  /** The picture that was drawn, as a PNG; the one that is shown stays. */
+  png(isTransparent: boolean): Promise<Blob | null> {
+    const { gl } = this;
+    const { frame, width, height } = this.#work;
+    const bytes = new Uint8ClampedArray(4 * width * height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    const image = new ImageData(width, height);
+    const row = 4 * width;
+    for (let y = 0; y < height; y++) {
+      image.data.set(bytes.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
+    }
+    if (!isTransparent) for (let i = 3; i < image.data.length; i += 4) image.data[i] = 255;
+    const canvas = document.createElement("canvas");
+    Object.assign(canvas, { width, height });
+    canvas.getContext("2d")!.putImageData(image, 0, 0);
+    return new Promise((resolve) => canvas.toBlob(resolve));
+  }
+
   /** The picture that was drawn is the one to show. */
   present(): void {
     [this.#work, this.#shown] = [this.#shown, this.#work];

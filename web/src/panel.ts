@@ -1,6 +1,6 @@
 /**
- * The panel at the side: the scene's name, its views, its parameters in groups, the picture's
- * quality, and what can be done with all of them at once.
+ * The panel at the side: the scene's name, its parameters in groups, the picture's quality and what
+ * it costs, and what can be done with all of them at once.
  *
  * Input: the player. Output: an element that follows the player's events.
  */
@@ -18,13 +18,16 @@ const SCALES = [
   ["2", "Double"],
 ] as const;
 
+/** Numbers that change with every frame cannot be read: so often is enough. */
+const STATISTICS_MS = 250;
+
 export function panelOf(player: Player): HTMLElement {
   const { name, description } = player.payload;
   const panel = make("section", { className: "panel", "aria-label": "Settings" });
   const body = make("div", { className: "body" });
   const head = make("h2", {}, name);
   const about = description !== name && make("p", { className: "about" }, description);
-  body.append(make("header", {}, head, about || ""), ...viewGroup(player));
+  body.append(make("header", {}, head, about || ""));
   body.append(...parameterGroups(player), pictureGroup(player));
   panel.append(body, actions(player));
   return panel;
@@ -54,15 +57,6 @@ function menu(
   return [make("div", { className: "row choice" }, caption, select), select];
 }
 
-function viewGroup(player: Player): HTMLElement[] {
-  const { views } = player.payload;
-  if (views.length < 2) return [];
-  const options = views.map((view) => [view.name, view.label] as const);
-  const [row, select] = menu("View", options, player.view, (name) => player.setView(name));
-  player.on("view", ({ name }) => (select.value = name));
-  return [make("div", { className: "group" }, row)];
-}
-
 function parameterGroups(player: Player): HTMLElement[] {
   const rows = new Map<string, Row>();
   const groups = new Map<string, HTMLElement[]>();
@@ -89,7 +83,7 @@ function pictureGroup(player: Player): HTMLElement {
     player.on("speed", ({ speed }) => (select.value = String(speed)));
     rows.push(row);
   }
-  return group("Picture", ...rows);
+  return group("Picture", ...rows, statistics(player));
 }
 
 function actions(player: Player): HTMLElement {
@@ -102,4 +96,18 @@ function actions(player: Player): HTMLElement {
     player.payload.steering && button("Reset camera", () => player.resetCamera()),
     button("Copy as code", () => void player.copyCode()),
   );
+}
+
+function statistics(player: Player): HTMLElement {
+  const text = make("p", { className: "hint", "aria-hidden": true }, "\u00a0");
+  let last = -Infinity;
+  player.on("frame", ({ ms, width, height, fps, samples }) => {
+    const now = performance.now();
+    if (fps && now - last < STATISTICS_MS) return;
+    last = now;
+    const pace = fps ? ` · ${fps.toFixed(0)} fps` : "";
+    const more = samples > 1 ? ` · ${samples} samples` : "";
+    text.textContent = `${width}×${height} · ${ms.toFixed(ms < 10 ? 1 : 0)} ms${pace}${more}`;
+  });
+  return text;
 }

@@ -101,17 +101,23 @@ export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
 }
 
 /**
- * The programs of a payload, unpacked where they came packed: then field by field, all programs'
- * vertex stages first, since similar texts compress well only close together.
+ * The programs of a payload, unpacked where they came packed: field by field, and texts as the
+ * numbers of their parts, which programs share.
  */
 export async function programsOf(payload: Payload): Promise<Program[]> {
   const { programs } = payload;
   if (programs.encoding === "plain") return programs.data;
   const packed = new Blob([bytesOf(programs.data)]).stream();
   const text = packed.pipeThrough(new DecompressionStream("deflate-raw"));
-  const columns = (await new Response(text).json()) as { [K in keyof Program]: Program[K][] };
-  return columns.vertex.map((_, i) => {
+  const { parts, ...columns } = (await new Response(text).json()) as Packed;
+  const joined = (numbers: number[]) => numbers.map((n) => parts[n]).join("");
+  return columns.vertex.map((vertex, i) => {
     const fields = Object.entries(columns).map(([key, all]) => [key, all[i]]);
-    return Object.fromEntries(fields) as Program;
+    const fragment = joined(columns.fragment[i]!);
+    return { ...Object.fromEntries(fields), vertex: joined(vertex), fragment } as Program;
   });
 }
+
+type Packed = { parts: string[]; vertex: number[][]; fragment: number[][] } & {
+  [K in Exclude<keyof Program, "vertex" | "fragment">]: Program[K][];
+};

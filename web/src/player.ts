@@ -10,13 +10,21 @@ import { Clock } from "./clock";
 import { cameraOf, pythonOf } from "./code";
 import { Emitter, type Events } from "./events";
 import { Frame, type Theme } from "./frame";
+import { NOTHING_COVERED, frameOn } from "./framing";
 import { GUIDE_PIXELS, answer, numbersOf, question } from "./guide";
 import { Hands, movesOf } from "./hands";
 import type { Actions } from "./keyboard";
 import { Mouse } from "./mouse";
 import { failureOf } from "./notices";
 import { programsOf, type Payload, type Program, type Value, type Values } from "./payload";
-import { Renderer, type FrameReport, type Scale, type State, type Subject } from "./renderer";
+import {
+  FINEST_SAMPLES,
+  Renderer,
+  type FrameReport,
+  type Scale,
+  type State,
+  type Subject,
+} from "./renderer";
 import { copy, save } from "./taking";
 import { checked, clamp, same } from "./values";
 
@@ -95,6 +103,7 @@ export class Player {
       (width, height) => this.#renderer.resize(width, height),
       (isVisible) => this.#see(isVisible),
       (isOpen) => this.#emitter.emit("panel", { isOpen }),
+      () => this.#renderer.change(),
     );
   }
 
@@ -214,9 +223,9 @@ export class Player {
     this.#renderer.scale = scale;
   }
 
-  /** A PNG of the picture at full scale; null where there is none. */
-  screenshot(): Promise<Blob | null> {
-    return this.#state === "ready" ? this.#renderer.capture() : Promise.resolve(null);
+  /** A PNG of the picture at full scale, without what covers it; null where there is none. */
+  screenshot(samples = FINEST_SAMPLES): Promise<Blob | null> {
+    return this.#state === "ready" ? this.#renderer.capture(samples) : Promise.resolve(null);
   }
 
   async saveScreenshot(): Promise<void> {
@@ -352,8 +361,10 @@ export class Player {
     if (!source || !this.camera) return;
     this.camera.ask = async (action, now, goal) => {
       const { width, height } = this.#frame.canvas;
-      const number = question(action, now, goal, [width, height]);
-      const inputs = { ...this.#subject().inputs(GUIDE_PIXELS, 1), number };
+      const [wide, high] = this.payload.size;
+      const { size } = frameOn(width, height, this.#frame.covered, wide / high);
+      const number = question(action, now, goal, size);
+      const inputs = { ...this.#subject().inputs(GUIDE_PIXELS, 1, true), number };
       const bytes = await this.#renderer.pixels(source, inputs, [GUIDE_PIXELS, 1]);
       return bytes && answer(bytes);
     };
@@ -388,16 +399,22 @@ export class Player {
         }
         player.#ticked = now;
       },
-      inputs: (width, height) => ({
-        frame: {
-          resolution: [width, height],
-          time: player.time,
-          mouse: player.#mouse.pixels(width, height),
-          index: player.#clock.index,
-        },
-        parameter: player.#values,
-        number: player.camera ? numbersOf(player.camera.steering) : {},
-      }),
+      inputs(width, height, isWhole = false) {
+        const [wide, high] = player.payload.size;
+        const covered = isWhole ? NOTHING_COVERED : player.#frame.covered;
+        const { size, offset } = frameOn(width, height, covered, wide / high);
+        const steering = player.camera ? numbersOf(player.camera.steering) : {};
+        return {
+          frame: {
+            resolution: size,
+            time: player.time,
+            mouse: player.#mouse.pixels(width, height, offset),
+            index: player.#clock.index,
+          },
+          parameter: player.#values,
+          number: { ...steering, Frame_offset: offset },
+        };
+      },
       drawn: (report) => player.#drawn(report),
       state: (state, error) => player.#enter(state, error),
     };

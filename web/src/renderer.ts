@@ -2,16 +2,17 @@
  * When to draw what: the schedule of one canvas.
  *
  * Input: "something changed", the view's program, whether anybody looks. Output: pictures, as sharp as
- * time allows: small ones while things move, a full one, in bands, once they rest. Nothing is
- * drawn when nothing changed, when the canvas is out of sight, or while the context is lost.
+ * time allows: small ones while things move, a full one, in bands, once they rest, then with more
+ * samples for each pixel, where the program can take them. Nothing is drawn when nothing changed, when the canvas is out of sight, or while the context is lost.
  */
 
 import { Painter } from "./painter";
 import type { Payload, Program } from "./payload";
 import { LostError, type Linked } from "./program";
+import { PACKED, PROBE, hasRange, rangeOf } from "./range";
 import { PROBE_PIXELS, Resolution } from "./resolution";
 import { forget } from "./trust";
-import type { Inputs } from "./uniforms";
+import type { Given, Inputs } from "./uniforms";
 import { gpuDone, nextFrame } from "./waiting";
 
 export type State = "waiting" | "compiling" | "ready" | "lost" | "failed" | "unsupported";
@@ -24,6 +25,8 @@ export interface FrameReport {
   height: number;
   /** Pictures in a row, in a second; 0 for a still. */
   fps: number;
+  /** Of each pixel. */
+  samples: number;
 }
 
 /** What the schedule needs to know of the scene it draws. */
@@ -33,7 +36,8 @@ export interface Subject {
   readonly hasPoster: boolean;
   /** A new frame is about to be drawn; `now` in milliseconds. */
   tick(now: number): void;
-  inputs(width: number, height: number): Inputs;
+  /** `isWhole`: nothing covers the picture. */
+  inputs(width: number, height: number, isWhole?: boolean): Inputs;
   /** A picture was drawn from the inputs. */
   drawn(report: FrameReport): void;
   state(state: State, error?: unknown): void;
@@ -41,10 +45,18 @@ export interface Subject {
 
 interface Plan {
   scale: number;
+  samples: number;
   size: [number, number];
   revision: number;
   /** A still nobody wants any more is dropped; a moving picture is shown whatever comes next. */
   abortable: boolean;
+  /** A picture to save, which is not shown. */
+  isAside: boolean;
+}
+
+interface Capture {
+  samples: number;
+  resolve: (blob: Blob | null) => void;
 }
 
 /** After the last change things count as moving for so long. */
@@ -57,6 +69,12 @@ const FEW = 64;
 const LONGEST_WAY_MS = 8;
 /** A draw must take this many times the overhead for its time to measure its pixels. */
 const CLEAR_MS = 6;
+/** Samples of a pixel, one after the other, where a picture rests. */
+const SAMPLES = [1, 4, 16] as const;
+/** A picture with more samples that would take longer is not worth the work. */
+const LONGEST_MS = 4000;
+/** The samples of a saved picture. */
+export const FINEST_SAMPLES = SAMPLES.at(-1)!;
 
 export class Renderer {
   canvas: HTMLCanvasElement;
@@ -69,8 +87,13 @@ export class Renderer {
   #pumping = false;
   #revision = 0;
   #changed = 0;
-  #shown = { revision: -1, scale: 0 };
-  #captures: ((blob: Blob | null) => void)[] = [];
+  #shown = { revision: -1, scale: 0, samples: 0 };
+  #captures: Capture[] = [];
+  #range: { revision: number; program: Linked | null; numbers: Given } = {
+    revision: -1,
+    program: null,
+    numbers: {},
+  };
   #resting: ((isSharp: boolean) => void)[] = [];
   #isBroken = false;
   #times: number[] = [];
@@ -159,10 +182,10 @@ export class Renderer {
     }
   }
 
-  /** A PNG of what is to be seen, at the canvas's full scale. */
-  capture(): Promise<Blob | null> {
+  /** A PNG of what is to be seen, at the canvas's full scale, as if nothing covered it. */
+  capture(samples: number): Promise<Blob | null> {
     return new Promise((resolve) => {
-      this.#captures.push(resolve);
+      this.#captures.push({ samples, resolve });
       void this.#pump();
     });
   }
@@ -186,7 +209,7 @@ export class Renderer {
 
   #begin(): void {
     this.#program = null;
-    this.#shown = { revision: -1, scale: 0 };
+    this.#shown = { revision: -1, scale: 0, samples: 0 };
     try {
       this.#painter = new Painter(this.canvas, this.resources, this.transparent);
     } catch (error) {
@@ -215,7 +238,17 @@ export class Renderer {
 
   #wants(): boolean {
     if (!this.#visible || !this.#painter || !this.#program) return false;
-    return this.subject.playing || !this.#isSharp || this.#captures.length > 0;
+    const isDone = this.#isSharp && !this.#nextSamples();
+    return this.subject.playing || !isDone || this.#captures.length > 0;
+  }
+
+  /** How many samples the picture that rests gets next; 0 if it has enough. */
+  #nextSamples(): number {
+    const program = this.#program;
+    if (this.subject.playing || !this.#isSharp || !program || !canSample(program)) return 0;
+    const next = SAMPLES.find((samples) => samples > this.#shown.samples) ?? 0;
+    const [width, height] = this.#painter!.size(this.#stillScale);
+    return (this.#resolution.cost ?? 0) * width * height * next <= LONGEST_MS ? next : 0;
   }
 
   async #pump(): Promise<void> {
@@ -251,24 +284,30 @@ export class Renderer {
     this.#isBroken = state === "failed" || state === "unsupported";
     this.subject.state(state, error);
     if (state === "compiling" || state === "ready") return;
-    for (const resolve of this.#captures.splice(0)) resolve(null);
+    for (const { resolve } of this.#captures.splice(0)) resolve(null);
     this.#endRest();
   }
 
   #plan(): Plan | null {
     const painter = this.#painter!;
     const revision = this.#revision;
-    const plan = (scale: number, abortable: boolean): Plan => {
-      return { scale, size: painter.size(scale), revision, abortable };
+    const plan = (scale: number, abortable: boolean, samples = 1, isAside = false): Plan => {
+      return { scale, samples, size: painter.size(scale), revision, abortable, isAside };
     };
-    if (this.#captures.length) return plan(Math.max(1, this.#stillScale), false);
+    if (this.#captures[0]) {
+      const samples = canSample(this.#program!) ? this.#captures[0].samples : 1;
+      return plan(Math.max(1, this.#stillScale), false, samples, true);
+    }
+    const rests = performance.now() - this.#changed >= REST_MS;
+    const next = this.#nextSamples();
+    if (next) return rests ? plan(this.#stillScale, true, next) : null;
     if (this.#scale !== "auto") return plan(this.#scale, false);
     const { cost } = this.#resolution;
     if (cost === null) return plan(1, true); // Settled after the probe.
     const pixels = this.canvas.width * this.canvas.height;
     const playing = this.subject.playing;
     const isNews = revision !== this.#shown.revision;
-    if (!playing && performance.now() - this.#changed >= REST_MS) {
+    if (!playing && rests) {
       // A still that takes long is heralded by a coarse picture.
       const isAwaited = this.#shown.revision >= 0 || !this.subject.hasPoster;
       if (!isNews || !isAwaited || cost * pixels < LONG_MS) return plan(1, true);
@@ -283,29 +322,50 @@ export class Renderer {
     }
     const painter = this.#painter!;
     const program = this.#program!;
+    const { samples, isAside } = plan;
     const [width, height] = plan.size;
-    const inputs = this.subject.inputs(width, height);
+    const inputs = this.subject.inputs(width, height, isAside);
+    const range = await this.#rangeOf(painter, program, plan.revision);
+    if (painter !== this.#painter) return;
+    inputs.number = { ...inputs.number, ...range, Samples: samples };
     let total = 0;
     for (let row = 0; row < height; ) {
-      const rows = Math.min(this.#resolution.rows(width), height - row);
+      const rows = Math.min(this.#resolution.rows(width * samples), height - row);
       painter.draw(program, inputs, plan.size, row, rows);
       row += rows;
       // In the task of the last draw: the picture appears whole, and as early as it can.
-      if (row >= height) this.#present(painter, plan);
+      if (row >= height && !isAside) this.#present(painter, plan);
       const ms = await gpuDone(painter.gl);
       if (ms === null || painter !== this.#painter) return;
-      this.#resolution.measure(ms, width * rows);
+      this.#resolution.measure(ms, width * rows * samples);
       total += ms;
       const isOld = plan.revision !== this.#revision || program !== this.#program;
       if (plan.abortable && isOld && row < height) return;
     }
-    this.subject.drawn({ ms: total, width, height, fps: this.#fps() });
+    if (!isAside) return this.subject.drawn({ ms: total, width, height, fps: this.#fps(), samples });
+    const blob = await painter.png(this.transparent);
+    this.#captures.shift()?.resolve(blob);
   }
 
-  #present(painter: Painter, { revision, scale }: Plan): void {
+  #present(painter: Painter, { revision, scale, samples }: Plan): void {
     painter.present();
-    this.#shown = { revision, scale };
-    for (const resolve of this.#captures.splice(0)) painter.canvas.toBlob(resolve);
+    this.#shown = { revision, scale, samples };
+  }
+
+  /** The range of the values that a view shows, measured once for each state. */
+  async #rangeOf(painter: Painter, program: Linked, revision: number): Promise<Given> {
+    if (!hasRange(program.source)) return {};
+    const known = this.#range;
+    if (known.revision === revision && known.program === program && !this.subject.playing) {
+      return known.numbers;
+    }
+    const inputs = this.subject.inputs(...PROBE, true);
+    inputs.frame = { ...inputs.frame, resolution: PROBE };
+    inputs.number = { ...inputs.number, ...PACKED, Frame_offset: [0, 0] };
+    const bytes = await painter.pixels(program, inputs, PROBE);
+    const numbers = bytes ? rangeOf(bytes) : {};
+    this.#range = { revision, program, numbers };
+    return numbers;
   }
 
   /** What does a pixel cost? Nobody sees these draws; they grow until there is time to measure. */
@@ -346,4 +406,8 @@ export class Renderer {
     const span = now - this.#times[0]!;
     return span > 0 ? ((this.#times.length - 1) * 1000) / span : 0;
   }
+}
+
+function canSample({ source }: Linked): boolean {
+  return source.uniforms.some(({ name, origin }) => origin === "number" && name === "Samples");
 }

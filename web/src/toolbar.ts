@@ -1,5 +1,5 @@
 /**
- * The bar below the picture: play, the time, what a frame costs, and what is done with the picture.
+ * The bar over the picture's lower edge: play, the time, the views, and what is done with the picture.
  *
  * Input: the player. Output: an element that follows the player's events. An embedded page has only the
  * smallest of it.
@@ -9,16 +9,16 @@ import { ICONS, icon, iconButton, make, rename } from "./dom";
 import type { Player } from "./player";
 
 const STEPS = 1000;
-/** Numbers that change with every frame cannot be read: so often is enough. */
-const STATISTICS_MS = 250;
 
 export function toolbarOf(player: Player): HTMLElement {
   const { embed, time, name } = player.payload;
   const bar = make("div", { className: "bar", role: "group", "aria-label": `Controls of ${name}` });
-  if (time.animated) bar.append(playButton(player), ...(embed ? [] : timeline(player)));
+  if (time.animated) {
+    bar.append(playButton(player), ...(embed ? [] : [...timeline(player), make("span", { className: "break" })]));
+  }
   if (!embed) {
     bar.append(
-      statistics(player),
+      views(player) || "",
       iconButton("Save a picture (S)", ICONS.camera, () => void player.saveScreenshot()),
     );
   } else if (player.payload.steering) {
@@ -30,7 +30,9 @@ export function toolbarOf(player: Player): HTMLElement {
   if (!embed) {
     const panel = iconButton("Settings (P)", ICONS.panel, () => player.togglePanel());
     player.on("panel", ({ isOpen }) => panel.setAttribute("aria-expanded", String(isOpen)));
-    bar.append(iconButton("Keys (H)", ICONS.help, () => player.showHelp()), panel);
+    const help = iconButton("Keys (H)", ICONS.help, () => player.showHelp());
+    help.classList.add("keys");
+    bar.append(help, panel);
   }
   return bar;
 }
@@ -79,15 +81,14 @@ function timeline(player: Player): HTMLElement[] {
   return [slider, text];
 }
 
-function statistics(player: Player): HTMLElement {
-  const text = make("span", { className: "statistics", "aria-hidden": true });
-  let last = -Infinity;
-  player.on("frame", ({ ms, width, height, fps }) => {
-    const now = performance.now();
-    if (fps && now - last < STATISTICS_MS) return;
-    last = now;
-    const pace = fps ? `${fps.toFixed(0)} fps · ` : "";
-    text.textContent = `${pace}${ms.toFixed(ms < 10 ? 1 : 0)} ms · ${width}×${height}`;
-  });
-  return text;
+/** The picture, and what helps to understand it: one menu. */
+function views(player: Player): HTMLElement | null {
+  const all = player.payload.views;
+  if (all.length < 2) return null;
+  const items = all.map(({ name, label }) => make("option", { value: name }, label));
+  const menu = make("select", { "aria-label": "View", title: "View (V)" }, ...items);
+  menu.value = player.view;
+  menu.onchange = () => player.setView(menu.value);
+  player.on("view", ({ name }) => (menu.value = name));
+  return make("span", { className: "views" }, icon(ICONS.views), menu);
 }

@@ -1,14 +1,14 @@
-"""``distal probe``: show what one pixel of a scene sees.
+"""``distal probe``: show what one pixel of a scene sees, or the locals of an ``@image`` there.
 
-Input: parsed arguments. Output: ray, march, shape and material in words, with the author's line; or
-the same as JSON for editors.
+Input: parsed arguments. Output: ray, march, shape and material in words, with the author's line; of
+an image the value of every local; or the same as JSON for editors.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -28,7 +28,12 @@ from distal.diagnostics import LoadError, excerpt
 from distal.lang.srgb import hex_of
 
 if TYPE_CHECKING:
+    from distal.diagnostics import Span
     from distal.scene.checks.probe import Probed
+    from distal.scene.checks.probe_image import ProbedImage
+
+
+LONGEST: Final = 56  # letters of an author's line beside a value
 
 
 @application.command()
@@ -48,8 +53,8 @@ def probe(
         bool, typer.Option("--json", help="Plain values for editors, on one line.")
     ] = False,
 ) -> None:
-    """Show what one pixel sees: its ray, the march, the shape and its material."""
-    from distal.lang.functions import Func
+    """Show what one pixel sees: its ray, the march, the shape; of an @image its locals."""
+    from distal.lang.functions import Func, Image
     from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.scene.checks.probe import probe as look
     from distal.scene.viewing.viewable import viewable
@@ -58,9 +63,19 @@ def probe(
     place = read_pixel(pixel, width_height)
     check_processor()
     obj: Any = load(scene)
-    if isinstance(obj, Func):
-        raise LoadError(f"'{obj.name}' is no scene and no shape; pixels are probed of these")
+    if isinstance(obj, Func) and not isinstance(obj, Image):
+        message = f"'{obj.name}' is no scene, shape or @image; pixels are probed of these"
+        raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())
+    if isinstance(obj, Image):
+        from distal.scene.checks.probe_image import probe_image
+
+        seen_locals = probe_image(obj, place, width_height, values, seconds)
+        if as_json:
+            answer(json.dumps({**seen_locals.as_json(), "time": seconds}))
+        else:
+            answer("\n".join(local_lines(seen_locals, seconds)))
+        return
     seen = viewable(obj, values, seconds)
     assert seen.scene is not None  # images were refused
     found = look(seen.scene, place, width_height, values, seconds)
@@ -85,6 +100,43 @@ def report_lines(found: Probed, seconds: float) -> Iterator[str]:
     yield f"gradient  {seen.steepness:.4g} of at most {found.slope:.4g}"
     yield from _shape(found)
     yield from _material(found)
+
+
+def local_lines(found: ProbedImage, seconds: float) -> Iterator[str]:
+    """Yield a text report of the locals of an image at a pixel."""
+    (x, y), (width, height) = found.pixel, found.size
+    yield f"pixel     {x},{y} of {width}x{height} at {seconds:g} s"
+    yield f"color     {_point(found.color)} {_hex(found.color[:3])}"
+    if not found.locals:
+        yield f"'{found.name}' has no locals"
+        return
+    rows = [
+        (each.name, str(each.type), _value(each.value), _line(each.place)) for each in found.locals
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(3)]
+    for row in rows:
+        cells = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False))
+        yield f"{cells}  {row[3]}".rstrip()
+
+
+def _value(value: Any) -> str:
+    if value is None:
+        return "not reached"
+    if isinstance(value, bool):
+        return str(value)
+    return f"{value:.4g}" if isinstance(value, float | int) else _point(value)
+
+
+def _hex(color: Iterable[float]) -> str:
+    """Return display values as the picture has them in 8 bits."""
+    return "#" + "".join(f"{round(255.0 * min(max(c, 0.0), 1.0)):02x}" for c in color)
+
+
+def _line(place: Span | None) -> str:
+    if place is None:
+        return ""
+    text = place.text.strip()
+    return f"line {place.line}: {text if len(text) <= LONGEST else text[: LONGEST - 1] + '…'}"
 
 
 def _shape(found: Probed) -> Iterator[str]:

@@ -11,7 +11,8 @@ import base64
 import json
 import re
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, Final
 
@@ -29,6 +30,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
+from distal.passes.entry import FRAME_OFFSET
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
@@ -166,17 +168,39 @@ def _plain(value: Any) -> Any:
 def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the programs, compressed by deflate if that is smaller.
 
-    They are compressed field by field: programs of one scene are similar, and deflate refers back
-    by at most 32 kB. Ten views of the bunny take half as much space as program by program.
+    They are compressed field by field, and the texts function by function: programs of one scene
+    have most of their functions in common, and deflate refers back by at most 32 kB. Nine views of
+    the bunny take 50 kB instead of 99 kB.
     """
     plain = json.dumps(programs, separators=(",", ":"))
-    columns = {key: [program[key] for program in programs] for key in programs[0]}
-    text = json.dumps(columns, separators=(",", ":"))
+    columns: dict[str, Any] = {key: [p[key] for p in programs] for key in programs[0]}
+    parts: dict[str, int] = {}
+    for key in ("vertex", "fragment"):
+        columns[key] = [
+            [parts.setdefault(part, len(parts)) for part in _functions(text)]
+            for text in columns[key]
+        ]
+    text = json.dumps({"parts": list(parts), **columns}, separators=(",", ":"))
     press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
     packed = base64.b64encode(press.compress(text.encode()) + press.flush()).decode("ascii")
     if len(packed) < len(plain):
         return {"encoding": "deflate-raw", "data": packed}
     return {"encoding": "plain", "data": programs}
+
+
+def _functions(text: str) -> Iterator[str]:
+    """Yield the parts of a text: one for each function or struct with what stands before it."""
+    lines: list[str] = []
+    depth = 0
+    for line in text.splitlines(keepends=True):
+        lines.append(line)
+        opened, closed = line.count("{"), line.count("}")
+        depth += opened - closed
+        if depth == 0 and closed:
+            yield "".join(lines)
+            lines = []
+    if lines:
+        yield "".join(lines)
 
 
 class PagePrograms:
@@ -202,7 +226,12 @@ class PagePrograms:
             CompileError: WebGL 2 cannot show it.
             LoadError: The data of a texture cannot be read.
         """
-        return self._added_program(self._seen.image(view, steered=self._seen.steers, encoded=True))
+        scene = self._seen.steers
+        # Of a scene, the player takes several samples where the picture rests.
+        sampled = scene and view == COLOR
+        return self._added_program(
+            self._seen.image(view, steered=scene, encoded=True, sampled=sampled)
+        )
 
     def add_guide(self, guide: Guide) -> int:
         """Add the program that guides the camera; -1 if WebGL 2 cannot run it."""
@@ -302,6 +331,8 @@ def _compiled(image: Func | Composed) -> tuple[Artifact, Module]:
     """Return the compiled text of a picture, and its module, which has the data of textures."""
     target = get_target(TARGET)
     module = lower(image.text() if isinstance(image, Composed) else image)
+    # The picture fills the page, the author's frame the part of it that nothing covers.
+    module = replace(module, uniforms=(*module.uniforms, FRAME_OFFSET))
     return emit(run_passes(module, target), target), module
 
 

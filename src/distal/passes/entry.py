@@ -20,7 +20,7 @@ from typing import Final
 
 from distal.diagnostics import CompileError, Span
 from distal.ir import nodes
-from distal.ir.build import number
+from distal.ir.build import number, subtract
 from distal.ir.nodes import (
     Apply,
     Call,
@@ -60,6 +60,9 @@ _FRAME_UNIFORMS: Final = {
     for name, type in FRAME.fields
     if name != "coord"
 }
+# A host that shows more than the author's frame declares this number: the frame's lower left corner
+# in pixels. The uniform ``resolution`` is then the size of the frame.
+FRAME_OFFSET: Final = UniformDeclaration("Frame_offset", VEC2, Origin.NUMBER, (0.0, 0.0))
 
 
 def run(module: Module, context: Context) -> Module:
@@ -69,7 +72,7 @@ def run(module: Module, context: Context) -> Module:
     functions = [_FrameReplacer(f, renamed, used).function() for f in module.functions]
     entry = module.entry
     if module.kind is EntryKind.IMAGE:
-        wrapper = _wrapper(functions, entry)
+        wrapper = _wrapper(functions, entry, module.uniforms)
         functions.append(wrapper)
         entry = wrapper.name
     frame = [u for name, u in _FRAME_UNIFORMS.items() if name in used]
@@ -95,9 +98,13 @@ def _rename(uniform: UniformDeclaration, renamed: dict[str, str]) -> UniformDecl
     return replace(uniform, name=name, interface=interface)
 
 
-def _wrapper(functions: list[Function], entry: str) -> Function:
+def _wrapper(
+    functions: list[Function], entry: str, uniforms: Iterable[UniformDeclaration]
+) -> Function:
     image = next(f for f in functions if f.name == entry)
-    coord = Read("coord", VEC2)
+    coord: Expr = Read("coord", VEC2)
+    if FRAME_OFFSET in uniforms:
+        coord = subtract(coord, Uniform(FRAME_OFFSET.name, VEC2))
     args = tuple(coord for p in image.params if p.type is VEC2)
     if len(args) != len(image.params):
         raise CompileError.at(

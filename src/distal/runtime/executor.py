@@ -230,6 +230,24 @@ class PythonExecutor:
         result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
 
+    def at_pixel(
+        self, function: Composed, place: tuple[float, float], options: RenderOptions
+    ) -> Any:
+        """Evaluate a function of a ``Frame`` at one place of a picture, by the reference.
+
+        Args:
+            function: A function whose only parameter is a ``Frame``.
+            place: The place in pixels, from the lower left.
+            options: The size of the picture, the time and the parameters.
+        """
+        lowered = self._lower(function, None)
+        declared = DeclaredUniforms([lowered.module])
+        uniforms = declared.for_kernel(0, *_uniforms(declared, options))
+        kernel = self.kernels.kernel(lowered, REFERENCE, 32)
+        at = np.array([place], np.float32)
+        result = kernel.evaluate([at], uniforms, lowered.resources)
+        return single(result, lowered.module.function(lowered.module.entry).result)
+
     def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
         """Return the value of an expression for values of its parameters and a time in seconds.
 

@@ -143,7 +143,7 @@ def test_probe_of_nothing_and_for_editors(run):
         (
             ("probe", "picture.py", "--at", "1,1"),
             1,
-            "error: 'picture' is no scene and no shape; pixels are probed of these\n",
+            "error: 'picture' is no scene, shape or @image; pixels are probed of these\n",
         ),
         (
             ("probe", "twisted.py", "--at", "640,0"),

@@ -7,10 +7,11 @@ changed to return the last value of the local as a color, on every path.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
+from distal.diagnostics import Span
 from distal.frontend import Assembly, lower
 from distal.frontend.signatures.signatures import read_signature
 from distal.ir.build import boolean, cast, field, number, swizzle
@@ -46,6 +47,7 @@ from distal.ir.walk import expressions, map_statement, nodes_in, root_of, statem
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.loading import copy_loaded_from
+from distal.passes.naming import FreshNames
 from distal.render import lettering, ranges
 from distal.render import local_views as library
 from distal.scene.lowering.picture import RANGE
@@ -70,12 +72,14 @@ class Local:
         type: The type, one that can be shown.
         varies: Whether the value differs from pixel to pixel.
         of: The name of the local itself.
+        place: Where it is first given a value.
     """
 
     name: str
     type: Type
     varies: bool
     of: str
+    place: Span | None = None
 
     def read(self, whole: Type) -> Expr:
         """Return the value, read from the local of type ``whole``."""
@@ -116,8 +120,13 @@ def view_of_image(image: Image, view: str) -> Composed:
     return LocalView(image, named[0])
 
 
-def locals_of(image: Image) -> list[Local]:
-    """Return the locals of an image's function that can be shown, in source order."""
+def locals_of(image: Image, shown: Container[Type] = SHOWN) -> list[Local]:
+    """Return the locals of an image's function that can be shown, in source order.
+
+    Args:
+        image: An author's image.
+        shown: The types that can be shown.
+    """
     module = lower(image)
     function = module.function(module.entry)
     written = set(image.python_function.__code__.co_varnames)
@@ -125,18 +134,18 @@ def locals_of(image: Image) -> list[Local]:
     found: dict[str, Local] = {}
     for stmt in statements_in(function.body):
         if isinstance(stmt, Let | Var) and _is_own(stmt.name, written):
-            for name, type in _parts(stmt.name, stmt.value.type):
-                found[name] = Local(name, type, stmt.name in varying, stmt.name)
+            for name, type in _parts(stmt.name, stmt.value.type, shown):
+                found[name] = Local(name, type, stmt.name in varying, stmt.name, stmt.span)
     return list(found.values())
 
 
-def _parts(name: str, type: Type) -> Iterator[tuple[str, Type]]:
+def _parts(name: str, type: Type, shown: Container[Type]) -> Iterator[tuple[str, Type]]:
     """Yield a local that can be shown, or the fields of a struct that can."""
-    if type in SHOWN:
+    if type in shown:
         yield name, type
     elif isinstance(type, Struct):
         for part, its in type.fields:
-            yield from _parts(f"{name}.{part}", its)
+            yield from _parts(f"{name}.{part}", its, shown)
 
 
 def _is_own(name: str, written: set[str]) -> bool:
@@ -252,47 +261,70 @@ class LocalView(_ImageView):
         call: Any = assembly.call(self._image, {slot: frame})
         function = assembly.function(call.function)
         local = self._local
-        value = Read(_free("shown", function), local.type)
-        reached = Read(_free("reached", function), BOOL)
-        color = self._shown(assembly, frame, value, reached)
-        body = tuple(_watched(function.body, local, (value, reached), color))
-        declared = (
-            Var(value.name, number(0, local.type)),
-            Var(reached.name, boolean(False)),
-        )
+        (kept,) = kept_values(function, (local,))
+        color = self._shown(assembly, frame, kept.value, kept.reached)
+        body = watched(function, (kept,), lambda _: color)
         name = f"{function.name}_{local.of}"
-        return assembly.define(name, function.params, VEC4, (*declared, *body), function.span)
+        return assembly.define(name, function.params, VEC4, body, function.span)
 
 
-def _free(stem: str, function: Function) -> str:
-    """Return a name that no local of the function has."""
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The variables that keep the last value of a local, and whether it has one."""
+
+    local: Local
+    value: Read
+    reached: Read
+
+
+def kept_values(function: Function, of: Iterable[Local]) -> list[Kept]:
+    """Return variables for the values of locals, with names that the function does not have."""
     taken = {p.name for p in function.params}
     taken |= {s.name for s in statements_in(function.body) if hasattr(s, "name")}
-    name, n = stem, 2
-    while name in taken:
-        name, n = f"{stem}_{n}", n + 1
-    return name
+    names = FreshNames(taken)
+    return [
+        Kept(x, Read(names.fresh("shown"), x.type), Read(names.fresh("reached"), BOOL)) for x in of
+    ]
+
+
+def watched(
+    function: Function, kept: Sequence[Kept], returned: Callable[[Expr], Expr]
+) -> tuple[Stmt, ...]:
+    """Return the body of a function that keeps the values of locals.
+
+    Args:
+        function: The function.
+        kept: The locals, and the variables that keep their values.
+        returned: The value to return in place of another one.
+    """
+    declared: list[Stmt] = []
+    for each in kept:
+        declared.append(Var(each.value.name, number(0, each.local.type)))
+        declared.append(Var(each.reached.name, boolean(False)))
+    return (*declared, *_watched(function.body, kept, returned))
 
 
 def _watched(
-    body: tuple[Stmt, ...], local: Local, kept: tuple[Read, Read], color: Expr
+    body: tuple[Stmt, ...], kept: Sequence[Kept], returned: Callable[[Expr], Expr]
 ) -> Iterator[Stmt]:
-    """Yield a block that records each value of a local and returns the last one as a color."""
-    name = local.of
-    ahead = {id(s.span) for s in statements_in(body) if isinstance(s, Assign) and _gives(s, name)}
+    ahead = {
+        (name, id(s.span))
+        for s in statements_in(body)
+        if isinstance(s, Assign)
+        for name in (root_of(s.target).name,)
+    }
     for stmt in body:
         if isinstance(stmt, Return):
-            yield Return(color, span=stmt.span)
+            yield Return(returned(stmt.value), span=stmt.span)
             continue
-        yield map_statement(
-            stmt, lambda e: e, lambda inner: tuple(_watched(inner, local, kept, color))
-        )
-        # A local that is first assigned in an inner block is declared before it, as zero.
-        hoisted = isinstance(stmt, Var) and stmt.name == name and id(stmt.span) in ahead
-        if _gives(stmt, name) and not hoisted:
-            value, reached = kept
-            yield Assign(value, local.read(_type_of(stmt)), span=stmt.span)
-            yield Assign(reached, boolean(True), span=stmt.span)
+        yield map_statement(stmt, lambda e: e, lambda inner: tuple(_watched(inner, kept, returned)))
+        for each in kept:
+            name = each.local.of
+            # A local that is first assigned in an inner block is declared before it, as zero.
+            hoisted = isinstance(stmt, Var) and stmt.name == name and (name, id(stmt.span)) in ahead
+            if _gives(stmt, name) and not hoisted:
+                yield Assign(each.value, each.local.read(_type_of(stmt)), span=stmt.span)
+                yield Assign(each.reached, boolean(True), span=stmt.span)
 
 
 def _gives(stmt: Stmt, name: str) -> bool:

@@ -94,7 +94,12 @@ class Viewable:
         return _file_of(self._source)
 
     def image(
-        self, view: str = COLOR, *, steered: bool = False, encoded: bool = False
+        self,
+        view: str = COLOR,
+        *,
+        steered: bool = False,
+        encoded: bool = False,
+        sampled: bool = False,
     ) -> Image | Composed:
         """Return the object to render and compile.
 
@@ -103,12 +108,13 @@ class Viewable:
             steered: Whether the camera is moved by a ``Steering``; no effect for an ``@image``.
             encoded: Whether pixels are display values. Otherwise they are linear light if the
                 renderer computes it, with a ``display`` that encodes it.
+            sampled: Whether a pixel is the mean of ``Samples`` rays; no effect for an ``@image``.
 
         Raises:
             ValueError: There is no such view.
         """
         if self.scene is not None:
-            return self.scene.view(view, steered=steered, encoded=encoded)
+            return self.scene.view(view, steered=steered, encoded=encoded, sampled=sampled)
         assert isinstance(self._source, Image)
         if view == COLOR:
             return self._source
