@@ -37,6 +37,11 @@ _PICTURE = """async (number) => {
   const bytes = new Uint8Array(await blob.arrayBuffer());
   return btoa(Array.from(bytes, (b) => String.fromCharCode(b)).join(""));
 }"""
+_ASPECT = """(number) => {
+  const [width, height] =
+    document.querySelectorAll("[data-distal]")[number].distal.payload.size;
+  return width / height;
+}"""
 _STATE = """(number) => {
   const player = document.querySelectorAll("[data-distal]")[number].distal;
   return {
@@ -84,8 +89,14 @@ class Looked:
             options["steering"] = Steering(
                 moved["yaw"], moved["pitch"], moved["zoom"], tuple(moved["pan"])
             )
+        # On a canvas narrower than the author's picture, the frame is as wide, in the middle.
+        aspect = self.page.evaluate(_ASPECT, self.number)
         height, width = shown.shape[:2]
-        # A page draws one sample a pixel.
+        kept = min(height, round(width / aspect))
+        low = (height - kept + 1) // 2
+        shown = shown[height - low - kept : height - low]
+        height = kept
+        # The picture is asked for with one sample a pixel.
         rendering = RenderOptions(
             size=(width, height), time=state["time"], params=state["parameters"], samples=1
         )

@@ -150,10 +150,17 @@ def test_the_first_frame_is_the_cpus(page, name):
         assert looked.state()["time"] == 0.0
 
 
-def test_what_is_to_be_seen_is_what_is_saved(page):
-    with looked_at(page(SCENE)) as looked:
+def test_what_is_to_be_seen_is_what_is_saved(page, tmp_path):
+    bare = tmp_path / "embedded.html"
+    viewable(example(SCENE)).scene.export(bare, embed=True)
+    bare.write_text(f"<!doctype html><div style='height:190px'>{bare.read_text()}</div>")
+    with looked_at(bare) as looked:
+        # A view other than the colors keeps one sample where it rests.
+        looked.page.evaluate("document.querySelector('[data-distal]').distal.setView('normal')")
         saved = looked.picture()[..., :3].astype(int)
-        shot = looked.page.locator("[data-distal] canvas").screenshot(type="png")
+        style = ".bar { visibility: hidden !important }"
+        canvas = looked.page.locator("[data-distal] canvas")
+        shot = canvas.screenshot(type="png", style=style)
         path = page(SCENE).with_suffix(".png")
         path.write_bytes(shot)
         seen = np.asarray(Image.open(path).convert("RGB")).astype(int)
@@ -288,7 +295,7 @@ def test_without_webgl_stand_the_poster_and_a_sentence(page):
 
 @pytest.mark.parametrize("style", ["", "img{max-width:100%;height:auto}", "img{all:unset}"])
 def test_the_poster_is_as_large_as_the_picture_will_be(page, tmp_path, style):
-    # The picture's height is the host's, however narrow that is: so must the poster's be.
+    # A narrow picture keeps the author's width: so must the poster.
     narrow = tmp_path / "narrow.html"
     text = page(SCENE).read_text(encoding="utf-8")
     narrow.write_text(text.replace("</head>", f"<style>{style}</style></head>"), encoding="utf-8")
@@ -297,9 +304,11 @@ def test_the_poster_is_as_large_as_the_picture_will_be(page, tmp_path, style):
         watched.page.get_by_text("WebGL 2").first.wait_for()
         box = watched.page.locator("[data-distal] > img").bounding_box()
         stage = watched.page.locator(".stage").bounding_box()
-        assert box["height"] == pytest.approx(stage["height"], abs=1)
-        assert box["width"] == pytest.approx(stage["height"] * 4 / 3, abs=2)
+        bar = watched.page.locator(".bar").bounding_box()
+        assert box["width"] == pytest.approx(stage["width"], abs=2)
+        assert box["height"] == pytest.approx(stage["width"] * 3 / 4, abs=2)
         assert box["x"] + box["width"] / 2 == pytest.approx(120, abs=1)
+        assert box["y"] + box["height"] / 2 == pytest.approx(bar["y"] / 2, abs=2)
 
 
 def test_without_script_stand_the_poster_and_a_sentence(page):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -883,3 +884,142 @@ def test_several_scenes_on_a_page_do_not_disturb_each_other_nor_the_page(tmp_pat
         assert page.page.evaluate("getComputedStyle(c1).display") == "block"
         page.ask("player.dispose()")
         assert page.page.evaluate("[...document.querySelectorAll('[data-distal]')][1].distal.view")
+
+
+# Sharper pictures, ranges of values, the frame
+
+
+SAMPLED = """
+uniform int Samples;
+void main() { fragment_color = vec4(float(Samples) / 32.0, 0.5, 0.0, 1.0); }
+"""
+
+
+def sampled(**changes: Any) -> dict[str, Any]:
+    number = uniform("Samples", "int", "number", 1)
+    return payload(program(SAMPLED, number), **changes)
+
+
+def test_a_picture_that_rests_gets_more_samples(tmp_path: Path) -> None:
+    with opened(tmp_path, sampled(embed=True)) as page:
+        page.page.evaluate(
+            "() => { window.seen = [];"
+            f" {PLAYER}.on('frame', (frame) => window.seen.push(frame.samples)) }}"
+        )
+        page.ask("player.resetAll(), player.setResolution(1), player.hands.changed()")
+        page.page.wait_for_function("window.seen.includes(16)")
+        taken = page.page.evaluate("window.seen")
+        assert [s for s in taken if s > 1] == [4, 16]
+        assert close(page.color(80, 20), (round(255 * 0.5), 128, 0))
+        assert page.frames(200) == 0  # and then nothing is drawn any more
+
+
+def test_a_picture_that_moves_has_one_sample(tmp_path: Path) -> None:
+    told = sampled(time={"start": 0.0, "duration": 10.0, "animated": True})
+    with opened(tmp_path, told, quiet=False) as page:
+        page.page.evaluate(
+            "() => { window.seen = [];"
+            f" {PLAYER}.on('frame', (frame) => window.seen.push(frame.samples)) }}"
+        )
+        page.page.wait_for_function("window.seen.length > 5")
+        assert set(page.page.evaluate("window.seen")) == {1}
+
+
+RANGED = """
+uniform float View_low; uniform float View_middle; uniform float View_high;
+uniform vec2 resolution;
+void main() {
+    // Values from 10 to 20, packed as in render.ranges; then the numbers of the range.
+    float value = 10.0 + 10.0 * gl_FragCoord.x / resolution.x;
+    float code = floor(8388608.0 + log2(1.0 + value * 65536.0) / 48.0 * 8388607.0 + 0.5);
+    float high = floor(code / 65536.0);
+    float middle = floor((code - 65536.0 * high) / 256.0);
+    vec3 bytes = vec3(high, middle, code - 65536.0 * high - 256.0 * middle) / 255.0;
+    vec3 told = vec3(View_low, View_middle, View_high) / 25.0;
+    fragment_color = vec4(View_low > View_high ? bytes : told, 1.0);
+}
+"""
+
+
+def test_a_view_is_told_the_range_of_its_values(tmp_path: Path) -> None:
+    names = ("View_low", "View_middle", "View_high")
+    numbers = [uniform(name, "float", "number", 0.0) for name in names]
+    told = payload(program(RANGED, pages.RESOLUTION, *numbers), embed=True)
+    with opened(tmp_path, told) as page:
+        # 64 columns: the second, the middle, the last but one.
+        expected = [10.0 + 10.0 * (i + 0.5) / 64.0 for i in (1, 31.5, 62)]
+        found = page.color(80, 20)
+        assert found == pytest.approx([255 * value / 25.0 for value in expected], abs=2)
+
+
+FRAMED = """
+uniform vec2 resolution; uniform vec2 Frame_offset;
+void main() {
+    vec2 at = (gl_FragCoord.xy - Frame_offset) / resolution;
+    bool inside = all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
+    fragment_color = vec4(inside ? 1.0 : 0.0, 0.0, 1.0, 1.0);
+}
+"""
+OFFSET = uniform("Frame_offset", "vec2", "number", [0.0, 0.0])
+
+
+def framed(**changes: Any) -> dict[str, Any]:
+    return payload(program(FRAMED, pages.RESOLUTION, OFFSET), size=[400, 300], **changes)
+
+
+def test_the_frame_lies_beside_the_panel_and_above_the_bar(tmp_path: Path) -> None:
+    size = {"width": 900, "height": 400}
+    with opened(tmp_path, framed(), viewport=size) as page:
+        panel = page.page.get_by_role("region", name="Settings").bounding_box()
+        bar = page.page.locator(".bar").bounding_box()
+        inside, outside = (255, 0, 255), (0, 0, 255)
+        assert close(page.color(2, 2), inside)
+        assert close(page.color(int(panel["x"]) - 3, int(bar["y"]) - 3), inside)
+        assert close(page.color(int(panel["x"]) + 3, 20), outside)
+        assert close(page.color(20, int(bar["y"]) + 3), outside)
+        page.page.keyboard.press("p")
+        page.settle()
+        assert close(page.color(int(panel["x"]) + 3, 20), inside)
+
+
+def test_a_portrait_screen_keeps_the_authors_width(tmp_path: Path) -> None:
+    size = {"width": 390, "height": 844}
+    with opened(tmp_path, framed(), viewport=size) as page:
+        bar = page.page.locator(".bar").bounding_box()
+        middle, half = bar["y"] / 2, 390 * 3 / 4 / 2
+        inside, outside = (255, 0, 255), (0, 0, 255)
+        for x in (1, 388):
+            assert close(page.color(x, int(middle - half) + 3), inside)
+            assert close(page.color(x, int(middle + half) - 3), inside)
+            assert close(page.color(x, int(middle - half) - 3), outside)
+            assert close(page.color(x, int(middle + half) + 3), outside)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844), (844, 390), (320, 568)])
+def test_controls_lie_on_the_page_and_not_on_one_another(tmp_path: Path, size: Any) -> None:
+    told = moving(parameters=[RED], steering={"elevation": 0.0})
+    told["views"].append({"name": "normal", "label": "Normal", "program": 0})
+    width, height = size
+    still = {"viewport": {"width": width, "height": height}, "reduced_motion": "reduce"}
+    with opened(tmp_path, told, **still) as page:
+        for is_open in (False, True):
+            if page.page.get_by_role("region", name="Settings").is_visible() != is_open:
+                page.ask("player.togglePanel()")
+            boxes = {
+                name: page.page.locator(name).bounding_box()
+                for name in (".bar", ".panel", ".title")
+                if page.page.locator(name).is_visible()
+            }
+            assert (".panel" in boxes) == is_open
+            for box in boxes.values():
+                assert box["x"] >= 0 and box["x"] + box["width"] <= width
+                assert box["y"] >= 0 and box["y"] + box["height"] <= height
+            for a, b in itertools.combinations(boxes.values(), 2):
+                beside = a["x"] + a["width"] <= b["x"] or b["x"] + b["width"] <= a["x"]
+                above = a["y"] + a["height"] <= b["y"] or b["y"] + b["height"] <= a["y"]
+                assert beside or above, boxes
+            menu = page.page.get_by_role("combobox", name="View")
+            assert menu.is_visible()
+            menu.select_option("Normal")
+            assert page.ask("player.view") == "normal"
+            menu.select_option("Color")

@@ -27,8 +27,10 @@ export function frameOn(
   { left, right, top, bottom }: Covered,
   aspect: number,
 ): { size: [number, number]; offset: [number, number] } {
-  const wide = width * Math.max(1 - left - right, LEAST);
+  // Whole pixels: the picture is then the same, pixel by pixel, as one of the frame's size.
+  const wide = Math.max(Math.round(width * Math.max(1 - left - right, LEAST)), 1);
   const high = height * Math.max(1 - top - bottom, LEAST);
-  const kept = Math.min(high, wide / aspect);
-  return { size: [wide, kept], offset: [width * left, height * bottom + (high - kept) / 2] };
+  const kept = Math.max(Math.round(Math.min(high, wide / aspect)), 1);
+  const low = Math.round(height * bottom + (high - kept) / 2);
+  return { size: [wide, kept], offset: [Math.round(width * left), low] };
 }

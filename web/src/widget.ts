@@ -23,8 +23,8 @@ export interface Model {
 /** How long Python is left alone between two messages: time runs 60 frames a second. */
 const PAUSE_MS = 100;
 // As the style sheet has them.
-const PANEL_PX = 288;
-const TOOLBAR_PX = 44;
+const PANEL_PX = 304 + 2 * 12;
+const TOOLBAR_PX = 44 + 12;
 
 export function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   const payload = model.get("payload") as Payload;

@@ -22,7 +22,7 @@ HIGH_SHARE: Final = 0.98
 def unpacked(red: float, green: float, blue: float) -> float:
     """Return the value that ``render.ranges.packed`` shows as a color of three bytes."""
     part = (65536.0 * red + 256.0 * green + blue - 8388608.0) / 8388607.0
-    size = (2.0 ** (48.0 * max(part, -part)) - 1.0) / 65536.0
+    size = (float(2.0 ** (48.0 * max(part, -part))) - 1.0) / 65536.0
     return size if part > 0.0 else -size
 
 

@@ -23,6 +23,7 @@ from distal.lang.runtime_access import executor
 from distal.render import film
 from distal.runtime.lowered import Lowered
 from distal.scene.checks.warnings import check_slopes, warn_of_black, warn_of_functions
+from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
 from distal.version import __version__
 from distal.video.formats import VideoError
@@ -103,6 +104,9 @@ def moving_picture(obj: Any, options: RenderOptions, view: str) -> MovingPicture
     image, settings = _image(shown, view, options.samples)
     lowered = Lowered.of(image, None)
     values = _values(shown, lowered, options.params)
+    # The range of the first frame's values, for all frames: it does not flicker.
+    first = replace(options, params=values, settings=settings)
+    settings = dict(with_range(image, first).settings)
     if shown.scene is not None:
         check_slopes(shown.scene.shape, values, options.time)
         warn_of_functions(shown.scene.shape, values, options.time)

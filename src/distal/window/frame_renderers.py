@@ -19,6 +19,7 @@ from distal.images.png import quantise
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.runtime.executor import DrawTarget
+from distal.scene.view_ranges import with_range
 from distal.window.session import Shot
 
 if TYPE_CHECKING:
@@ -228,11 +229,10 @@ class TextureRenderer:
 
     def _draw(self, viewable: Viewable, shot: Shot, texture: Any, size: tuple[int, int]) -> None:
         settings = viewable.settings(shot.steering) if shot.steering else {}
-        executor().draw(
-            viewable.image(shot.view, steered=shot.steering is not None, encoded=True),
-            DrawTarget(texture.create_view(), TEXTURE_FORMAT, self._adapter),
-            replace(render_options(shot, size, self.device), settings=settings),
-        )
+        image = viewable.image(shot.view, steered=shot.steering is not None, encoded=True)
+        options = replace(render_options(shot, size, self.device), settings=settings)
+        target = DrawTarget(texture.create_view(), TEXTURE_FORMAT, self._adapter)
+        executor().draw(image, target, with_range(image, options))
         self._wait_for(texture)
 
     def _wait_for(self, texture: Any) -> None:

@@ -9,7 +9,7 @@ export const HIGH_SHARE = 0.98;
 /** Return the value that `render.ranges.packed` shows as a color of three bytes. */
 export function unpacked(red: number, green: number, blue: number): number {
   let part = (((((65536 * red) + (256 * green)) + blue) - 8388608) / 8388607);
-  let size = (((2 ** (48 * Math.max(part, (-part)))) - 1) / 65536);
+  let size = ((((2 ** (48 * Math.max(part, (-part))))) - 1) / 65536);
   return ((part > 0) ? size : (-size));
 }
 
