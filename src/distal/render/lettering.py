@@ -87,7 +87,8 @@ def glyph_covers(glyph: int, square: vec2) -> bool:
     bits = float(LOWER[known]) if low else float(UPPER[known])
     row = square.y if low else square.y - 3.0
     bit = 4.0 - square.x + 5.0 * row
-    return floor(bits / 2.0**bit + 1e-4) % 2.0 > 0.5
+    shifted: float = floor(bits / 2.0**bit + 1e-4)
+    return shifted % 2.0 > 0.5
 
 
 @func

@@ -82,13 +82,15 @@ def exponent(shown: Range) -> float:
 def share_of(value: float, shown: Range) -> float:
     """Return the place of a value on the scale: 0 at ``low``, 1 at ``high``."""
     part = (value - shown.low) / max(shown.high - shown.low, 1e-20)
-    return clamp(part, 0.0, 1.0) ** exponent(shown)
+    share: float = clamp(part, 0.0, 1.0) ** exponent(shown)
+    return share
 
 
 @func
 def value_at(share: float, shown: Range) -> float:
     """Return the value at a place of the scale."""
-    return shown.low + (shown.high - shown.low) * share ** (1.0 / exponent(shown))
+    part: float = share ** (1.0 / exponent(shown))
+    return shown.low + (shown.high - shown.low) * part
 
 
 @func

@@ -97,7 +97,7 @@ def depth_color(share: float) -> vec3:
 @func
 def round_step(x: float) -> float:
     """Return the nearest of 1, 2 and 5 times a power of ten, by ratio."""
-    power = 10.0 ** floor(log2(max(x, 1e-30)) * 0.30102999566 + 1e-5)
+    power: float = 10.0 ** floor(log2(max(x, 1e-30)) * 0.30102999566 + 1e-5)
     part = x / power
     large = select(part < 7.0710678, 5.0, 10.0)
     return power * select(part < 1.4142136, 1.0, select(part < 3.1622777, 2.0, large))

@@ -22,7 +22,7 @@ from distal.lang.runtime_access import executor
 from distal.scene.checks.validation import place_json
 from distal.scene.lowering.local_views import Local, kept_values, locals_of, watched
 
-TYPES: Final = frozenset(
+TYPES: Final[frozenset[Type]] = frozenset(
     (FLOAT, INT, UINT, BOOL, *(Vector(kind, n) for kind in Kind for n in (2, 3, 4)))
 )
 
@@ -122,7 +122,7 @@ class _Program(Composed):
     """An image's function, changed to return its locals and the color."""
 
     signature = (("frame", FRAME),)
-    result = VEC3  # until it is composed
+    result: Type = VEC3  # until it is composed
 
     def __init__(self, image: Image, found: list[Local]) -> None:
         self.name = f"probe of {image.name}"
