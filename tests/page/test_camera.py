@@ -89,10 +89,7 @@ def test_the_pages_guide_is_the_windows(tmp_path: Path) -> None:
     guide = Guide(scene)
     with looked_at(page_of(tmp_path, scene), viewport={"width": 160, "height": 164}) as looked:
         looked.settle()
-        size = looked.page.evaluate(
-            "() => { const c = document.querySelector('[data-distal]').shadowRoot"
-            ".querySelector('canvas'); return [c.width, c.height] }"
-        )
+        size = looked.page.evaluate("document.querySelector('[data-distal]').distal.frameSize")
         moment = Moment(tuple(size))
         source = np.random.default_rng(5)
         for _ in range(12):

@@ -223,6 +223,13 @@ export class Player {
     this.#renderer.scale = scale;
   }
 
+  /** The size in pixels of the part of the canvas that shows the author's frame. */
+  get frameSize(): [number, number] {
+    const { canvas, covered } = this.#frame;
+    const [wide, high] = this.payload.size;
+    return frameOn(canvas.width, canvas.height, covered, wide / high).size;
+  }
+
   /** A PNG of the picture at full scale, without what covers it; null where there is none. */
   screenshot(samples = FINEST_SAMPLES): Promise<Blob | null> {
     return this.#state === "ready" ? this.#renderer.capture(samples) : Promise.resolve(null);
@@ -360,10 +367,7 @@ export class Player {
     const source = this.#programs[this.payload.steering?.guide ?? -1];
     if (!source || !this.camera) return;
     this.camera.ask = async (action, now, goal) => {
-      const { width, height } = this.#frame.canvas;
-      const [wide, high] = this.payload.size;
-      const { size } = frameOn(width, height, this.#frame.covered, wide / high);
-      const number = question(action, now, goal, size);
+      const number = question(action, now, goal, this.frameSize);
       const inputs = { ...this.#subject().inputs(GUIDE_PIXELS, 1, true), number };
       const bytes = await this.#renderer.pixels(source, inputs, [GUIDE_PIXELS, 1]);
       return bytes && answer(bytes);
