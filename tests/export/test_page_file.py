@@ -27,7 +27,7 @@ from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang import resources as lang
 
 # The issue's measure.
-MOST_KB = 40  # the goal is 60
+MOST_KB = 52  # 50 with views of nine locals, their legends and the samples; the goal is 60
 
 RINGS = '''
 """Rings, one in another.
@@ -120,7 +120,8 @@ def test_the_payload_is_what_the_player_is_promised(rings, tmp_path):
     assert told["time"] == {"start": 0.0, "duration": 4.0, "animated": False}
     assert told["steering"] is None
     assert told["values"] == {"softness": 0.5}
-    assert [view["name"] for view in told["views"]] == ["color", "coordinate", "signal"]
+    names = [view["name"] for view in told["views"]]
+    assert names == ["color", "coordinate", "signal", "local:d"]
     assert told["files"] == ["a_file.py"]
     by_name = {parameter["name"]: parameter for parameter in told["parameters"]}
     assert by_name["softness"] | {"default": 0.3, "low": 0.0, "high": 1.0} == by_name["softness"]
@@ -213,7 +214,8 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
     obj_view = distal.scene.viewing.viewable.viewable(obj).image("signal").name
     bad = obj_view
     made = obj.export(path)
-    assert dict(made.omitted) == {"signal": "it cannot be said"}
+    # The signal is the local d: one program for both.
+    assert dict(made.omitted) == dict.fromkeys(("signal", "local:d"), "it cannot be said")
     views = Parts(path.read_text(encoding="utf-8")).payload["views"]
     assert [view["name"] for view in views] == ["color", "coordinate"]
     result = CliRunner().invoke(application, ["export", str(rings), "-o", str(path)])

@@ -132,6 +132,16 @@ def test_probe_of_nothing_and_for_editors(run):
     assert made["material"]["color"] == [1.0, 0.0, 0.0]
 
 
+def test_probe_of_an_image_lists_its_locals(run):
+    lines = run("probe", "picture.py", "--at", "1,1", "--size", "4x4").stdout.splitlines()
+    assert lines[0] == "pixel     1,1 of 4x4 at 0 s"
+    assert lines[2].startswith("height  float  ")
+    assert "line " in lines[2]
+    made = json.loads(run("probe", "picture.py", "--at", "1,1", "--json").stdout)
+    assert [each["name"] for each in made["locals"]] == ["height"]
+    assert made["time"] == 0.0
+
+
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
@@ -139,11 +149,6 @@ def test_probe_of_nothing_and_for_editors(run):
             ("check", "picture.py"),
             1,
             "error: 'picture' is no scene and no shape; claims are checked of these\n",
-        ),
-        (
-            ("probe", "picture.py", "--at", "1,1"),
-            1,
-            "error: 'picture' is no scene, shape or @image; pixels are probed of these\n",
         ),
         (
             ("probe", "twisted.py", "--at", "640,0"),
