@@ -76,7 +76,7 @@ LINE_WIDTH = 4.0 * ADVANCE
 @func
 def square_size(resolution: vec2) -> float:
     """Return the size of a square of the lettering, in pixels."""
-    return max(floor(min(resolution.x, resolution.y) / 320.0 + 0.6), 1.0)
+    return floor(min(resolution.x, resolution.y) / 480.0 + 1.0)
 
 
 @func
