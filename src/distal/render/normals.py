@@ -22,6 +22,17 @@ def unit_or_up(v: vec3) -> vec3:
 
 
 @func
+def tangent(n: vec3) -> vec3:
+    """Return a unit vector at right angles to a unit vector, continuous but for straight down.
+
+    Source: Jeppe Revall Frisvad, "Building an Orthonormal Basis from a 3D Unit Vector Without
+        Normalization" (2012).
+    """
+    a = 1.0 / max(1.0 + n.y, 1e-6)
+    return vec3(1.0 - n.x * n.x * a, -n.x, -n.x * n.z * a)
+
+
+@func
 def exact_normal(distance: Field3, p: vec3) -> vec3:
     """Return the normal by the field's derivative."""
     return unit_or_up(gradient(distance, p))

@@ -1,0 +1,311 @@
+"""Shadows: how much of a light's disc is visible from a point.
+
+Input: a field, a point, a light. Output: the visible share, from 0 to 1. There is no noise: a point
+has the same shadow on every target and in every frame. Decision 21 has the measurements.
+"""
+
+from __future__ import annotations
+
+from distal.fields.guarantees import Bounds
+from distal.lang import (
+    Field3,
+    abs,
+    clamp,
+    cos,
+    cross,
+    func,
+    gradient,
+    inversesqrt,
+    length,
+    max,
+    min,
+    normalize,
+    select,
+    sin,
+    sqrt,
+    struct,
+    vec3,
+)
+from distal.render.camera import Ray
+from distal.render.lights import LightSample
+from distal.render.march import MOST_STEPS, March, crossing
+from distal.render.normals import tangent
+
+SHARPEST = 0.003  # smallest tangent of a light's half angle: sharper shadows would be noisy
+NARROW = 0.01  # below this tangent, one ray to the middle of the light is enough
+ENOUGH_SAMPLES = 4  # from so many samples of a pixel on, each has one ray to a wide light
+MOST_RAYS = 16  # rays to the widest lights, seen by one sample
+GOLDEN_ANGLE = 2.399963
+HALF_TURN = 3.14159265
+
+# A ray that is nearer to a surface than this fraction of its length is in it; late on its way it
+# takes steps of at least the other fraction, or it would end before it reaches farther surfaces.
+NEARLY = 0.0003
+HURRY = 0.02
+# A ray goes on towards a surface by this part of the longest step that no surface can be hidden in
+# if the field is linear; so many free distances at most, where the field grows.
+RELAXED = 0.8
+LONGEST = 4.0
+# Two steps with slopes along the ray that differ by less are steps towards a flat surface.
+ALIKE = 0.02
+# The part of the depth between two flat faces from which on a ray is hidden by both.
+FLAT = 0.8
+# A ray with a shorter chord and a smaller slope at the entry grazes something.
+GRAZING = 0.08
+# The least |gradient| by which a value is divided.
+FLATTEST = 0.3
+
+# What ``open_share`` returns before any surface, and for a ray that goes through two faces.
+OPEN = 1e9
+CROSSED = -4.0
+
+# Where the next point of a shadow ray is.
+OUTSIDE = 0
+INSIDE = 1
+MIDDLE = 2  # in the middle of a chord whose two ends are known
+
+
+@struct
+class Opening:
+    """What a shadow ray finds.
+
+    Attributes:
+        share: How far a light's disc is from the shadow; or how much of it is visible, 0 to 1.
+        lost: Whether the steps of a ray ran out.
+    """
+
+    share: float
+    lost: bool = False
+
+
+@func
+def step_outside(value: float, slope: float, before: float, width: float) -> float:
+    """Return the step of a shadow ray to its next point.
+
+    A longer step than the free distance is taken back if the two free balls do not touch.
+
+    Args:
+        value: The free distance.
+        slope: The growth of the field along the ray, over the last step.
+        before: The growth over the step before.
+        width: Radius of the light's disc here.
+    """
+    if slope > 0.0:
+        touching = min((1.0 + slope) / max(1.0 - slope, 0.1), LONGEST)
+        return value * (1.0 + RELAXED * touching)
+    if slope < -0.005 and abs(slope - before) < ALIKE:
+        return value / -slope  # Newton's step to a flat surface
+    if value > 3.0 * width:
+        return value * (1.0 + RELAXED * (1.0 + slope) / (1.0 - slope))
+    return value
+
+
+@func
+def open_share(
+    field: Field3,
+    ray: Ray,
+    width: float,
+    end: float,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    steep: bool,
+) -> Opening:
+    """Return how far the disc of a light is from the shadow, as one ray to its middle finds it.
+
+    Args:
+        field: Signed distance.
+        ray: The ray to the middle of the disc.
+        width: Radius of the disc at distance 1.
+        end: Distance along the ray where it ends.
+        bounds: Box around the surface.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps.
+        steep: Whether values may be less than distances; a constant.
+
+    Returns:
+        The distance of the closest surface from the ray, in radii of the disc there: 1 or more if
+        the whole disc is open, 0 if a straight edge is in the middle, -1 or less if the whole disc
+        is hidden; ``CROSSED`` if the ray goes through both sides of something.
+    """
+    span = crossing(ray, bounds)
+    last = min(end, span.y)
+    t = max(span.x, 0.0) + numbers.threshold
+    share = OPEN
+    closest = t
+    free = 0.0  # the distance at the previous point
+    step = 0.0  # from the previous point to this one
+    slope = 1.0
+    entry = 0.0  # the slope along the ray where it went in, and the place
+    entered = 0.0
+    left = 0.0  # where it came out; the next point is the middle of the chord
+    count = 0  # points inside
+    state = OUTSIDE
+    for i in range(min(steps, MOST_STEPS)):
+        if t > last or share <= -1.0:
+            break
+        p = ray.origin + t * ray.direction
+        value = field(p) / numbers.divisor
+        if value < share * width * t:
+            share = value / (width * t)
+            closest = t
+        if state == MIDDLE:
+            # Two flat faces: half the chord is as deep as the entry predicts. Round: half as deep.
+            if value < -FLAT * entry * (t - entered):
+                share = CROSSED
+            t = left
+            free = 0.0
+            step = 0.0
+            state = OUTSIDE
+        elif (
+            state == OUTSIDE
+            and step > free
+            and value + free < step
+            and not (abs(value) < NEARLY * t and abs((value - free) / step - slope) < ALIKE)
+        ):
+            # The two free balls do not touch, and it is not the surface that was predicted: go back
+            # to the edge of the first.
+            t += free - step
+            step = free
+        else:
+            before = slope
+            slope = select(
+                step > 0.0, (value - free) / max(step, 1e-9), select(value < 0.0, -1.0, 1.0)
+            )
+            free = value
+            if state == OUTSIDE and value < NEARLY * t and slope < 0.0:
+                state = INSIDE
+                count = 0
+                entry = clamp(-slope, 1e-3, 1.0)
+                entered = t + value / entry
+            if state == INSIDE and value > 0.0 and slope > 0.0:
+                left = t
+                chord = t - value / entry - entered
+                if chord > 4.0 * NEARLY * t:
+                    state = MIDDLE
+                    step = 0.5 * chord - (t - entered)
+                else:
+                    state = OUTSIDE
+                    if entry * numbers.steepest > GRAZING:
+                        share = CROSSED
+            if state == INSIDE:
+                count += 1
+                step = max(abs(value), max(NEARLY, 0.1 * width * float(count)) * t)
+                step = min(step, 0.15 * t + 2.0 * numbers.threshold)
+            elif state == OUTSIDE:
+                least = (HURRY if 3 * i > 2 * steps else NEARLY) * t
+                step = max(step_outside(value, slope, before, width * t), least)
+                if t + step > last and t + value < last:
+                    # The free ball ends before the ray does: try the longer step at the ray's end.
+                    step = last - t
+            t += step
+    lost = t <= last and share > -1.0
+    if steep and share < 1.0 and share > -1.0:
+        # The local gradient makes a distance of a value that is too small.
+        p = ray.origin + closest * ray.direction
+        share = share / true_slope(length(gradient(field, p)) / numbers.divisor, numbers)
+    return Opening(share, lost)
+
+
+@func
+def true_slope(steepness: float, numbers: March) -> float:
+    """Return |gradient| of a field at a point, within the bounds by which values are divided.
+
+    Dividing by it makes a distance of a value near the surface.
+
+    Args:
+        steepness: |gradient|.
+        numbers: The parameters of the march.
+    """
+    return max(steepness, FLATTEST / numbers.steepest)
+
+
+@func
+def toward_light(light: LightSample, k: int, count: int, spread: float) -> vec3:
+    """Return the unit direction to a point of a light's disc, the points in a sunflower's order.
+
+    Args:
+        light: The light.
+        k: The number of the point, from 0.
+        count: How many points there are.
+        spread: Distance of the outermost point from the middle, in radii of the disc.
+    """
+    ahead = light.direction
+    right = tangent(ahead)
+    above = cross(ahead, right)
+    pairs = (count + 1) // 2
+    pair = k // 2
+    radius = spread * light.radius * sqrt((float(pair) + 0.5) / float(pairs))
+    angle = GOLDEN_ANGLE * float(pair) + select(k % 2 == 1, HALF_TURN, 0.0)
+    return normalize(ahead + radius * (cos(angle) * right + sin(angle) * above))
+
+
+@func
+def soft_shadow(
+    field: Field3,
+    origin: vec3,
+    light: LightSample,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    steep: bool = False,
+    sample: int = 0,
+    samples: int = 1,
+) -> Opening:
+    """Return the visible fraction of a light: 1 in full light, 0 in full shadow.
+
+    One sample approximates the light's disc by one ray to its middle: the share that a straight
+    edge leaves open, by the closest approach to the ray, outside or inside (Inigo Quilez, "Soft
+    shadows in raymarched SDFs"). A ray through two faces of something has no such edge: for a
+    narrow light it counts as hidden, for a wide one 4 rays or more share the disc. From 4 samples
+    of a pixel on, each sample has one ray to its own part of the disc, and their mean is the share.
+
+    Args:
+        field: Signed distance.
+        origin: Start of the shadow ray.
+        light: The light at the point.
+        bounds: Box around the surface.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps of one ray.
+        steep: Whether values may be less than distances; a constant.
+        sample: The number of the pixel's sample, from 0.
+        samples: How many samples the pixel has.
+    """
+    end = min(light.distance, numbers.far)
+    whole = max(light.radius, SHARPEST)
+    middle = Ray(origin, light.direction)
+    if light.radius < NARROW:
+        only = open_share(field, middle, whole, end, bounds, numbers, steps, steep)
+        return Opening(share_of_disc(only.share), only.lost)
+    by_sample = samples >= ENOUGH_SAMPLES
+    count = samples if by_sample else rays_to(light.radius)
+    part = inversesqrt(float(count))
+    total = 0.0
+    lost = False
+    # The first ray, of number -1, goes to the middle of the whole disc.
+    for k in range(MOST_RAYS + 1):
+        if k > 0 and (by_sample or k > count):
+            break
+        number = sample if by_sample else k - 1
+        spread = select(number < 0, 0.0, 1.0 - 0.5 * part)
+        ray = Ray(origin, toward_light(light, max(number, 0), count, spread))
+        width = select(number < 0, whole, whole * part)
+        found = open_share(field, ray, width, end, bounds, numbers, steps, steep)
+        lost = lost or found.lost
+        if number < 0 and found.share > CROSSED:
+            return Opening(share_of_disc(found.share), lost)
+        total += select(number < 0, 0.0, share_of_disc(found.share))
+    return Opening(total / (1.0 if by_sample else float(count)), lost)
+
+
+@func
+def rays_to(radius: float) -> int:
+    """Return the number of rays to a light with a disc of this radius, seen by one sample."""
+    return 4 if radius <= 0.2 else (8 if radius <= 0.4 else MOST_RAYS)
+
+
+@func
+def share_of_disc(s: float) -> float:
+    """Return how much of a disc an edge leaves open that is ``s`` radii from its middle."""
+    c = clamp(s, -1.0, 1.0)
+    return 0.25 * (1.0 + c) * (1.0 + c) * (2.0 - c)
