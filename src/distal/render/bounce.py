@@ -221,7 +221,10 @@ def seen_refracted(
             continue
         alpha = 1.0
         point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
-        exact = at_surface(field, here, hit, numbers)
+        continues = brightest(throughput * (point.shares.mirrored + point.shares.transmitted))
+        exact = hit.t
+        if point.inside or continues >= DIMMEST:
+            exact = at_surface(field, here, hit, numbers)
         if point.inside:
             throughput = throughput * exp(-point.surface.absorption * (exact + ways[waiting]))
         else:

@@ -37,7 +37,7 @@ from distal.render.normals import EXACT, normal, unit_or_up
 # the way from a surface is doubled; the steps of Newton's method to a surface.
 ROUNDING = 2.5e-7
 LEAVING_STEPS = 12
-NEWTON_STEPS = 3
+NEWTON_STEPS = 2
 
 
 @struct
