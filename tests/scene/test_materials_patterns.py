@@ -133,7 +133,7 @@ def test_pictures_lie_on_all_sides():
     half[1] = BLUE
     assert emitted(image_pattern(half, size=2.0), p=(0, 0.5, 0)) == pytest.approx(RED)
     triplanar = image_pattern(half, "triplanar", size=2.0)
-    assert triplanar.uses == {"p", "n"}
+    assert triplanar.uses == {"p", "n", "footprint"}
     assert emitted(triplanar, p=(0, -0.5, 0), n=(0, 0, 1)) == pytest.approx(BLUE)
     around = image_pattern(half, "spherical")
     assert emitted(around, p=(1.0, -1.0, 0)) == pytest.approx(BLUE)

@@ -159,7 +159,6 @@ def test_a_shape_alone_is_shown_on_its_stage(tmp_path):
         ({"quality": "best"}, "a quality is low, medium, high, lossless or a number from 0 to 100"),
         ({"quality": 101}, "a quality is low, medium, high, lossless or a number from 0 to 100"),
         ({"quality": float("nan")}, "a quality is low, medium, high, lossless or a number"),
-        ({"samples": 4}, "samples are for scenes and shapes; 'picture' is an @image"),
         ({"samples": 0}, "a pixel has 1 to 65536 samples, not 0"),
         ({"view": "depth"}, "view 'depth'"),
         ({"params": {"glew": 1.0}}, "there is no parameter 'glew'; parameters: glow"),

@@ -24,7 +24,7 @@ from distal.devices.base import cancel_test
 from distal.devices.threads import usable_threads
 from distal.images.atomic_files import check_destination
 from distal.images.picture import Picture
-from distal.lang.render_options import Cancel, RenderOptions, checked_size
+from distal.lang.render_options import Cancel, RenderOptions, checked_samples, checked_size
 from distal.version import __version__
 from distal.video.animation import Animation, animate
 from distal.video.encoding import Encoding, piece_name
@@ -155,6 +155,10 @@ def video(
     else:
         library()
         check_destination(output)
+    try:
+        checked_samples(samples)
+    except ValueError as error:
+        raise VideoError(str(error)) from None
     stop, is_cancelled = threading.Event(), cancel_test(cancel)
     options = RenderOptions(
         size=size,

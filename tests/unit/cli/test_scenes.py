@@ -156,9 +156,9 @@ def test_probe_of_an_image_lists_its_locals(run):
             "error: a picture of 640x480 ends at 639,479\n",
         ),
         (
-            ("render", "picture.py", "-o", "a.png", "--samples", "4"),
+            ("render", "picture.py", "-o", "a.png", "--transparent"),
             2,
-            "error: --samples is for scenes and shapes; 'picture' is an @image\n",
+            "error: --transparent is for scenes and shapes; 'picture' is an @image\n",
         ),
         (
             ("render", "picture.py", "-o", "a.png", "--view", "local:depth"),
