@@ -107,7 +107,8 @@ def test_a_pixel_is_the_mean_of_what_is_there(samples):
 
 def test_samples_do_not_move_the_picture():
     """The middle of a bright spot stays where it is, for every number of samples."""
-    glow = Scene(Sphere(0.5), [], background=(1.0, 1.0, 1.0), ambient_occlusion=0.0)
+    view = Camera((0.3, 0.2, 5.0))
+    glow = Scene(Sphere(0.5).paint("#000"), [], view, (1.0, 1.0, 1.0), floor=False)
     x = np.arange(SIZE[0]) + 0.5
     middles = []
     for samples in (1, 2, 3, 8):

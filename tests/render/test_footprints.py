@@ -305,5 +305,5 @@ def test_fog_is_seen_in_a_mirror_in_the_direction_of_the_mirror_image():
 
 
 def test_fog_without_a_color_is_no_number_of_the_scene():
-    assert "fog" not in Scene(Sphere()).numbers
+    assert "fog" not in Scene(Sphere(), background="#888").numbers
     assert "fog" in Scene(Sphere(), fog="#888").numbers

@@ -155,7 +155,8 @@ class Dressed:
 
     @property
     def _fog(self) -> Any:
-        return (0.0, 0.0, 0.0) if self._own_background else self._dressing.look["horizon"]
+        """The color of the fog; None for that of the author's background at the horizon."""
+        return None if self._own_background else self._dressing.look["horizon"]
 
     @property
     def _fog_density(self) -> Any:
