@@ -288,6 +288,9 @@ def test_another_look_keeps_what_the_author_gave():
     assert changed.background.call.func is not scene.background.call.func
     assert changed.place == scene.place
     assert viewable(scene).scene is scene
+    lamps = (PointLight((i, 2.0, 3.0)) for i in range(2))
+    once = viewable(Scene((Sphere(r) for r in (0.5, 0.7)), lamps), look="night").scene
+    assert len(once.lights) == 2
     staged = viewable(Sphere(), look="night").scene
     assert staged.tone_map == ROWS["night"].tone_map
     assert staged.asked_display == {"look": "night"}

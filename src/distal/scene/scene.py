@@ -158,8 +158,8 @@ class Scene(Composed, Presentable):
         self.staged: tuple[Mapping[str, Any], float] | None = self.__dict__.get("staged")
         self._pictures: dict[tuple[Any, ...], Composed] = {}
         self._given: dict[str, Any] = {
-            "shape": shape,
-            "lights": lights,
+            "shape": made.shape,  # not ``shape``, which may be a generator
+            "lights": None if lights is None else made.given_lights,
             "camera": camera,
             "background": background,
             "floor": floor,

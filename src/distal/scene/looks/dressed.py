@@ -68,8 +68,8 @@ class Dressed:
         self.shape: BaseShape = one_shape(given.shape, place)
         params, time = staged or ({}, 0.0)
         self._dressing = Dressing(look, lambda: subject_box(self.shape.node, params, time))
-        self._lights = checked_lights(given.lights, place)
-        skies = any(isinstance(light, Surroundings) for light in self._lights)
+        self.given_lights = checked_lights(given.lights, place)
+        skies = any(isinstance(light, Surroundings) for light in self.given_lights)
         self._own_background = given.background is not None or skies
         self._own_camera: BaseCamera | None = None
         if given.camera is not None:
@@ -112,7 +112,7 @@ class Dressed:
     def background(self) -> Background:
         """The background."""
         if self._own_background:
-            return as_background(self._given.background, self._lights, self._place)
+            return as_background(self._given.background, self.given_lights, self._place)
         return self._dressing.background
 
     @property
@@ -121,7 +121,7 @@ class Dressed:
         around = self.background.light
         if self._given.lights is None and around is None:
             return self._dressing.lights
-        return with_surroundings(self._lights, around)
+        return with_surroundings(self.given_lights, around)
 
     @property
     def camera(self) -> BaseCamera:
