@@ -161,7 +161,7 @@ def outdoor(
     rim_elevation: Number = 0.0,
     rim_intensity: Number = 0.0,
     rim_color: Color = ...,
-    fill: Number = 0.46,
+    fill: Number = 0.54,
     sky: Color = ...,
     ground: Color = ...,
     zenith: Color = ...,
