@@ -57,7 +57,7 @@ def check(
         message = f"'{obj.name}' is no scene and no shape; claims are checked of these"
         raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())
-    shape = obj.shape if isinstance(obj, Scene) else obj
+    shape = obj.subject if isinstance(obj, Scene) else obj
     report = run_checks(shape, values, seconds, seed)
     if as_json:
         answer(json.dumps({**report.as_json(), "name": obj.name}))

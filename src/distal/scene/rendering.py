@@ -74,7 +74,7 @@ def _check_visible(
 ) -> None:
     """Refuse a picture taken from inside a solid; warn of a black picture."""
     if not view.transparent and not shows(picture.array[..., 3]):
-        message = f"the camera is inside '{scene.shape.name}', and no ray finds a way out"
+        message = f"the camera is inside '{scene.subject.name}', and no ray finds a way out"
         refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
     warn_of_black(scene, picture, options.params, options.time)
 

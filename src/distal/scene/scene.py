@@ -140,6 +140,7 @@ class Scene(Composed, Presentable):
         made = Dressed(given, as_look(look, place), place, self.__dict__.get("staged"))
         standing = floor if floor is not None else made.wants_floor(named=look is not None)
         self.shape = made.shown_shape(floor=standing)
+        self.subject = made.shape  # without the look's floor
         check_cells(self.shape.node)
         self.lights, self.background, self.camera = made.lights, made.background, made.camera
         self.material = made.material

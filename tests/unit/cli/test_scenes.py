@@ -25,6 +25,8 @@ from distal import Box, Camera, Scene
 scene = Scene(Box(1.0, 2.0, 1.0).twist(2.0).paint("#ff0000"), camera=Camera((0, 0, 4)))
 """
 
+FLOORLESS = TWISTED.replace("))\n", "), floor=False)\n")
+
 PICTURE = """\
 from distal.lang import Frame, func, image, vec3
 
@@ -48,7 +50,13 @@ shape = (Box(1.0) - one).named("die")
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    files = {"lying": LYING, "twisted": TWISTED, "picture": PICTURE, "shapes": SHAPES}
+    files = {
+        "lying": LYING,
+        "twisted": TWISTED,
+        "floorless": FLOORLESS,
+        "picture": PICTURE,
+        "shapes": SHAPES,
+    }
     for name, text in files.items():
         Path(f"{name}.py").write_text(text)
     return lambda *words: CliRunner().invoke(application, words)
@@ -102,7 +110,7 @@ def test_check_for_editors_is_one_line_of_json(run):
 
 
 def test_probe_tells_what_a_pixel_saw(run):
-    result = run("probe", "twisted.py", "--at", "32,24", "--size", "64x48")
+    result = run("probe", "floorless.py", "--at", "32,24", "--size", "64x48")
     assert result.exit_code == 0
     lines = result.stdout.rstrip("\n").split("\n")
     assert lines[0] == "pixel     32,24 of 64x48 at 0 s"
@@ -114,19 +122,19 @@ def test_probe_tells_what_a_pixel_saw(run):
         "part of   twist",
     ]
     assert lines[8:12] == [
-        "  --> twisted.py:2:15",
+        "  --> floorless.py:2:15",
         "   |",
-        f" 2 | {TWISTED.splitlines()[1]}",
+        f" 2 | {FLOORLESS.splitlines()[1]}",
         "   |               ^^^^^^^^^^^^^^^^^^",
     ]
     assert lines[12] == "material  matte: color (1, 0, 0) #ff0000, diffuse 1"
 
 
 def test_probe_of_nothing_and_for_editors(run):
-    result = run("probe", "twisted.py", "--at", "0,0", "--size", "64x48")
+    result = run("probe", "floorless.py", "--at", "0,0", "--size", "64x48")
     assert result.stdout.endswith("\nnothing   the ray passed the box\n")
     words = ("--at", "32,24", "--size", "64x48", "--json", "--time", "2")
-    made = json.loads(run("probe", "twisted.py", *words).stdout)
+    made = json.loads(run("probe", "floorless.py", *words).stdout)
     assert made["hit"]
     assert made["time"] == 2.0
     assert made["material"]["color"] == [1.0, 0.0, 0.0]

@@ -175,7 +175,7 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
     shut = scene.renderer != "refracted"  # from inside glass a camera can see out
     if shut and executor().call(eye, (), {}, params=_read(eye, params), time=time) < 0.0:
         refuse(
-            f"the camera is inside '{scene.shape.name}', and all around it is dark",
+            f"the camera is inside '{scene.subject.name}', and all around it is dark",
             "move the camera, or look at the shape with view='slice'",
             scene.place,
         )
