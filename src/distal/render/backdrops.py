@@ -7,7 +7,6 @@ camera. Does not depend on the lights that ``scene.looks`` makes of the same num
 
 from __future__ import annotations
 
-from distal.fields.noise.lattice import fraction, lattice_hash
 from distal.lang import (
     abs,
     clamp,
@@ -16,8 +15,8 @@ from distal.lang import (
     dot,
     exp,
     floor,
+    fract,
     func,
-    ivec3,
     length,
     max,
     min,
@@ -116,6 +115,21 @@ def studio_backdrop(
 
 
 @func
+def cell_chance(cell: vec3, salt: float) -> float:
+    """Return a number from 0 to 1 for a cell; without integers, which GLSL ES 1.00 lacks.
+
+    Args:
+        cell: Whole numbers.
+        salt: Another salt gives another number.
+
+    Source: David Hoskins, "Hash without Sine" (2014).
+    """
+    p = fract((cell + 17.0 * salt) * 0.1031)
+    q = p + dot(p, p.zyx + 31.32)
+    return fract((q.x + q.y) * q.z)
+
+
+@func
 def stars(direction: vec3) -> float:
     """Return the brightness of the stars in a direction: points with smooth edges.
 
@@ -124,18 +138,13 @@ def stars(direction: vec3) -> float:
     """
     scaled = direction * STAR_CELLS
     cell = floor(scaled + 0.5)
-    place = ivec3(int(cell.x), int(cell.y), int(cell.z))
-    offset = vec3(
-        fraction(lattice_hash(place, 6)),
-        fraction(lattice_hash(place, 7)),
-        fraction(lattice_hash(place, 8)),
-    )
+    offset = vec3(cell_chance(cell, 1.0), cell_chance(cell, 2.0), cell_chance(cell, 3.0))
     star = cell + 0.5 * (offset - 0.5)
-    size = 0.04 + 0.12 * fraction(lattice_hash(place, 9)) ** 4
+    size = 0.04 + 0.12 * cell_chance(cell, 4.0) ** 4
     away = length(scaled - normalize(star) * STAR_CELLS)
     # A cell that the sphere only grazes would show a part of its star.
     whole = select(abs(length(star) - STAR_CELLS) < 0.3, 1.0, 0.0)
-    shown = select(fraction(lattice_hash(place, 5)) > 0.9, whole, 0.0)
+    shown = select(cell_chance(cell, 0.0) > 0.9, whole, 0.0)
     return shown * (1.0 - smoothstep(0.3 * size, size, away))
 
 
