@@ -122,19 +122,27 @@ class Look(Immutable):
 
     A look never changes after construction; ``studio(exposure=1.5)`` makes one with other numbers.
 
-    Attributes:
+    Args:
         name: "studio", "outdoor" …
         row: The look of the library that it is made of.
-        numbers: Its checked numbers, by name.
-        changed: The numbers that the author gave, as they were given.
+        changed: The numbers that the author gives, by name.
+        place: The author's line.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: There is no such number, or it is of another kind.
+
+    Attributes:
+        name: As given.
+        row: As given.
+        numbers: All numbers, checked, by name.
     """
 
-    __slots__ = ("changed", "name", "numbers", "row")
+    __slots__ = ("name", "numbers", "row")
 
     name: str
     row: LookRow
     numbers: Mapping[str, Any]
-    changed: Mapping[str, Any]
 
     def __init__(
         self, name: str, row: LookRow, changed: Mapping[str, Any], place: Span | None
@@ -148,7 +156,7 @@ class Look(Immutable):
             colors=COLORS,
             place=place,
         )
-        made = {"name": name, "row": row, "numbers": numbers, "changed": dict(changed)}
+        made = {"name": name, "row": row, "numbers": numbers}
         for attribute, value in made.items():
             object.__setattr__(self, attribute, value)
 
