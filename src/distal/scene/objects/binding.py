@@ -18,6 +18,7 @@ from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
+from distal.lang.resources import Texture2D
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.tree.calls import result_of
 from distal.scene.tree.conversion import Number, shown
@@ -31,7 +32,7 @@ else:
 
 
 # The functions that normalize, by ``flat`` and by whether there are bounds.
-_NORMALIZED: Final = {
+_NORMALIZED: Final[Mapping[tuple[bool, bool], Func]] = {
     (False, False): normalizing.normalized,
     (False, True): normalizing.normalized_within,
     (True, False): normalizing.normalized_flat,
@@ -54,6 +55,7 @@ def bound(
         SceneTypeError: An argument is unknown, missing or of another type.
         SceneValueError: A number is beyond its limit.
     """
+    functions: tuple[Func, ...]
     if isinstance(rule, Primitive):
         functions, reserved = (rule.distance,), RESERVED_OF_SHAPES | {*rule.measured}
     else:
@@ -70,7 +72,9 @@ def bound(
     )
     if isinstance(rule, Primitive):
         for name, texture in rule.measured.items():
-            given[name] = Number(VEC2, measuring.largest_rise(given[texture], rule.name, place))
+            data = given[texture]
+            assert isinstance(data, Texture2D)
+            given[name] = Number(VEC2, measuring.largest_rise(data, rule.name, place))
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
     constants = {name: value for name, value in given.items() if name not in numbers}
     return numbers, constants
