@@ -32,7 +32,10 @@ MOST_BYTES: Final = 150_000
 SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7}
 # Groups of the page: the examples in them by how their names begin, in this order.
 GROUPS: Final = {
-    "Showpieces": ("city", "still_life", "room_door", "gyroid_part", "catalogue", "bunny", "sea"),
+    "Showpieces": (
+        *("city", "castle", "still_life", "room_door", "gyroid_part", "enclosure", "catalogue"),
+        *("bunny", "sea"),
+    ),
     "The first pictures": ("raymarcher", "melting"),
     "After sdfray": ("sdfray_",),
     "A course in ray marching": ("course_",),
