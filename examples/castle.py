@@ -67,5 +67,6 @@ castle = towers.union(
 
 scene = Scene(
     castle.named("castle") | Plane().paint("olivedrab"),
+    look="outdoor",
     camera=Camera((3.4, 4.2, 7.6), target=(0.0, 1.25, 0.0), fov_deg=36.0),
 )
