@@ -39,15 +39,15 @@ tower = (shaft - slit - slit.rotate(y=QUARTER)) | platform.translate(y=height)
 roof = Cone(0.46, 0.7).translate(y=height + 0.5)
 towers = (tower.paint(STONE) | roof.paint(ROOF)).translate(apart, 0.0, apart).symmetry("xz")
 
-# Walls between them; the front one has a house with the gate.
+# Walls between them; the front one has a gatehouse.
 teeth = merlon.repeat(0.26, 1.0, 1.0, count=(10, 1, 1)).translate(y=1.28)
 wall = Box(3.4, 1.2, 0.22).translate(y=0.6) | teeth
-house = Box(1.1, 1.5, 0.5).translate(y=0.75) | merlon.repeat(
+gatehouse = Box(1.1, 1.5, 0.5).translate(y=0.75) | merlon.repeat(
     0.24, 1.0, 1.0, count=(5, 1, 1)
 ).translate(0.0, 1.58, 0.2)
 arch = Box(0.6, 1.0, 1.2) | Cylinder(0.3, 1.2).rotate(x=QUARTER).translate(y=0.5)
 sides = wall.rotate(y=QUARTER).translate(x=apart).symmetry("x")
-walls = sides.union(wall.translate(z=-apart), ((wall | house) - arch).translate(z=apart))
+walls = sides.union(wall.translate(z=-apart), ((wall | gatehouse) - arch).translate(z=apart))
 bars = Cylinder(0.02, 0.9).repeat(0.12, 1.0, 1.0, count=(5, 1, 1)).translate(0.0, 0.45, apart)
 
 # The keep, and a flag of gold and crimson.

@@ -190,8 +190,8 @@ def castle() -> Shape:
     arch = Box(0.6, 0.5, 1.2).translate(y=0.25) | Cylinder(0.3, 1.2).rotate(x=QUARTER).translate(
         y=0.5
     )
-    house = Box(1.1, 1.5, 0.5).translate(y=0.75)
-    front = ((wall | house) - arch).translate(0.0, 0.0, 1.6)
+    gatehouse = Box(1.1, 1.5, 0.5).translate(y=0.75)
+    front = ((wall | gatehouse) - arch).translate(0.0, 0.0, 1.6)
     bars = Cylinder(0.02, 0.9).repeat(0.12, 1.0, 1.0, count=(5, 1, 1)).translate(0.0, 0.45, 1.6)
     keep = Prism(6, 0.6, 2.4).translate(y=1.2) | Cone(0.75, 0.9).translate(y=2.85).paint(roof)
     flag = Polygon([(0.0, 0.0), (0.5, 0.14), (0.0, 0.28)]).extrude(0.03).translate(0.0, 3.5, 0.0)
