@@ -102,10 +102,26 @@ def test_the_surface_is_closed(name):
 
 
 # The steepest, and those with the most small parts; each costs two more compilations.
-@pytest.mark.parametrize("name", ["knurling", "twisted_morph", "castle"])
-def test_rays_end_at_a_surface_or_outside(name):
+STEEP: Final = ("knurling", "twisted_morph")
+# Measured: 1.0 % and 1.8 % of the pixels differ, none without shadows.
+SHADOWS: Final = pytest.mark.xfail(
+    strict=True, reason="shadow rays beside steep shapes run out of 160 steps"
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "view"),
+    [
+        *((name, "normal") for name in (*STEEP, "castle")),
+        *(pytest.param(name, "color", marks=SHADOWS) for name in STEEP),
+        ("castle", "color"),
+    ],
+)
+def test_rays_end_at_a_surface_or_outside(name, view):
+    """More steps than the default change nothing, neither for the camera's rays nor for shadows."""
     few, many = (
-        Scene(shape_of(name), steps=steps).render((80, 60)).array[..., :3] for steps in (160, 1000)
+        Scene(shape_of(name), steps=steps).render((80, 60), view=view).array[..., :3]
+        for steps in (160, 1000)
     )
     changed = np.abs(few - many).max(axis=2) > 2.0 / 255.0
     assert changed.mean() <= MOST_UNFINISHED
