@@ -76,7 +76,7 @@ export class Camera {
   async show(action: GuideAction): Promise<void> {
     await this.rest();
     const now = this.#state;
-    const found = await this.ask?.(action, now, now);
+    const found = await this.ask?.(action, now, now).catch(() => null);
     if (!found || this.#state !== now) return;
     this.set(steeringOf(found));
     this.onMoved();
@@ -85,7 +85,8 @@ export class Camera {
   /** Where the camera is; null where that is not known. */
   async place(): Promise<Guided | null> {
     await this.rest();
-    return (await this.ask?.("go", this.#state, this.#state)) ?? null;
+    const found = await this.ask?.("go", this.#state, this.#state).catch(() => null);
+    return found ?? null;
   }
 
   /** Resolves when the camera has got where gestures asked it to go. */
