@@ -115,6 +115,8 @@ class Window:
             )
 
         shown: dict[str, Any] = self.wait(holds, since)["shown"]
+        if shown["steering"] is not None:  # from now on gestures move the camera at once
+            self.wait(lambda event: event["event"] == "guided")
         return shown
 
     def settled(self) -> dict[str, Any]:
@@ -125,9 +127,11 @@ class Window:
             time.sleep(0.5)
             assert self.process.poll() is None, self.errors
             events = self.events
-            drawn = [event["shown"] for event in events if event["event"] == "drawn"]
-            if drawn and drawn[-1]["is_final"] and events == before:
-                shown: dict[str, Any] = drawn[-1]
+            told = [event for event in events if event["event"] in ("frame", "drawn")]
+            # A frame that is not drawn yet: a busy machine.
+            is_drawn = bool(told) and told[-1]["event"] == "drawn"
+            if is_drawn and told[-1]["shown"]["is_final"] and events == before:
+                shown: dict[str, Any] = told[-1]["shown"]
                 return shown
             before = events
         raise AssertionError(f"it does not come to rest; {self.errors}")

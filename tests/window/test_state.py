@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import distal
-from distal import Box, Scene, Sphere, matte
+from distal import Box, Camera, Plane, Scene, Sphere, matte
 from distal.lang import Frame, choice, color, image, integer, point, slider, toggle, vec3
 from distal.lang.render_options import RenderOptions
 from distal.scene.steering import STILL, Steering
@@ -282,6 +282,29 @@ def test_the_pointer_moves_bars_and_does_not_orbit_behind_them() -> None:
     assert session.steering == STILL
     assert session.is_free(600.0, 400.0)
     assert not session.is_free(track.x, track.y + 5)
+
+
+def test_a_camera_waits_for_its_guide_and_then_goes_where_it_was_asked_to() -> None:
+    scene = Scene(Sphere() | Plane(y=-1.0), camera=Camera((0.0, 0.0, 4.0)))
+    session = Session(viewable(scene), paused=True, guided=True)
+    session.size = (400.0, 400.0)
+    session.press(200, 200, 1, 0.0)
+    for y in (190, 180, 0):
+        session.drag(200, y, 0.0)
+    assert session.shot(0.0).steering == STILL
+    done = threading.Event()
+    session.camera.prepare(session.moment(0.0), done.set)
+    assert done.wait(60)
+    low = session.shot(0.0).steering
+    assert low is not None
+    place = session.camera.place(session.moment(0.0))
+    assert place is not None
+    assert -1.0 < place.position[1] < -0.8
+    assert low.pitch < -0.1
+    session.act(Action.TOP, 0.0)
+    assert session.steering.pitch == pytest.approx(math.pi / 2, abs=1e-3)
+    session.act(Action.RESET_CAMERA, 0.0)
+    assert session.shot(0.0).steering == STILL
 
 
 def test_groups_have_headings_that_cannot_be_chosen() -> None:

@@ -185,7 +185,12 @@ class Application:
         session, now = self._session, time.monotonic()
         if session.playing:
             session.clock.jump(request.shot.time, now)
-        session.camera.prepare(session.moment(now))
+        post = self._loop.call_soon_threadsafe
+        session.camera.prepare(session.moment(now), lambda: post(self._guided))
+
+    def _guided(self) -> None:
+        self._log("guided")
+        self.wake()
 
     def _failed(self, request: FrameRequest, error: BaseException) -> None:
         self._trouble_of_frame = self._report(error)

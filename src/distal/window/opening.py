@@ -45,7 +45,7 @@ def view(
         look: The name of a look to show it in; None for its own.
 
     Returns:
-        The exit code, 0 or 130, and whether the worker has ended: a running compilation cannot
+        The exit code, 0 or 130, and whether all threads have ended: a running compilation cannot
         be stopped, and the process should exit without waiting for it.
 
     Raises:
@@ -76,7 +76,7 @@ def view(
         interrupted = _run(application, canvas, loop)
     finally:
         canvas.close()
-    ended = application.stop(_PATIENCE_S)
+    ended = application.stop(_PATIENCE_S) and not session.camera.is_preparing
     return (130 if interrupted else 0), ended
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
-from distal.scene.steering import STILL, Steering
+from distal.scene.steering import Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import Moment
 from distal.window.clock import Clock
@@ -172,6 +172,7 @@ class Session:
 
     def shot(self, now: float) -> Shot:
         """Return the current shot."""
+        self.camera.settle(self.moment(now))
         time = self.clock.time(now)
         if self._grab is not Grab.TIME:
             self._last_time = interaction.last_time(time, self._begin, None)
@@ -237,7 +238,8 @@ class Session:
             case Action.RESET_PARAMETER:
                 self._reset_parameter(every=shift)
             case Action.RESET_CAMERA:
-                self.camera.steering, self.mouse = STILL, Mouse()
+                self.camera.reset()
+                self.mouse = Mouse()
             case Action.HELP:
                 self.shows_help = not self.shows_help
             case Action.OVERLAY:
@@ -266,9 +268,9 @@ class Session:
             self.mouse = self.mouse.nudged(way, rise)
         # An arrow is the direction of the eye; a drag moves in the opposite direction.
         elif shift:
-            self._go(panned(self.steering, -way, rise), now)
+            self._go(panned(self.camera.aim, -way, rise), now)
         else:
-            self._go(orbited(self.steering, -way, rise, self.viewable.elevation), now)
+            self._go(orbited(self.camera.aim, -way, rise, self.viewable.elevation), now)
 
     # The camera
 
@@ -379,9 +381,9 @@ class Session:
         self._at = (x, y)
         match self._grab:
             case Grab.ORBIT:
-                self._go(orbited(self.steering, right, down, self.viewable.elevation), now)
+                self._go(orbited(self.camera.aim, right, down, self.viewable.elevation), now)
             case Grab.PAN:
-                self._go(panned(self.steering, right, down), now)
+                self._go(panned(self.camera.aim, right, down), now)
             case Grab.MOUSE:
                 self.mouse = replace(self.mouse, at=self._place(x, y))
             case Grab.TIME:
@@ -416,7 +418,7 @@ class Session:
     def wheel(self, notches: float, now: float) -> None:
         """Zoom; positive notches move the eye away."""
         if self.viewable.steers:
-            self._go(zoomed(self.steering, notches), now)
+            self._go(zoomed(self.camera.aim, notches), now)
             self._moving_until = now + _SETTLING_S
 
     def _place(self, x: float, y: float) -> tuple[float, float]:
