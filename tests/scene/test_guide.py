@@ -155,9 +155,14 @@ def test_a_camera_that_starts_close_to_a_surface_can_move():
     assert 0.0 < guide.place(low, moment).position[1] <= 0.0101
 
 
+def test_a_camera_that_starts_on_a_surface_can_leave_it():
+    guide, moment = Guide(Scene(Plane(), camera=Camera((0, 1e-6, 3), (0, 1e-6, 0)))), Moment()
+    assert dragged(guide, Steering(pitch=0.5), moment).pitch == pytest.approx(0.5, abs=1e-5)
+
+
 def test_parameters_and_time_count():
     size = slider("Size", 1.0, 0.5, 5.0)
-    scene = Scene(Sphere(size).translate(x=time), camera=Camera((0, 0, 6)))
+    scene = Scene(Sphere(size).translate(x=time), camera=Camera((0, 0, 6)), floor=False)
     guide = Guide(scene)
     goal = Steering(zoom=0.5)
     assert guide.go(STILL, goal, Moment()) == goal
@@ -166,7 +171,7 @@ def test_parameters_and_time_count():
 
 
 def test_a_scene_that_moved_over_the_camera_lets_it_out():
-    scene = Scene(Sphere(time), camera=Camera((0, 0, 6)))
+    scene = Scene(Sphere(time), camera=Camera((0, 0, 6)), floor=False)
     guide = Guide(scene)
     goal = Steering(zoom=2.0)
     assert guide.go(STILL, goal, Moment(time=7.0)) == goal
@@ -219,7 +224,7 @@ def test_the_box_fills_the_picture(camera):
 
 
 def test_axes_with_z_up_are_those_of_a_modeller():
-    scene = Scene(Box(1), camera=Camera((2, -4, 2), up=(0, 0, 1)))
+    scene = Scene(Box(1), camera=Camera((2, -4, 2), up=(0, 0, 1)), floor=False)
     guide, moment = Guide(scene), Moment()
     for action, wanted in [
         ("front", (0, -1, 0)),

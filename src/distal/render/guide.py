@@ -1,7 +1,7 @@
 """Guidance of a camera that a person moves: it never enters a solid, and it frames the scene.
 
 Input: the five numbers of a camera and those that a gesture asks for, or a view that a key asks
-for; the field, its divisor, the box of the finite parts. Output: the five numbers that the camera
+for; the safe field, the box of the finite parts. Output: the five numbers that the camera
 gets, and where it then is. Called once for each event, by windows, pages and notebooks.
 
 The eye moves along the way that the gesture asks for, in steps that are shorter than the distance
@@ -52,6 +52,8 @@ NUMBERS = (
 _CLEAR = 0.02
 _LEAST_CLEAR = 0.004
 _OF_START = 0.8
+# The shortest step, as a fraction of the distance: a camera that starts on a surface leaves it.
+_LEAST_STRIDE = 1e-3
 # Field evaluations in one event. A drag along a wall advances by half of the clearance each time.
 _ROUNDS = 320
 # The parts of a step to try, three bits each from the last: yaw with the horizontal part of a pan
@@ -323,7 +325,6 @@ def guided(
     lens: Lens,
     size: vec2,
     box: Bounds,
-    divisor: float,
     field: Field3,
 ) -> Guided:
     """Return the movement that a camera gets.
@@ -338,8 +339,7 @@ def guided(
         lens: The author's camera.
         size: Width and height of the picture, in any unit.
         box: The box of the scene's finite parts.
-        divisor: The field is divided by it to get a distance without surfaces.
-        field: The field of the scene.
+        field: The safe field of the scene: never more than the distance to its surface.
     """
     here = now
     angles = angles_of(lens, action, now)
@@ -353,7 +353,7 @@ def guided(
     going = action == GO
     # Without branches: some drivers need twice the time to compile for each.
     for k in range(_ROUNDS):
-        distance = field(moved_eye(lens, trial)) / max(divisor, 1.0)
+        distance = field(moved_eye(lens, trial))
         start = select(k == 0, distance, start)
         clear = clearance(lens.depth, trial.zoom, start)
         # A camera that is too close already, for the scene has moved, comes no closer.
@@ -371,7 +371,8 @@ def guided(
         part = remaining(here, goal, min(attempt, _PARTS_COUNT - 1))
         moves = k == 0 or not going or size_of(part) > 0.0
         kept = min(clearance(lens.depth, here.zoom, start), room)
-        stride = max(room - kept, 0.5 * kept)
+        least = _LEAST_STRIDE * lens.depth * here.zoom
+        stride = max(max(room - kept, 0.5 * kept), least)
         share = min(stride / max(way_of_eye(lens, here, part), 1e-20), 1.0)
         pitch = min(angles.y + _RISE * float(attempt), 0.5 * _PI)
         seen = framed(lens, box, size.x / size.y, angles.x, pitch)

@@ -47,7 +47,6 @@ class GuideImage(Composed):
         composer, node = made.composer, self._scene.shape.node
         body = StatementList(taken={"frame"})
         values = composer.values.all(node)
-        bounds = composer.bounds.of(body, node, values)
         # The picture that is guided has another size than this image.
         size = assembly.number(steering.SIZE, VEC2, (4.0, 3.0))
         given: dict[str, Expr] = {
@@ -57,8 +56,7 @@ class GuideImage(Composed):
             "now": made.steer(body, steering.PREFIX),
             "goal": made.steer(body, steering.GOAL_PREFIX),
             "box": _finite_box(made, body, node),
-            "divisor": bounds.divisor,
-            "field": composer.field(node, values, ZERO_CELL),
+            "field": composer.safe_field(node, values, ZERO_CELL),
         }
         action = {**given, "action": assembly.number(steering.ACTION, INT, 0)}
         given["action"] = composer.call(guide.asked, action)
