@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, dot, exp, func, reflect, refract, select, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
@@ -19,6 +18,7 @@ from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
 from distal.render.shade import Look, direct_light, fogged
+from distal.render.shadows import Opening
 from distal.render.trace import at_surface, ray_offset, surface_point, way_off
 
 # Alpha of a ray that starts inside a solid and does not leave it.
@@ -45,11 +45,10 @@ def seen_plain(
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
     fog: Callable[[vec3], vec3],
-    bounds: Bounds,
+    shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
     look: Look,
     light_count: int,
-    shadow_steps: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
     hybrid: bool = False,
@@ -68,11 +67,10 @@ def seen_plain(
         ambient: Light from all directions on a white surface, by its normal.
         background: Light from a direction without a surface.
         fog: Color of the fog in a direction.
-        bounds: Box around the surface.
+        shadow: The visible fraction of a light at a point, for a pixel's sample of several.
         numbers: The parameters of the march.
         look: Ambient occlusion and fog.
         light_count: How many lights there are.
-        shadow_steps: Maximum number of steps of a shadow ray; 0 for no shadows.
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
         hybrid: Whether the march for terrain and water finds the hits; a constant.
@@ -91,8 +89,8 @@ def seen_plain(
         return vec4(background(ray.direction), _marked(alpha, lost, counted))
     point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
     light = direct_light(
-        ray, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
-        hybrid, steep, cone.sample, cone.samples,
+        ray, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid, steep,
+        cone.sample, cone.samples,
     )  # fmt: skip
     lost |= select(light.lost, SHADOWS, 0)
     color = fogged(light.color, point.t, fog(ray.direction), look.fog_density)
@@ -109,11 +107,10 @@ def seen_mirrored(
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
     fog: Callable[[vec3], vec3],
-    bounds: Bounds,
+    shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
     look: Look,
     light_count: int,
-    shadow_steps: int,
     bounces: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
@@ -144,8 +141,8 @@ def seen_mirrored(
         alpha = 1.0
         point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
         light = direct_light(
-            here, point, field, lights, ambient, bounds, numbers, look, light_count, shadow_steps,
-            hybrid, steep, cone.sample, cone.samples,
+            here, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid,
+            steep, cone.sample, cone.samples,
         )  # fmt: skip
         lost |= select(light.lost, SHADOWS, 0)
         color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
@@ -172,11 +169,10 @@ def seen_refracted(
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
     fog: Callable[[vec3], vec3],
-    bounds: Bounds,
+    shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
     look: Look,
     light_count: int,
-    shadow_steps: int,
     bounces: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
@@ -229,8 +225,8 @@ def seen_refracted(
             throughput = throughput * exp(-point.surface.absorption * (exact + ways[waiting]))
         else:
             light = direct_light(
-                here, point, field, lights, ambient, bounds, numbers, look, light_count,
-                shadow_steps, False, steep, cone.sample, cone.samples,
+                here, point, field, lights, ambient, shadow, numbers, look, light_count,
+                False, steep, cone.sample, cone.samples,
             )  # fmt: skip
             lost |= select(light.lost, SHADOWS, 0)
             color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.guarantees import Bounds
 from distal.lang import (
     Field3,
     clamp,
@@ -34,7 +33,7 @@ from distal.render.lights import LightSample
 from distal.render.march import March
 from distal.render.material import highlight
 from distal.render.normals import tangent
-from distal.render.shadows import GOLDEN_ANGLE, soft_shadow, true_slope
+from distal.render.shadows import GOLDEN_ANGLE, Opening, true_slope
 from distal.render.trace import SurfacePoint, ray_offset
 
 OCCLUSION_DIRECTIONS = 5
@@ -67,6 +66,7 @@ class Lit:
     lost: bool = False
 
 
+@func
 def ambient_occlusion(
     field: Field3,
     p: vec3,
@@ -136,11 +136,10 @@ def direct_light(
     field: Field3,
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
-    bounds: Bounds,
+    shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
     look: Look,
     light_count: int,
-    shadow_steps: int,
     hybrid: bool,
     steep: bool = False,
     sample: int = 0,
@@ -157,11 +156,10 @@ def direct_light(
         field: Signed distance.
         lights: The light with a given index, from 0, at a point.
         ambient: Light from all directions on a white surface, by its normal.
-        bounds: Box around the surface.
+        shadow: The visible fraction of a light at a point, for a pixel's sample of several.
         numbers: The parameters of the march.
         look: Ambient occlusion and fog.
         light_count: Number of lights.
-        shadow_steps: Maximum number of steps of a shadow ray; 0 for no shadows.
         hybrid: Whether the hybrid march found the surface; a constant.
         steep: Whether values of the field may be less than distances; a constant.
         sample: The number of the pixel's sample, from 0.
@@ -186,14 +184,9 @@ def direct_light(
         light = lights(i, point.p)
         facing = dot(n, light.direction)
         if facing > 0.0:
-            shadow = 1.0
-            if shadow_steps > 0:
-                seen = soft_shadow(
-                    field, lifted, light, bounds, numbers, shadow_steps, steep, sample, samples
-                )
-                shadow = seen.share
-                lost = lost or seen.lost
+            seen = shadow(lifted, light, sample, samples)
+            lost = lost or seen.lost
             shine = highlight(point.surface, n, view, light.direction, light.radius)
             scattered = point.shares.diffuse * facing + point.shares.mirrored * shine
-            color += light.radiance * shadow * scattered
+            color += light.radiance * seen.share * scattered
     return Lit(color, lost)

@@ -309,3 +309,45 @@ def share_of_disc(s: float) -> float:
     """Return how much of a disc an edge leaves open that is ``s`` radii from its middle."""
     c = clamp(s, -1.0, 1.0)
     return 0.25 * (1.0 + c) * (1.0 + c) * (2.0 - c)
+
+
+@func
+def shadow_beside_planes(
+    field: Field3,
+    planes: Field3,
+    origin: vec3,
+    light: LightSample,
+    bounds: Bounds,
+    numbers: March,
+    steps: int,
+    steep: bool,
+    sample: int,
+    samples: int,
+) -> Opening:
+    """Return the visible fraction of a light; planes hide what is below them, in closed form.
+
+    Args:
+        field: Signed distance without the planes.
+        planes: Signed distance of the planes' union.
+        origin: Start of the shadow ray, above the planes.
+        light: The light at the point.
+        bounds: Box around the surface without the planes.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps of one ray.
+        steep: Whether values may be less than distances; a constant.
+        sample: The number of the pixel's sample, from 0.
+        samples: How many samples the pixel has.
+    """
+    # How far the middle of the disc is above the planes, in radii of the disc.
+    radius = max(light.radius, SHARPEST) * light.distance
+    over = share_of_disc(planes(origin + light.distance * light.direction) / radius)
+    if over <= 0.0:
+        return Opening(0.0)
+    found = soft_shadow(field, origin, light, bounds, numbers, steps, steep, sample, samples)
+    return Opening(min(found.share, over), found.lost)
+
+
+@func
+def no_shadow(origin: vec3, light: LightSample, sample: int, samples: int) -> Opening:
+    """Return that all of a light is visible."""
+    return Opening(1.0)

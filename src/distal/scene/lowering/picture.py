@@ -40,7 +40,7 @@ from distal.scene.lowering.attributes import (
     SurfaceAttribute,
     attribute,
 )
-from distal.scene.lowering.first_hit import FirstHit, shadow_step_limit, step_limit
+from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.calls import expression_of
 from distal.scene.tree.values import StatementList
@@ -215,9 +215,6 @@ class SceneLowering:
             "light_count": integer(len(self._samples())),
         }
         given["steps"] = self._steps(body)
-        given["shadow_steps"] = integer(0)
-        if scene.shadows:
-            given["shadow_steps"] = body.let("shadow_steps", shadow_step_limit(given["steps"]))
         room = {"bounds": bounds_of_scene.bounds}
         given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
         given["farthest_plane"] = self._numbers.get("far", number(UNBOUNDED))
@@ -226,12 +223,13 @@ class SceneLowering:
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))
-        first_hit = FirstHit(composer, node, self._function)
-        given["first_hit"] = first_hit.function(body, given, hybrid=self._hybrid)
+        rays = RayFunctions(composer, node, self._function)
+        given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
+        given["shadow"] = rays.shadow(body, given, casts=scene.shadows, hybrid=self._hybrid)
         if scene.renderer == "refracted":
             on_surface = {**given, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
-            given["next_hit"] = first_hit.function(body, on_surface, hybrid=self._hybrid)
+            given["next_hit"] = rays.first_hit(body, on_surface, hybrid=self._hybrid)
         return given
 
     @property

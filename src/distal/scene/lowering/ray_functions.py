@@ -1,13 +1,14 @@
-"""The function that finds the first surface along a ray, for one scene.
+"""The functions that follow rays through one scene: to the first surface, and to a light.
 
-Input: the scene's tree and the values of its march. Output: a function ``(ray) -> Hit`` that all
-renderers, views and layers call. Planes that the scene is united with are met in closed form; the
-other shapes are marched.
+Input: the scene's tree and the values of its march. Output: a function ``(ray) -> Hit``, which all
+renderers, views and layers call, and a function of a point and a light that returns the visible
+share of the light. Planes that the scene is united with are met in closed form; the other shapes
+are marched.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, TypeAlias
 
@@ -16,11 +17,12 @@ from distal.fields.guarantees import UNBOUNDED, Primitive
 from distal.ir.build import builtin, cast, integer, multiply
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Const, Expr, FunctionRef
-from distal.ir.types import VEC3, Kind, Type
+from distal.ir.types import INT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
-from distal.render import settings, trace
+from distal.render import settings, shadows, trace
 from distal.render.camera import Ray
+from distal.render.lights import LightSample
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
@@ -32,7 +34,7 @@ MOST_STEPS: Final = 4096
 LEAST_SHADOW_STEPS: Final = 64
 
 # What the marches take besides the ray and the fields.
-_TAKEN: Final = ("bounds", "numbers", "steps", "hybrid", "stride", "farthest_plane")
+_TAKEN: Final = ("bounds", "numbers", "steps", "hybrid", "stride", "farthest_plane", "steep")
 
 # Adds a function to the program: its name, its parameters, its body, captured values.
 Make: TypeAlias = "Callable[[StatementList, Mapping[str, Expr]], Expr]"
@@ -82,35 +84,61 @@ def united(root: Node, nodes: list[Node]) -> Node:
     return nodes[0] if len(nodes) == 1 else replace(root, rule=UNION, children=tuple(nodes))
 
 
-class FirstHit:
-    """Makes the function ``(ray) -> Hit`` of a scene."""
+class RayFunctions:
+    """Makes the functions of a scene that follow rays."""
 
     def __init__(self, composer: ShapeComposer, root: Node, define: Define) -> None:
         self._composer = composer
         self._root = root
         self._define = define
+        self._planes, self._others = split_planes(root)
 
-    def function(
+    def first_hit(
         self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool
     ) -> FunctionRef:
-        """Return the function.
+        """Return the function ``(ray) -> Hit``.
 
         Args:
             body: The statements of the function that calls it.
             given: The values of the march, by name.
             hybrid: Whether the march for terrain and water is used.
         """
-        planes, others = split_planes(self._root)
-        if hybrid or not planes:
+        params = [("ray", self._composer.assembly.struct(Ray))]
+        if hybrid or not self._planes:
             field = self._field(self._root) if hybrid else self._safe_field(self._root)
-            return self._bound(trace.first_surface, given, {"field": field})
-        values = {**given, **self._without_planes(body, others)}
-        functions = {
-            "field": self._safe_field(united(self._root, others)) if others else self._nothing(),
-            "planes": self._field(united(self._root, planes)),
-            "nearest_plane": self._nearest_plane(planes),
-        }
-        return self._bound(trace.first_surface_or_plane, values, functions)
+            return self._bound(trace.first_surface, params, given, {"field": field})
+        values = {**given, **self._without_planes(body)}
+        functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
+        return self._bound(trace.first_surface_or_plane, params, values, functions)
+
+    def shadow(
+        self, body: StatementList, given: Mapping[str, Expr], *, casts: bool, hybrid: bool
+    ) -> FunctionRef:
+        """Return the function ``(origin, light, sample, samples) -> Opening``.
+
+        Args:
+            body: The statements of the function that calls it.
+            given: The values of the march, by name.
+            casts: Whether there are shadows.
+            hybrid: Whether the march for terrain and water is used.
+        """
+        light = self._composer.assembly.struct(LightSample)
+        params = [("origin", VEC3), ("light", light), ("sample", INT), ("samples", INT)]
+        if not casts:
+            return self._bound(shadows.no_shadow, params, {}, {})
+        values = {**given, "steps": body.let("shadow_steps", shadow_step_limit(given["steps"]))}
+        if hybrid or not self._planes:
+            field = self._field(self._root) if hybrid else self._safe_field(self._root)
+            return self._bound(shadows.soft_shadow, params, values, {"field": field})
+        values |= self._without_planes(body)
+        return self._bound(shadows.shadow_beside_planes, params, values, self._fields())
+
+    def _fields(self) -> dict[str, FunctionRef]:
+        """Return the distance to the planes, and that to the other shapes."""
+        others = self._nothing()
+        if self._others:
+            others = self._safe_field(united(self._root, self._others))
+        return {"field": others, "planes": self._field(united(self._root, self._planes))}
 
     def _field(self, node: Node) -> FunctionRef:
         return self._composer.field(node, self._composer.values.all(node), ZERO_CELL)
@@ -124,12 +152,12 @@ class FirstHit:
 
         return self._define("nothing", [("p", VEC3)], make, [])
 
-    def _without_planes(self, body: StatementList, others: list[Node]) -> dict[str, Expr]:
-        """Return the box and the parameters of the march without the planes."""
+    def _without_planes(self, body: StatementList) -> dict[str, Expr]:
+        """Return the box of the shapes besides the planes."""
         composer = self._composer
-        if not others:
+        if not self._others:
             return {"bounds": composer.call(settings.no_box, {})}
-        node = united(self._root, others)
+        node = united(self._root, self._others)
         found = composer.bounds.of(body, node, composer.values.all(node))
         return {
             "bounds": body.let(
@@ -137,8 +165,9 @@ class FirstHit:
             )
         }
 
-    def _nearest_plane(self, planes: list[Node]) -> FunctionRef:
-        fields = [self._field(plane) for plane in planes]
+    def _nearest_plane(self) -> FunctionRef:
+        """Return the function ``(ray) -> float``: the distance to the first plane."""
+        fields = [self._field(plane) for plane in self._planes]
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             nearest: Expr = constant_number(UNBOUNDED)
@@ -151,15 +180,25 @@ class FirstHit:
         return self._define("nearest_plane", [("ray", ray)], make, [])
 
     def _bound(
-        self, function: Func, values: Mapping[str, Expr], functions: Mapping[str, FunctionRef]
+        self,
+        function: Func,
+        params: Sequence[tuple[str, Type]],
+        values: Mapping[str, Expr],
+        functions: Mapping[str, FunctionRef],
     ) -> FunctionRef:
-        """Return a march as a function of the ray alone; it captures values that vary."""
+        """Return a march as a function of these parameters alone; it captures values that vary.
+
+        Args:
+            function: The march.
+            params: Name and type of each parameter.
+            values: The other values that it takes, by name.
+            functions: The functions that it takes, by name.
+        """
         constants = {n: values[n] for n in _TAKEN if n in values and isinstance(values[n], Const)}
         captured = {n: values[n] for n in _TAKEN if n in values and n not in constants}
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             return self._composer.call(function, {**constants, **functions, **given})
 
-        params: list[tuple[str, Type]] = [("ray", self._composer.assembly.struct(Ray))]
-        params += [(name, value.type) for name, value in captured.items()]
-        return self._define("first_hit", params, make, list(captured.values()))
+        every = [*params, *((name, value.type) for name, value in captured.items())]
+        return self._define(function.name, every, make, list(captured.values()))
