@@ -38,7 +38,7 @@ def moving(frame: Frame) -> vec3:
 
 
 def still_scene() -> Viewable:
-    return viewable(Scene(Sphere(radius)))
+    return viewable(Scene(Sphere(radius), camera=Camera((3.0, 2.0, 5.0)), floor=False))
 
 
 def moving_image() -> Viewable:
