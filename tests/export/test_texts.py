@@ -92,7 +92,7 @@ def test_it_shows_what_the_cpu_shows(tmp_path, target, name):
     obj = distal.load(f"example:{name}")
     text = exported(obj, tmp_path, target)
     shown = HOSTS[target](text, SIZE, 1.25)
-    expected = obj.render(SIZE, time=1.25)
+    expected = obj.render(SIZE, time=1.25, samples=1)
     assert difference(expected.array, shown).is_agreement
 
 
@@ -100,11 +100,13 @@ def test_it_shows_what_the_cpu_shows(tmp_path, target, name):
 def test_parameters_of_every_kind(scene, tmp_path, target):
     picture = scene(CONTROLS)
     shown = HOSTS[target](exported(picture, tmp_path, target), SIZE, 0.5)
-    assert difference(picture.render(SIZE, time=0.5).array, shown).is_agreement
+    assert difference(picture.render(SIZE, samples=1, time=0.5).array, shown).is_agreement
     values = {"softness": 0.6, "tint": "#20c0ff", "spot": (-0.3, 0.2), "count": 7}
     values = {"rendersize" if name == "spot" else name: v for name, v in values.items()}
     shown = HOSTS[target](exported(picture, tmp_path, target, params=values), SIZE, 0.5)
-    assert difference(picture.render(SIZE, time=0.5, params=values).array, shown).is_agreement
+    assert difference(
+        picture.render(SIZE, samples=1, time=0.5, params=values).array, shown
+    ).is_agreement
 
 
 def test_isf_has_an_input_of_the_right_type_for_each_parameter(scene, tmp_path):
@@ -152,7 +154,9 @@ def test_isf_has_an_input_of_the_right_type_for_each_parameter(scene, tmp_path):
         "time": 0.9,
     }
     shown = hosts.isf(text, SIZE, 0.5, moved)
-    assert difference(picture.render(SIZE, time=0.5, params=params).array, shown).is_agreement
+    assert difference(
+        picture.render(SIZE, samples=1, time=0.5, params=params).array, shown
+    ).is_agreement
 
 
 @pytest.mark.parametrize("target", HOSTS)
@@ -173,7 +177,7 @@ def test_textures(scene, tmp_path, target):
         assert [one["PATH"] for one in imported.values()] == ["dots.png", "dots.png"]
         bound = dict.fromkeys(imported, bottom_first)
     shown = HOSTS[target](written, SIZE, textures=bound)
-    found = difference(picture.render(SIZE).array, shown)
+    found = difference(picture.render(SIZE, samples=1).array, shown)
     # An ISF host wraps nothing: our text does, and at the seam nothing is blended for half a texel.
     seam = 2.0 * 1.7 / 64.0 if target == "isf" else 0.0
     assert found.mean <= 1.0
@@ -207,7 +211,9 @@ def test_the_head_says_how_to_use_it_and_no_path(scene, tmp_path, target):
 def test_a_file_called_to_end_the_comment(scene, tmp_path):
     picture = scene(CONTROLS, "end*.py")
     text = exported(picture, tmp_path, "shadertoy")
-    assert difference(picture.render(SIZE).array, hosts.shadertoy(text, SIZE)).is_agreement
+    assert difference(
+        picture.render(SIZE, samples=1).array, hosts.shadertoy(text, SIZE)
+    ).is_agreement
 
 
 @pytest.mark.parametrize(

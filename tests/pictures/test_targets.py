@@ -49,7 +49,7 @@ def artifact(example, target):
 
 @cache
 def cpu_picture(example, time):
-    return image(example).render(size=SIZE, time=time).array
+    return image(example).render(size=SIZE, samples=1, time=time).array
 
 
 def drawn(program, time):
@@ -81,7 +81,7 @@ BY_REFERENCE = [n for n in sorted(distal.gallery()) if ALL or n not in LONG_BY_R
 def test_reference_draws_the_cpu_picture(example):
     size = SIZE if is_small(example) else (64, 48)
     cpu, reference = (
-        image(example).render(size=size, time=2.9, device=device).array
+        image(example).render(size=size, samples=1, time=2.9, device=device).array
         for device in ("cpu", "reference")
     )
     found = difference(reference, cpu)
@@ -90,8 +90,8 @@ def test_reference_draws_the_cpu_picture(example):
 
 @pytest.mark.parametrize("size", [(1, 1), (3, 2), (17, 5), (65, 33), (127, 1), (1, 129)])
 def test_odd_sizes_are_whole(size):
-    cpu = image("raymarcher").render(size=size, time=1.0).array
-    reference = image("raymarcher").render(size=size, time=1.0, device="reference").array
+    cpu = image("raymarcher").render(size=size, samples=1, time=1.0).array
+    reference = image("raymarcher").render(size=size, samples=1, time=1.0, device="reference").array
     assert cpu.shape == (size[1], size[0], 4)
     assert difference(cpu, reference).mean < 1.0
     assert abs(cpu - reference).max() < 0.02
