@@ -38,6 +38,7 @@ from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
 from distal.render.settings import march_numbers
 from distal.render.shade import Look
+from distal.render.shadows import soft_shadow
 from distal.render.tonemap import ACES, decode_srgb, display
 
 softness = slider("Softness", 0.05, high=0.2, help="How far sphere and torus melt.")
@@ -116,11 +117,12 @@ def picture(frame: Frame) -> vec4:
         lambda n: hemisphere_light(n, vec3(0.5), vec3(0.25), 1.0),
         sky,
         lambda direction: FOG,
-        bounds,
+        lambda origin, light, i, n: soft_shadow(
+            lambda p: min(blob(p, time), floor(p)), origin, light, bounds, numbers, 64
+        ),
         numbers,
         Look(0.4, 0.06),
         light_count=1,
-        shadow_steps=64,
         cone=pixel_cone(lambda at: camera(at, time), uv, 2.0 / frame.resolution.y),
     )
     return display(vec4(seen.xyz, 1.0), 1.0, ACES)

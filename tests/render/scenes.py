@@ -13,6 +13,7 @@ from distal.render import (
     material,
     patterns,
     shade,
+    shadows,
     sky,
     tonemap,
     views,
@@ -91,11 +92,16 @@ def first_hit(ray: Ray) -> march.Hit:
     return march.march(field, ray, everywhere(), numbers(), STEPS)
 
 
+@func
+def shadow(origin: vec3, light: LightSample, sample: int, samples: int) -> shadows.Opening:
+    return shadows.soft_shadow(field, origin, light, everywhere(), numbers(), 48)
+
+
 @image
 def plain(frame: Frame) -> vec4:
     seen = bounce.seen_plain(
         ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
-        everywhere(), numbers(), shade.Look(0.4, 0.02), 2, 48,
+        shadow, numbers(), shade.Look(0.4, 0.02), 2,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
 
@@ -104,7 +110,7 @@ def plain(frame: Frame) -> vec4:
 def mirrored(frame: Frame) -> vec4:
     seen = bounce.seen_mirrored(
         ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
-        everywhere(), numbers(), shade.Look(0.0, 0.0), 2, 48, 4,
+        shadow, numbers(), shade.Look(0.0, 0.0), 2, 4,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
 
@@ -113,7 +119,7 @@ def mirrored(frame: Frame) -> vec4:
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
         ray_of(frame), first_hit, first_hit, field, surface, lights, ambient, background, haze,
-        everywhere(), numbers(), shade.Look(0.0, 0.0), 2, 48, 6,
+        shadow, numbers(), shade.Look(0.0, 0.0), 2, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 

@@ -15,7 +15,7 @@ import pytest
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, max, min, vec2, vec3
 from distal.lang.runtime_access import executor
-from distal.render import ambient, lights, material, shade, sky, trace
+from distal.render import ambient, lights, material, shade, shadows, sky, trace
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
@@ -43,7 +43,7 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
     """The field is ``at.x`` times the way, but for ``at.y`` of way at the start."""
     light = LightSample(vec3(0.0, 0.6, 0.8), end, vec3(1.0), radius)
     room = Bounds(vec3(-1e18), vec3(1e18))
-    return shade.soft_shadow(
+    found = shadows.soft_shadow(
         lambda p: at.x * length(p - vec3(0.5, 1.0, 2.0)) + at.y,
         vec3(0.5, 1.0, 2.0),
         light,
@@ -51,6 +51,7 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
         March(divisor, 0.0, 50.0, 1e-3),
         80,
     )
+    return found.share
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.05])
@@ -73,9 +74,10 @@ def shadow_of_a_ball(at: vec3, distance: float, far: float, side: float) -> floa
     """A ball of radius 0.5 about ``at`` before a light along x that is ``distance`` away."""
     light = LightSample(vec3(1.0, 0.0, 0.0), distance, vec3(1.0), 0.1)
     room = Bounds(vec3(-side), vec3(side))
-    return shade.soft_shadow(
+    found = shadows.soft_shadow(
         lambda p: length(p - at) - 0.5, vec3(0.0), light, room, March(1.0, 0.0, far, 1e-4), 200
     )
+    return found.share
 
 
 def test_what_stands_beyond_the_light_the_far_end_or_the_box_hides_nothing():
@@ -313,12 +315,12 @@ def test_the_brightest_component_is_the_largest():
 
 
 @func
-def lit(weights: vec3, occlusion: float, shadow_steps: int) -> vec3:
+def lit(weights: vec3, occlusion: float) -> vec3:
     """A floor, a wall 0.3 away; a light from above and one from below it."""
     surface = Surface(emission=vec3(0.01, 0.02, 0.03), roughness=weights.z)
     parts = material.Shares(vec3(weights.x), vec3(weights.y), vec3(0.0))
     hit = trace.SurfacePoint(4.5, False, vec3(0.3, 0.0, 0.0), vec3(0.0, 1.0, 0.0), surface, parts)
-    return shade.direct_light(
+    found = shade.direct_light(
         Ray(vec3(3.0, 3.6, 0.0), vec3(-0.6, -0.8, 0.0)),
         hit,
         lambda p: min(p.y, p.x),
@@ -326,13 +328,13 @@ def lit(weights: vec3, occlusion: float, shadow_steps: int) -> vec3:
             p, vec3(3.0, 4.0, 0.0) if i == 0 else vec3(0.0, -1.0, 0.0), 2.0, vec3(1.0, 0.5, 0.25)
         ),
         lambda n: vec3(0.1) + 0.2 * max(n, 0.0),
-        Bounds(vec3(-1e18), vec3(1e18)),
+        shadows.no_shadow,
         March(1.0, 0.0, 50.0, 1e-4),
         shade.Look(occlusion, 0.0),
         2,
-        shadow_steps,
         False,
     )
+    return found.color
 
 
 @func
@@ -352,12 +354,12 @@ def test_direct_light_is_the_sum_of_its_parts():
     gloss = shine(toward, toward, 0.4, 0.0)
     for occlusion, share in ((0.0, 1.0), (1.0, hidden)):
         expected = emission + share * around + light * (0.5 * 0.8 + 0.3 * gloss)
-        found = lit((0.5, 0.3, 0.4), occlusion, 0)
+        found = lit((0.5, 0.3, 0.4), occlusion)
         assert tuple(found) == pytest.approx(tuple(expected), rel=1e-5)
 
 
 def test_only_what_is_rough_mirrors_what_is_around_here():
-    smooth = lit((0.5, 0.3, 0.0), 0.0, 0)
+    smooth = lit((0.5, 0.3, 0.0), 0.0)
     light = 2.0 * np.array([1.0, 0.5, 0.25])
     around = 0.5 * np.array([0.1, 0.3, 0.1])
     expected = np.array([0.01, 0.02, 0.03]) + around + light * 0.5 * 0.8

@@ -16,7 +16,7 @@ from distal import DistantLight, Plane, Scene, Shape
 from distal.fields.guarantees import Bounds
 from distal.lang import abs, func, length, max, min, normalize, vec3
 from distal.lang.runtime_access import executor
-from distal.render import shade
+from distal.render import shadows
 from distal.render.lights import LightSample
 from distal.render.march import March
 
@@ -40,7 +40,7 @@ def under_a_box(
 ) -> float:
     """What is left of a light under a box that is ``height`` above the floor."""
     light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
-    return shade.soft_shadow(
+    found = shadows.soft_shadow(
         lambda q: min(q.y, box(q - vec3(0.0, height + 0.5 * size.y, 0.0), size)),
         p,
         light,
@@ -51,12 +51,13 @@ def under_a_box(
         sample,
         samples,
     )
+    return found.share
 
 
 @func
 def under_a_ball(p: vec3, toward: vec3, radius: float, sample: int, samples: int) -> float:
     light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
-    return shade.soft_shadow(
+    found = shadows.soft_shadow(
         lambda q: min(q.y, length(q - vec3(0.0, 1.0, 0.0)) - 0.6),
         p,
         light,
@@ -67,6 +68,7 @@ def under_a_ball(p: vec3, toward: vec3, radius: float, sample: int, samples: int
         sample,
         samples,
     )
+    return found.share
 
 
 def disc(toward: Any, radius: float, count: int = 400) -> Any:
@@ -154,7 +156,7 @@ def test_no_light_leaks_through_a_plate_of_any_thickness(toward, height):
 def over(p: vec3, toward: vec3, radius: float, big: float) -> float:
     """On a ball of this radius about the origin; a plane if it is 0."""
     light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
-    return shade.soft_shadow(
+    found = shadows.soft_shadow(
         lambda q: q.y if big <= 0.0 else length(q) - big,
         p,
         light,
@@ -162,6 +164,7 @@ def over(p: vec3, toward: vec3, radius: float, big: float) -> float:
         March(1.0, 0.001, 600.0, 5e-4),
         64,
     )
+    return found.share
 
 
 @pytest.mark.parametrize("degrees", [1.0, 2.0, 10.0])
@@ -192,7 +195,7 @@ def under_a_lamp(p: vec3, lamp: vec3, radius: float, sample: int, samples: int) 
     offset = lamp - p
     distance = length(offset)
     light = LightSample(offset / distance, distance, vec3(1.0), radius / distance)
-    return shade.soft_shadow(
+    found = shadows.soft_shadow(
         lambda q: min(q.y, box(q - vec3(0.0, 1.001, 0.0), vec3(1.0, 0.002, 1.0))),
         p,
         light,
@@ -203,6 +206,7 @@ def under_a_lamp(p: vec3, lamp: vec3, radius: float, sample: int, samples: int) 
         sample,
         samples,
     )
+    return found.share
 
 
 @pytest.mark.parametrize(("radius", "allowed"), [(0.01, 0.01), (0.1, 0.02), (0.4, 0.035)])

@@ -13,7 +13,7 @@ from distal.lang import Field3, abs, dot, exp, func, reflect, refract, select, v
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
-from distal.render.lost_rays import SHADOWS, marked, reason
+from distal.render.lost_rays import INSIDE, SHADOWS, marked, reason
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
@@ -83,7 +83,7 @@ def seen_plain(
         not leave a solid.
     """
     hit = first_hit(ray)
-    lost = reason(hit.lost)
+    lost = reason(hit.lost) | select(hit.side < 0.0, INSIDE, 0)
     if not hit.found:
         alpha = ALL_INSIDE if hit.side < 0.0 else 0.0
         return vec4(background(ray.direction), _marked(alpha, lost, counted))
@@ -130,7 +130,7 @@ def seen_mirrored(
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
         hit = first_hit(here)
-        lost |= reason(hit.lost)
+        lost |= reason(hit.lost) | select(hit.side < 0.0 and alpha == 0.0, INSIDE, 0)
         if hit.side < 0.0 and alpha > 0.0:
             break  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:

@@ -15,6 +15,8 @@ from distal.render.march import OUT_OF_STEPS, TOO_FAR
 STEPS: Final = 1
 FAR: Final = 2
 SHADOWS: Final = 4
+# Not lost, but counted as well: the camera's ray began inside a solid.
+INSIDE: Final = 8
 # Alpha is between -1 and 1, so marks that are multiples of 4 can be told from it.
 MARK: Final = 4.0
 LOWEST: Final = 1.5
@@ -22,7 +24,7 @@ LOWEST: Final = 1.5
 
 @struct
 class Marked:
-    """An alpha, and why rays were lost: a sum of STEPS, FAR and SHADOWS."""
+    """An alpha, and why rays were lost: a sum of STEPS, FAR, SHADOWS and INSIDE."""
 
     alpha: float
     lost: int

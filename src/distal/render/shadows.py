@@ -55,6 +55,8 @@ GRAZING = 0.08
 # The least |gradient| by which a value is divided.
 FLATTEST = 0.3
 
+# The share of a light below which an unfinished ray counts as hidden.
+UNSEEN = 0.02
 # What ``open_share`` returns before any surface, and for a ray that goes through two faces.
 OPEN = 1e9
 CROSSED = -4.0
@@ -199,7 +201,8 @@ def open_share(
                     # The free ball ends before the ray does: try the longer step at the ray's end.
                     step = last - t
             t += step
-    lost = t <= last and share > -1.0
+    # A ray that ran out of steps is lost if what it has not seen could change the picture.
+    lost = t <= last and share_of_disc(share) > UNSEEN
     if steep and share < 1.0 and share > -1.0:
         # The local gradient makes a distance of a value that is too small.
         p = ray.origin + closest * ray.direction

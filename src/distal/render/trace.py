@@ -35,7 +35,7 @@ from distal.render.normals import EXACT, normal, unit_or_up
 
 # Rounding errors of a place, for each unit of its coordinates and of the ray's length; how often
 # the way from a surface is doubled; the steps of Newton's method to a surface.
-ROUNDING = 2.5e-7
+ROUNDING = 2e-6
 LEAVING_STEPS = 12
 NEWTON_STEPS = 2
 

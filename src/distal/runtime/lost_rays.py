@@ -20,12 +20,14 @@ REASONS: Final[Mapping[str, int]] = {
     "steps": lost_rays.STEPS,
     "far": lost_rays.FAR,
     "shadow steps": lost_rays.SHADOWS,
+    "inside": lost_rays.INSIDE,
 }
+_COMBINATIONS: Final = 16
 
 
 @dataclass(slots=True)
 class LostRays:
-    """The marks of the pixels that were rendered so far.
+    """The marks of the pixels that were rendered so far, in all passes.
 
     Attributes:
         pixels: Number of pixels.
@@ -33,7 +35,7 @@ class LostRays:
     """
 
     pixels: int = 0
-    marks: NDArray[np.int64] = field(default_factory=lambda: np.zeros(8, np.int64))
+    marks: NDArray[np.int64] = field(default_factory=lambda: np.zeros(_COMBINATIONS, np.int64))
 
     def remove_marks(self, pixels: NDArray[np.float32]) -> None:
         """Remove the marks from alpha, and count them.
@@ -44,12 +46,12 @@ class LostRays:
         alpha = pixels[..., 3]
         lost = np.floor((np.nan_to_num(alpha) + lost_rays.LOWEST) / lost_rays.MARK)
         alpha -= np.float32(lost_rays.MARK) * lost
-        self.marks += np.bincount(lost.astype(np.int64).ravel() & 7, minlength=8)
+        self.marks += np.bincount(lost.astype(np.int64).ravel() & 15, minlength=_COMBINATIONS)
         self.pixels += lost.size
 
     @property
     def shares(self) -> dict[str, float]:
         """The share of pixels with a lost ray, by reason; those that occur."""
-        kinds = np.arange(8)
+        kinds = np.arange(_COMBINATIONS)
         counts = {why: int(self.marks[kinds & bit > 0].sum()) for why, bit in REASONS.items()}
         return {why: count / max(self.pixels, 1) for why, count in counts.items() if count}

@@ -189,7 +189,10 @@ def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
         scene: The scene.
         lost: The share of such pixels, by reason (``runtime.lost_rays``).
     """
-    found = {why: share for why, share in lost.items() if share > MOST_LOST}
+    if lost.get("inside", 0.0) >= 1.0:
+        hint = "move the camera, or look at the shape with view='slice'"
+        _warn(f"the camera is inside '{scene.subject.name}': {hint}", scene)
+    found = {why: share for why, share in lost.items() if share > MOST_LOST and why != "inside"}
     if not found:
         return
     steps = "their steps" if scene.steps is None else f"their {scene.steps} steps"
