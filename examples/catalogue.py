@@ -24,7 +24,8 @@ def stands_by_itself(name: str) -> bool:
     row, made = PRIMITIVES[name], CLASSES[name]
     given = [p.default for p in inspect.signature(made).parameters.values()]
     complete = not any(d is inspect.Parameter.empty or isinstance(d, Buffer) for d in given)
-    closed = row.bounds is not None and row.signed and not row.estimate
+    finite = row.bounds is not None and name != "Slab"  # the box of a slab is infinite
+    closed = finite and row.signed and not row.estimate
     return issubclass(made, Shape) and complete and closed
 
 

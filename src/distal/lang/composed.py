@@ -32,6 +32,7 @@ class Composed(Immutable, ABC):
             its pixels for display. None if the pixels are already encoded.
         adaptive: Whether it is a picture of linear light that is rendered in the two passes of
             ``runtime.sampling``.
+        glow: For a picture with linear light: how much of the halo of ``runtime.glow`` is added.
     """
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
@@ -40,6 +41,7 @@ class Composed(Immutable, ABC):
     result: Type
     display: Composed | None = None
     adaptive: bool = False
+    glow: float = 0.0
 
     @abstractmethod
     def compose(self, assembly: Any) -> str:

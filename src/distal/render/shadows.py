@@ -260,8 +260,9 @@ def soft_shadow(
     One sample approximates the light's disc by one ray to its middle: the share that a straight
     edge leaves open, by the closest approach to the ray, outside or inside (Inigo Quilez, "Soft
     shadows in raymarched SDFs"). A ray through two faces of something has no such edge: for a
-    narrow light it counts as hidden, for a wide one 4 rays or more share the disc. From 4 samples
-    of a pixel on, each sample has one ray to its own part of the disc, and their mean is the share.
+    narrow light it counts as hidden. If the ray to a wide light does not show all of the disc or
+    nothing, 4 rays or more share the disc. From 4 samples of a pixel on, each sample has one ray to
+    its own part of the disc, and their mean is the share.
 
     Args:
         field: Signed distance.
@@ -295,7 +296,9 @@ def soft_shadow(
         width = select(number < 0, whole, whole * part)
         found = open_share(field, ray, width, end, bounds, numbers, steps, steep)
         lost = lost or found.lost
-        if number < 0 and found.share > CROSSED:
+        # Only if this ray shows all of the disc, or nothing, is it enough.
+        whole_disc = found.share >= 1.0 or (found.share <= -1.0 and found.share > CROSSED)
+        if number < 0 and whole_disc:
             return Opening(share_of_disc(found.share), lost)
         total += select(number < 0, 0.0, share_of_disc(found.share))
     return Opening(total / (1.0 if by_sample else float(count)), lost)

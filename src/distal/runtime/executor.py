@@ -33,7 +33,7 @@ from distal.lang.parameters import Parameter
 from distal.lang.render_options import Progress, RenderOptions, checked_time
 from distal.loading import loaded_from
 from distal.render import film
-from distal.runtime import sampling
+from distal.runtime import glow, sampling
 from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
@@ -138,6 +138,9 @@ class PythonExecutor:
             pixels = passes.light(options.size, {}, {}, options.progress)
             if len(parts) > 1:
                 linear, pixels = pixels, passes.shown(pixels)
+        if linear is not None and image.glow > 0.0:
+            linear += np.float32(image.glow) * glow.halo(linear, partial(self._step, device))
+            pixels = passes.shown(linear)
         stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
         stats["render_s"] = time.perf_counter() - compiled
         stats["lost"] = passes.lost.shares
@@ -163,6 +166,25 @@ class PythonExecutor:
         """Return the kernel of ``film.contrast``, and its buffer by name."""
         lowered = self._lower(film.contrast, None)
         return self.kernels.kernel(lowered, device, 32), lowered.resources
+
+    def _step(
+        self,
+        device: str,
+        step: Composed,
+        size: tuple[int, int],
+        of: tuple[int, int],
+        light: NDArray[np.float32],
+    ) -> NDArray[np.float32]:
+        """Render a step of ``runtime.glow``: of a size, from light of another size."""
+        lowered = self._lower(step, None)
+        uniforms = {
+            "resolution": (float(size[0]), float(size[1])),
+            glow.SIZE: (float(of[0]), float(of[1])),
+        }
+        data = dict.fromkeys(lowered.resources, light.reshape(-1, 4))
+        known = {u.name for u in lowered.module.uniforms}
+        needed = {name: value for name, value in uniforms.items() if name in {*known, "resolution"}}
+        return self.kernels.kernel(lowered, device, 32).render(*size, needed, data)
 
     def draw(
         self, image: Image | Composed, target: DrawTarget, options: RenderOptions

@@ -26,7 +26,13 @@ from distal.scene.looks.rows import as_look
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer
 from distal.scene.lowering.picture import NORMALS, RANGED, SceneLowering
-from distal.scene.scene_arguments import checked_exposure, checked_numbers, one_of, whole
+from distal.scene.scene_arguments import (
+    checked_exposure,
+    checked_glow,
+    checked_numbers,
+    one_of,
+    whole,
+)
 from distal.scene.steering import Steering
 from distal.scene.tree.source_places import author_place
 from distal.scene.view_options import ViewOptions
@@ -68,6 +74,8 @@ class Scene(Composed, Presentable):
         fog: The color of fog. None: that of the background at the horizon, in each direction.
         fog_density: Density of the fog per scene unit: after a distance of 1/density, 1/e of the
             light is left. 0 disables fog.
+        glow: How much of a halo surrounds what is brighter than white, 0 to 1, in pictures and
+            videos; windows that draw on a GPU, pages and texts of shaders show none.
         shadows: Whether lights cast shadows.
         ambient_occlusion: How far, in scene units, to search for surfaces that block ambient light;
             0 disables it. None: half the radius of the finite parts.
@@ -111,6 +119,7 @@ class Scene(Composed, Presentable):
         default_material: Material | Color | Varying | None = None,
         fog: Color | None = None,
         fog_density: Number | None = None,
+        glow: float = 0.0,
         shadows: bool = True,
         ambient_occlusion: Number | None = None,
         bounces: int = 6,
@@ -147,6 +156,7 @@ class Scene(Composed, Presentable):
         self.tone_map = one_of("tone map", made.tone_map, tonemap.NAMES, place)
         self.normals = one_of("way to find normals", normals, NORMALS, place)
         self.march = one_of("march", march, ("sphere", "heightfield"), place)
+        self.glow = checked_glow(glow, place)
         self.shadows = bool(shadows)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
         self.steps = None if steps is None else whole("steps", steps, Limit.POSITIVE, place)
@@ -167,6 +177,7 @@ class Scene(Composed, Presentable):
             **numbers,
             "tone_map": tone_map,
             "default_material": default_material,
+            "glow": glow,
             "shadows": shadows,
             "bounces": bounces,
             "normals": normals,
@@ -433,6 +444,7 @@ class View(Composed):
         self._steered = steered
         self.adaptive = adaptive
         self.display = scene.display if view == "color" and not encoded else None
+        self.glow = scene.glow
         self.ranged = view in RANGED
 
     def compose(self, assembly: Assembly) -> str:

@@ -79,6 +79,14 @@ def _ends(near: float, far: float) -> str | None:
     return None if near < far else f"rays begin at near {near:g} and end before it, at far {far:g}"
 
 
+def checked_glow(glow: Any, place: Span | None) -> float:
+    """Return the share of the halo as a checked constant."""
+    plain = number(glow, Asked("glow", "Scene", FLOAT, Limit.FRACTION, place=place)).plain
+    if not isinstance(plain, float):
+        refuse_kind("glow is a constant: no parameter, and no expression", "glow=0.4", place)
+    return plain
+
+
 def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
     """Return a checked count of the scene.
 
