@@ -59,6 +59,8 @@ OTHERS = {
 }
 # Only the march over terrain takes these; below.
 STRIDES = {"stride", "stride_growth"}
+# Only what is brighter than white has a halo: ``tests/render/test_glow.py``.
+HALO = {"glow"}
 
 
 # Choices that are constants of the program; "tone_map" one of the program that encodes it.
@@ -81,7 +83,7 @@ def program(**changed):
 
 def test_every_argument_is_changed_here():
     named = set(inspect.signature(Scene).parameters)
-    assert named == set(OTHERS) | STRIDES | {"name"}
+    assert named == set(OTHERS) | STRIDES | HALO | {"name"}
     assert Scene(SHAPE, name="pool").name == "pool"
 
 
