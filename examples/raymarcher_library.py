@@ -37,7 +37,7 @@ from distal.render.march import march
 from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
 from distal.render.settings import march_numbers
-from distal.render.shade import Look
+from distal.render.shade import Shading
 from distal.render.shadows import soft_shadow
 from distal.render.tonemap import ACES, decode_srgb, display
 
@@ -121,7 +121,7 @@ def picture(frame: Frame) -> vec4:
             lambda p: min(blob(p, time), floor(p)), origin, light, bounds, numbers, 64
         ),
         numbers,
-        Look(0.4, 0.06),
+        Shading(0.4, 0.06),
         light_count=1,
         cone=pixel_cone(lambda at: camera(at, time), uv, 2.0 / frame.resolution.y),
     )

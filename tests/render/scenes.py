@@ -101,7 +101,7 @@ def shadow(origin: vec3, light: LightSample, sample: int, samples: int) -> shado
 def plain(frame: Frame) -> vec4:
     seen = bounce.seen_plain(
         ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
-        shadow, numbers(), shade.Look(0.4, 0.02), 2,
+        shadow, numbers(), shade.Shading(0.4, 0.02), 2,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
 
@@ -110,7 +110,7 @@ def plain(frame: Frame) -> vec4:
 def mirrored(frame: Frame) -> vec4:
     seen = bounce.seen_mirrored(
         ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
-        shadow, numbers(), shade.Look(0.0, 0.0), 2, 4,
+        shadow, numbers(), shade.Shading(0.0, 0.0), 2, 4,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
 
@@ -119,7 +119,7 @@ def mirrored(frame: Frame) -> vec4:
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
         ray_of(frame), first_hit, first_hit, field, surface, lights, ambient, background, haze,
-        shadow, numbers(), shade.Look(0.0, 0.0), 2, 6,
+        shadow, numbers(), shade.Shading(0.0, 0.0), 2, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 

@@ -330,7 +330,7 @@ def lit(weights: vec3, occlusion: float) -> vec3:
         lambda n: vec3(0.1) + 0.2 * max(n, 0.0),
         shadows.no_shadow,
         March(1.0, 0.0, 50.0, 1e-4),
-        shade.Look(occlusion, 0.0),
+        shade.Shading(occlusion, 0.0),
         2,
         False,
     )

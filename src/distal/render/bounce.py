@@ -13,11 +13,11 @@ from distal.lang import Field3, abs, dot, exp, func, reflect, refract, select, v
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
-from distal.render.lost_rays import INSIDE, SHADOWS, marked, reason
+from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
-from distal.render.shade import Look, direct_light, fogged
+from distal.render.shade import Shading, direct_light, fogged
 from distal.render.shadows import Opening
 from distal.render.trace import at_surface, ray_offset, surface_point, way_off
 
@@ -47,7 +47,7 @@ def seen_plain(
     fog: Callable[[vec3], vec3],
     shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
-    look: Look,
+    look: Shading,
     light_count: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
@@ -83,7 +83,7 @@ def seen_plain(
         not leave a solid.
     """
     hit = first_hit(ray)
-    lost = reason(hit.lost) | select(hit.side < 0.0, INSIDE, 0)
+    lost = merged(reason(hit.lost), select(hit.side < 0.0, INSIDE, 0))
     if not hit.found:
         alpha = ALL_INSIDE if hit.side < 0.0 else 0.0
         return vec4(background(ray.direction), _marked(alpha, lost, counted))
@@ -92,7 +92,7 @@ def seen_plain(
         ray, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid, steep,
         cone.sample, cone.samples,
     )  # fmt: skip
-    lost |= select(light.lost, SHADOWS, 0)
+    lost = merged(lost, select(light.lost, SHADOWS, 0))
     color = fogged(light.color, point.t, fog(ray.direction), look.fog_density)
     return vec4(color, _marked(1.0, lost, counted))
 
@@ -109,7 +109,7 @@ def seen_mirrored(
     fog: Callable[[vec3], vec3],
     shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
-    look: Look,
+    look: Shading,
     light_count: int,
     bounces: int,
     normals: int = EXACT,
@@ -130,7 +130,8 @@ def seen_mirrored(
     for _ in range(bounces + 1):
         here = Ray(origin, direction)
         hit = first_hit(here)
-        lost |= reason(hit.lost) | select(hit.side < 0.0 and alpha == 0.0, INSIDE, 0)
+        began_inside = hit.side < 0.0 and alpha == 0.0
+        lost = merged(lost, merged(reason(hit.lost), select(began_inside, INSIDE, 0)))
         if hit.side < 0.0 and alpha > 0.0:
             break  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
@@ -144,7 +145,7 @@ def seen_mirrored(
             here, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid,
             steep, cone.sample, cone.samples,
         )  # fmt: skip
-        lost |= select(light.lost, SHADOWS, 0)
+        lost = merged(lost, select(light.lost, SHADOWS, 0))
         color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
         clear = exp(-look.fog_density * point.t)
         throughput = throughput * point.shares.mirrored * ((1.0 - point.surface.roughness) * clear)
@@ -171,7 +172,7 @@ def seen_refracted(
     fog: Callable[[vec3], vec3],
     shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
-    look: Look,
+    look: Shading,
     light_count: int,
     bounces: int,
     normals: int = EXACT,
@@ -207,7 +208,7 @@ def seen_refracted(
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
         hit = first_hit(here) if depth == 0 else next_hit(here)
-        lost |= reason(hit.lost)
+        lost = merged(lost, reason(hit.lost))
         if hit.side < 0.0 and not insides[waiting]:
             continue  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
@@ -228,7 +229,7 @@ def seen_refracted(
                 here, point, field, lights, ambient, shadow, numbers, look, light_count,
                 False, steep, cone.sample, cone.samples,
             )  # fmt: skip
-            lost |= select(light.lost, SHADOWS, 0)
+            lost = merged(lost, select(light.lost, SHADOWS, 0))
             color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
             throughput = throughput * exp(-look.fog_density * point.t)
         if depth >= bounces:

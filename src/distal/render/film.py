@@ -32,7 +32,7 @@ from distal.lang import (
 from distal.lang.srgb import decode_srgb, encode_srgb
 from distal.render.camera import Ray
 from distal.render.footprint import Cone
-from distal.render.lost_rays import marked, unmarked
+from distal.render.lost_rays import marked, merged, unmarked
 
 GOLDEN = 0.6180339887
 # Adaptive sampling: a pixel whose contrast is larger gets so many samples besides the first one.
@@ -175,7 +175,7 @@ def gathered(
         if counted:
             found = unmarked(seen.w)
             alpha = found.alpha
-            lost |= found.lost
+            lost = merged(lost, found.lost)
         weight = max(alpha, 0.0) if transparent else select(alpha < 0.0, 0.0, 1.0)
         total += vec4(seen.xyz * weight, weight)
     return Gathered(total, lost)

@@ -102,7 +102,7 @@ class Guided:
 
 
 @struct
-class Parts:
+class FiniteParts:
     """The boxes of the finite parts that were found so far.
 
     Attributes:
@@ -115,10 +115,10 @@ class Parts:
 
 
 @func
-def no_parts() -> Parts:
+def no_parts() -> FiniteParts:
     """Return the boxes of no part."""
     nothing = Bounds(vec3(UNBOUNDED), vec3(-UNBOUNDED))
-    return Parts(nothing, nothing)
+    return FiniteParts(nothing, nothing)
 
 
 @func
@@ -134,7 +134,7 @@ def extent(box: Bounds) -> float:
 
 
 @func
-def with_part(parts: Parts, bounds: Bounds) -> Parts:
+def with_part(parts: FiniteParts, bounds: Bounds) -> FiniteParts:
     """Return the boxes with that of another part, unless the part is infinite."""
     size = max(abs(bounds.low), abs(bounds.high))
     larger = extent(bounds) > extent(parts.largest)
@@ -148,7 +148,7 @@ def with_part(parts: Parts, bounds: Bounds) -> Parts:
         select(larger, displaced.low, smaller.low), select(larger, displaced.high, smaller.high)
     )
     finite = max(size.x, max(size.y, size.z)) < ENDLESS
-    return Parts(
+    return FiniteParts(
         Bounds(
             select(finite, largest.low, parts.largest.low),
             select(finite, largest.high, parts.largest.high),
@@ -161,7 +161,7 @@ def with_part(parts: Parts, bounds: Bounds) -> Parts:
 
 
 @func
-def box_of(parts: Parts) -> Bounds:
+def box_of(parts: FiniteParts) -> Bounds:
     """Return the box of the scene: of all finite parts, without one that is only their ground."""
     size = extent(parts.others)
     ground = size > 0.0 and extent(parts.largest) > _GROUND * size

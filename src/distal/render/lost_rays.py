@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.lang import floor, func, struct
+from distal.lang import exp2, floor, func, select, struct
 from distal.render.march import OUT_OF_STEPS, TOO_FAR
 
 # Why rays were lost, as bits.
@@ -17,7 +17,7 @@ FAR: Final = 2
 SHADOWS: Final = 4
 # Not lost, but counted as well: the camera's ray began inside a solid.
 INSIDE: Final = 8
-# Alpha is between -1 and 1, so marks that are multiples of 4 can be told from it.
+# Alpha is between -1 and 1, so multiples of 4 can be added to it.
 MARK: Final = 4.0
 LOWEST: Final = 1.5
 
@@ -36,6 +36,22 @@ def reason(lost: int) -> int:
     if lost == OUT_OF_STEPS:
         return STEPS
     return FAR if lost == TOO_FAR else 0
+
+
+@func
+def has(lost: int, bit: int) -> bool:
+    """Return whether a sum of bits has one; without bit operations, which GLSL ES 1.00 lacks."""
+    return floor(float(lost) / float(bit)) % 2.0 > 0.5
+
+
+@func
+def merged(a: int, b: int) -> int:
+    """Return the bits that one of two sums has, or both."""
+    total = 0
+    for k in range(4):
+        bit = int(exp2(float(k)) + 0.5)
+        total += select(has(a, bit) or has(b, bit), bit, 0)
+    return total
 
 
 @func

@@ -13,7 +13,7 @@ from distal.lang import clamp, dot, func, max, min, select, vec2, vec3
 from distal.render.camera import Ray
 from distal.render.heightfield_march import Stride
 from distal.render.march import March
-from distal.render.shade import Look
+from distal.render.shade import Shading
 from distal.render.steer import pivot_within
 
 # Rays through an infinite scene end at this distance, and at this many distances to the subject.
@@ -53,14 +53,14 @@ def stride_over(bounds: Bounds, stride: float, stride_growth: float) -> Stride:
 
 
 @func
-def look(ambient_occlusion: float, fog_density: float) -> Look:
+def look(ambient_occlusion: float, fog_density: float) -> Shading:
     """Return the parameters of shading.
 
     Args:
         ambient_occlusion: Reach of ambient occlusion, in scene units; 0 for none.
         fog_density: Fraction of the light that fog takes, per scene unit.
     """
-    return Look(ambient_occlusion, fog_density)
+    return Shading(ambient_occlusion, fog_density)
 
 
 @func

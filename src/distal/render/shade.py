@@ -41,7 +41,7 @@ OCCLUSION_GAIN = 0.6
 
 
 @struct
-class Look:
+class Shading:
     """The parameters of shading besides the lights.
 
     Attributes:
@@ -138,7 +138,7 @@ def direct_light(
     ambient: Callable[[vec3], vec3],
     shadow: Callable[[vec3, LightSample, int, int], Opening],
     numbers: March,
-    look: Look,
+    look: Shading,
     light_count: int,
     hybrid: bool,
     steep: bool = False,

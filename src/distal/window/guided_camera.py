@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from distal.diagnostics import CompileError, DeviceError
 from distal.scene.steering import STILL, Steering
-from distal.scene.viewing.guide import Moment, Place
+from distal.scene.viewing.guide import CameraPlace, Moment
 from distal.window.keys import Action
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class GuidedCamera:
         self.steering = STILL
         self.is_guided = is_guided
         self._viewable = viewable
-        self._place: tuple[Steering, Moment, Place] | None = None
+        self._place: tuple[Steering, Moment, CameraPlace] | None = None
         # What gestures asked for before the guide was compiled.
         self._waiting: Steering | Action | None = None
         self._thread: threading.Thread | None = None
@@ -116,7 +116,7 @@ class GuidedCamera:
         place = self.place(moment)
         return self._guide.text(place) if place is not None and self._guide is not None else ""
 
-    def place(self, moment: Moment) -> Place | None:
+    def place(self, moment: Moment) -> CameraPlace | None:
         """Return where the camera is; None without a guide."""
         if self._guide is None:
             return None
@@ -125,7 +125,7 @@ class GuidedCamera:
             self._place = (self.steering, moment, found)
         return self._place[2]
 
-    def known_place(self, moment: Moment) -> Place | None:
+    def known_place(self, moment: Moment) -> CameraPlace | None:
         """Return where the camera is, without waiting for a compilation."""
         guide = self._guide
         return self.place(moment) if guide is not None and guide.is_ready else None

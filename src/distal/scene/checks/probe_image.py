@@ -107,7 +107,7 @@ def probe_image(
         raise ValueError(f"a picture of {width}x{height} has no pixel {x},{y}")
     found = locals_of(image, TYPES)
     options = RenderOptions(size=size, params=params or {}, time=time)
-    seen = executor().at_pixel(_Program(image, found), (x + 0.5, height - y - 0.5), options)
+    seen = executor().at_pixel(_ImageLocals(image, found), (x + 0.5, height - y - 0.5), options)
     *values, color = seen
     pairs = zip(values[::2], values[1::2], strict=True)
     known = tuple(
@@ -118,7 +118,7 @@ def probe_image(
     return ProbedImage(image.name, pixel, size, (*shown, 1.0)[:4], known)
 
 
-class _Program(Composed):
+class _ImageLocals(Composed):
     """An image's function, changed to return its locals and the color."""
 
     signature = (("frame", FRAME),)

@@ -201,13 +201,15 @@ def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
         "shadow steps": ("rays to a light used up their steps", "steps"),
         "far": ("rays ended at the far limit on their way to a surface", "far"),
     }
-    told = "; ".join(f"in {share:.1%} of the pixels {causes[w][0]}" for w, share in found.items())
+    causes_found = "; ".join(
+        f"in {share:.1%} of the pixels {causes[w][0]}" for w, share in found.items()
+    )
     more = []
     if found.keys() & {"steps", "shadow steps"}:
         more.append(f"steps={2 * (scene.steps or 160)} or more")
     if "far" in found:
         more.append("a larger far, or fog that hides what is far away")
-    _warn(f"{told}: give {' and '.join(more)}", scene)
+    _warn(f"{causes_found}: give {' and '.join(more)}", scene)
 
 
 def shows(values: NDArray[np.float32]) -> bool:

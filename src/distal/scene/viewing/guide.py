@@ -49,7 +49,7 @@ class Moment:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class CameraPlace:
     """Where a camera is, in scene units.
 
     Attributes:
@@ -110,7 +110,7 @@ class Guide:
         """
         return _steering(self._numbers(action, now, now, moment))
 
-    def place(self, now: Steering, moment: Moment) -> Place:
+    def place(self, now: Steering, moment: Moment) -> CameraPlace:
         """Return where the camera is."""
         found = self._numbers("go", now, now, moment)
 
@@ -118,9 +118,9 @@ class Guide:
             return found[f"{name}_x"], found[f"{name}_y"], found[f"{name}_z"]
 
         flat = found["opening"], found["height"], found["room"]
-        return Place(point("eye"), point("target"), point("up"), *flat)
+        return CameraPlace(point("eye"), point("target"), point("up"), *flat)
 
-    def text(self, place: Place) -> str:
+    def text(self, place: CameraPlace) -> str:
         """Return a camera at a place as Python, as an author writes it."""
         return camera_text(self.form, place)
 
@@ -175,7 +175,7 @@ def camera_form(scene: Scene) -> CameraForm:
     return CameraForm(named or _PERSPECTIVE, bool(getattr(mirror, "plain", mirror)))
 
 
-def camera_text(form: CameraForm, place: Place) -> str:
+def camera_text(form: CameraForm, place: CameraPlace) -> str:
     """Return a camera as Python, rounded to a ten-thousandth of its distance from the target.
 
     Args:
@@ -195,7 +195,7 @@ def camera_text(form: CameraForm, place: Place) -> str:
     return f"{form.name}({', '.join(arguments)})"
 
 
-def point_text(point: tuple[float, float, float], place: Place) -> str:
+def point_text(point: tuple[float, float, float], place: CameraPlace) -> str:
     """Return a point as Python, as exact as it can be seen from a place."""
     return _rounded(point, 0.1 * max(math.dist(place.position, place.target), 1e-6))
 
