@@ -50,8 +50,8 @@ ADDITIONS: Final = (
     Addition("a built-in in scene code", "outer", ("outer_product",)),
     Addition("a shape", "CappedTorus", ("CappedTorus", "capped_torus")),
     Addition("an operator", "twist", ("twist",)),
-    Addition("a light", "SpotLight", ("SpotLight", "spot_light")),
-    Addition("a camera", "FisheyeCamera", ("FisheyeCamera", "fisheye")),
+    Addition("a light", "SpotLight", ("SpotLight", "spot_light"), users=("looks/dressing.py",)),
+    Addition("a camera", "PanoramaCamera", ("PanoramaCamera", "panorama")),
     Addition("a pattern", "stripes", ("stripes",)),
     Addition(
         "a background",
@@ -62,7 +62,7 @@ ADDITIONS: Final = (
     Addition("a view", "slope", ("view_slope",)),
     Addition("a pass", "specialise", ("specialise",)),
     Addition("a text target", "glsl-330", ("glsl-330",)),
-    Addition("a command", "probe", ("probe",), users=("scene/checks/probe.py", "cli/doctor.py")),
+    Addition("a command", "rerender", ("rerender",), users=("scene/rerender.py",)),
 )
 
 

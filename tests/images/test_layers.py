@@ -31,7 +31,8 @@ def sphere():
 
 @pytest.fixture(scope="module")
 def ball():
-    scene = Scene(Sphere(1.0).paint((0.25, 0.5, 1.0)), camera=Camera((0, 0, 5), fov=FOV))
+    shape = Sphere(1.0).paint((0.25, 0.5, 1.0))
+    scene = Scene(shape, camera=Camera((0, 0, 5), fov=FOV), floor=False)
     return scene.render(size=(WIDTH, HEIGHT), layers=ALL)
 
 
@@ -82,7 +83,7 @@ def test_materials_are_numbered_in_the_order_of_the_tree():
         twice.translate(0, -1.2, 0),
         blue.translate(1.5, 0, 0),
     ]
-    scene = Scene(parts, camera=Camera((0, 0, 5), fov=FOV))
+    scene = Scene(parts, camera=Camera((0, 0, 5), fov=FOV), floor=False)
     found = scene.render(size=(WIDTH, HEIGHT), layers=["material"]).layers["material"]
     assert found.dtype == np.uint32
     per_unit = HEIGHT / (2.0 * 5.0 * np.tan(FOV / 2.0))
@@ -101,7 +102,7 @@ def test_materials_are_numbered_in_the_order_of_the_tree():
 def test_blend_shows_whichever_shows_more():
     left, right = Sphere(0.8).paint("#ff0000"), Sphere(0.8).paint("#0000ff")
     shape = left.translate(-0.6, 0, 0).union(right.translate(0.6, 0, 0), smooth=0.3)
-    scene = Scene(shape, camera=Camera((0, 0, 5), fov=FOV))
+    scene = Scene(shape, camera=Camera((0, 0, 5), fov=FOV), floor=False)
     found = scene.render(size=(WIDTH, HEIGHT), layers=["material"]).layers["material"]
     row = found[HEIGHT // 2]
     met = row[row > 0]

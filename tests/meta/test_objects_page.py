@@ -22,6 +22,7 @@ def test_it_is_fresh():
 def test_every_declared_object_is_in_it():
     text = PAGE.read_text(encoding="utf-8")
     headings = set(re.findall(r"^### `([\w.]+)\(", text, re.MULTILINE))
+    headings |= set(re.findall(r"^- `(\w+)`: ", text.partition("\n## Looks\n")[2], re.MULTILINE))
     modules = public_names.DECLARED_NAMES.items()
     declared = {n for m, names in modules if not m.endswith(".shapes") for n in names.split()}
     assert declared | {"Material", "glass", "Environment", "Camera.yaw_pitch_roll"} <= headings

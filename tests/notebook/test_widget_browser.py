@@ -141,6 +141,7 @@ def test_time_and_view_go_both_ways(tmp_path):
 
 def test_running_time_is_told_now_and_then(tmp_path):
     with cell(tmp_path, live()) as looked:
+        looked.settle()  # The time starts with the first picture.
         looked.page.evaluate("fromPython({ playing: true })")
         looked.page.wait_for_timeout(1500)
         looked.page.evaluate("fromPython({ playing: false })")

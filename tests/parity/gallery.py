@@ -110,7 +110,7 @@ def is_moving(example: str) -> bool:
 @cache
 def cpu_picture(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
     """The middle that all ways are held against."""
-    picture: NDArray[Any] = image(example).render(size=size, time=seconds).array
+    picture: NDArray[Any] = image(example).render(size=size, samples=1, time=seconds).array
     return picture
 
 
@@ -119,7 +119,8 @@ def by_device(device: str) -> Callable[[str, tuple[int, int], float], NDArray[An
 
     def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
         picture: NDArray[Any]
-        picture = image(example).render(size=size, time=seconds, device=device).array
+        options: dict[str, Any] = {"samples": 1, "time": seconds, "device": device}
+        picture = image(example).render(size=size, **options).array
         return picture
 
     return draw

@@ -62,6 +62,8 @@ from distal.devices.resources import load
 from distal.frontend import lower
 from distal.ir.types import Texture
 from distal.lang import func, length, sin, slider, vec3
+from distal.lang.render_options import RenderOptions
+from distal.scene.view_ranges import with_range
 from tests.pictures.comparison import difference
 
 SIZE = (96, 72)
@@ -238,11 +240,11 @@ def module_of(picture):
     }
 
 
-def drawn(picture, target):
+def drawn(picture, target, **numbers):
     module, data = module_of(picture)
     program = emit(run_passes(module, get_target(target)), get_target(target))
     names = {u["name"] for u in program.interface["uniforms"]}
-    uniforms = dict.fromkeys(names & {"time"}, SECONDS)
+    uniforms = dict.fromkeys(names & {"time"}, SECONDS) | numbers
     if target == "wgsl":
         gpu = pytest.importorskip("tests.gpu")
         try:
@@ -275,9 +277,11 @@ def test_the_reference_draws_the_cpu_picture(name):
 @pytest.mark.parametrize("name", VIEWS)
 def test_drivers_draw_the_cpus_views(name, target):
     whole = scene("turned")
-    found = difference(
-        drawn(whole.view(name), target), whole.render(size=SIZE, time=SECONDS, view=name).array
-    )
+    view = whole.view(name)
+    # The range of the values that the view shows, which is measured when it is rendered.
+    options = with_range(view, RenderOptions(size=SIZE, time=SECONDS))
+    expected = whole.render(size=SIZE, time=SECONDS, view=name).array
+    found = difference(drawn(view, target, **(options.settings or {})), expected)
     assert found.is_agreement, found
 
 

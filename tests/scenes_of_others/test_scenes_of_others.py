@@ -103,19 +103,11 @@ def test_the_surface_is_closed(name):
 
 # The steepest, and those with the most small parts; each costs two more compilations.
 STEEP: Final = ("knurling", "twisted_morph")
-# Measured: 1.0 % and 1.8 % of the pixels differ, none without shadows.
-SHADOWS: Final = pytest.mark.xfail(
-    strict=True, reason="shadow rays beside steep shapes run out of 160 steps"
-)
 
 
 @pytest.mark.parametrize(
     ("name", "view"),
-    [
-        *((name, "normal") for name in (*STEEP, "castle")),
-        *(pytest.param(name, "color", marks=SHADOWS) for name in STEEP),
-        ("castle", "color"),
-    ],
+    [(name, view) for view in ("normal", "color") for name in (*STEEP, "castle")],
 )
 def test_rays_end_at_a_surface_or_outside(name, view):
     """More steps than the default change nothing, neither for the camera's rays nor for shadows."""

@@ -11,7 +11,7 @@ import struct
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,9 +133,28 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
             size = image.size
         with path.open("rb") as file:
             bits = file.read(25)[24]
+            _check_end(file)
     except Exception as error:  # Pillow raises many kinds of exceptions for broken files
         raise ReadError(f"{path} is broken: it is no whole PNG: {error}") from None
     return size, bits, {key: text for key, text in texts.items() if key.startswith(PREFIX)}
+
+
+def _check_end(file: BinaryIO) -> None:
+    """Check that a PNG has all of its chunks; Pillow accepts one that ends after the pixels.
+
+    Raises:
+        ValueError: The file ends before its last chunk, IEND, does.
+    """
+    end = file.seek(0, io.SEEK_END)
+    place, name = len(_SIGNATURE), b""
+    while name != b"IEND":
+        file.seek(place)
+        head = file.read(8)
+        if len(head) == 8:
+            length, name = struct.unpack(">I4s", head)
+            place += length + 12
+        if len(head) < 8 or place > end:
+            raise ValueError("its end is missing")
 
 
 def decode(data: bytes) -> NDArray[Any]:

@@ -23,7 +23,7 @@ NARROW = 0.012
 WIDE = 0.045
 NARROW_WEIGHT = 0.6
 # The data of this buffer is replaced for each step.
-LIGHT: Final = Buffer([(0.0, 0.0, 0.0, 0.0)])
+LIGHT: Final = Buffer([vec4(0.0)])
 
 
 @func
@@ -34,7 +34,7 @@ def light_at(at: ivec2, size: ivec2) -> vec3:
     """
     column = clamp(at.x, 0, size.x - 1)
     row = clamp(at.y, 0, size.y - 1)
-    return LIGHT[row * size.x + column].rgb
+    return LIGHT[row * size.x + column].xyz
 
 
 @func

@@ -138,7 +138,7 @@ class PythonExecutor:
             pixels = passes.light(options.size, {}, {}, options.progress)
             if len(parts) > 1:
                 linear, pixels = pixels, passes.shown(pixels)
-        if linear is not None and image.glow > 0.0:
+        if linear is not None and isinstance(image, Composed) and image.glow > 0.0:
             linear += np.float32(image.glow) * glow.halo(linear, partial(self._step, device))
             pixels = passes.shown(linear)
         stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
