@@ -16,7 +16,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 WEB = ROOT / "web"
 PLAYER = ROOT / "src" / "distal" / "export" / "player.js"
-LARGEST_BYTES = 50_000
+# Packed it has 31 kB, so that the page of the raymarcher stays below its 60 kB.
+LARGEST_BYTES = 60_000
 INSTALL_S = 100
 RUN_S = 60
 
