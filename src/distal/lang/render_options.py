@@ -94,6 +94,22 @@ def checked_size(size: Any) -> tuple[int, int]:
     return width, height
 
 
+def place_of_pixel(pixel: tuple[int, int], size: tuple[int, int]) -> tuple[float, float]:
+    """Return the middle of a pixel, in pixels from the lower left.
+
+    Args:
+        pixel: Column and row from 0; rows count from the top, as in a picture's array.
+        size: Width and height of the picture in pixels.
+
+    Raises:
+        ValueError: The picture has no such pixel.
+    """
+    (x, y), (width, height) = pixel, size
+    if not (0 <= x < width and 0 <= y < height):
+        raise ValueError(f"a picture of {width}x{height} has no pixel {x},{y}")
+    return x + 0.5, height - y - 0.5
+
+
 def checked_time(seconds: Any) -> float:
     """Return a time in seconds, checked to be in the range where 32-bit floats are precise enough.
 

@@ -28,14 +28,6 @@ DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display ar
 
 
 @func
-def _marked(alpha: float, lost: int, counted: bool) -> float:
-    """Return an alpha that carries why rays were lost, if they are counted."""
-    if counted:
-        return marked(alpha, lost)
-    return alpha
-
-
-@func
 def seen_plain(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
@@ -86,7 +78,7 @@ def seen_plain(
     lost = merged(reason(hit.lost), select(hit.side < 0.0, INSIDE, 0))
     if not hit.found:
         alpha = ALL_INSIDE if hit.side < 0.0 else 0.0
-        return vec4(background(ray.direction), _marked(alpha, lost, counted))
+        return vec4(background(ray.direction), marked(alpha, lost, counted))
     point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
     light = direct_light(
         ray, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid, steep,
@@ -94,7 +86,7 @@ def seen_plain(
     )  # fmt: skip
     lost = merged(lost, select(light.lost, SHADOWS, 0))
     color = fogged(light.color, point.t, fog(ray.direction), look.fog_density)
-    return vec4(color, _marked(1.0, lost, counted))
+    return vec4(color, marked(1.0, lost, counted))
 
 
 @func
@@ -156,7 +148,7 @@ def seen_mirrored(
         origin = point.p + ray_offset(numbers, hit.t, False) * point.n
         direction = reflect(direction, point.n)
         width = continued(width, point.t)
-    return vec4(color, _marked(alpha, lost, counted))
+    return vec4(color, marked(alpha, lost, counted))
 
 
 @func
@@ -257,4 +249,4 @@ def seen_refracted(
                 depths[waiting] = depth + 1
                 insides[waiting] = point.inside != through
                 waiting += 1
-    return vec4(color, _marked(alpha, lost, counted))
+    return vec4(color, marked(alpha, lost, counted))

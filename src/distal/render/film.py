@@ -208,7 +208,7 @@ def exposed(
     """
     sums = gathered(coord, resolution, camera, radiance, cone, samples, step, transparent, counted)
     mean = mean_light(sums.light, samples)
-    return vec4(mean.xyz, marked(mean.w, sums.lost)) if counted else mean
+    return vec4(mean.xyz, marked(mean.w, sums.lost, counted))
 
 
 @func
@@ -261,7 +261,7 @@ def exposed_again(
     first = firsts[index]
     known = select(again, vec4(first.xyz * first.w, first.w), vec4(0.0))
     mean = mean_light(sums.light + known, max(samples, 1) + select(again, 1, 0))
-    return vec4(mean.xyz, marked(mean.w, sums.lost)) if counted else mean
+    return vec4(mean.xyz, marked(mean.w, sums.lost, counted))
 
 
 @func

@@ -55,9 +55,11 @@ def merged(a: int, b: int) -> int:
 
 
 @func
-def marked(alpha: float, lost: int) -> float:
-    """Return an alpha that carries why rays were lost."""
-    return alpha + MARK * float(lost)
+def marked(alpha: float, lost: int, counted: bool) -> float:
+    """Return an alpha that carries why rays were lost, if they are counted."""
+    if counted:
+        return alpha + MARK * float(lost)
+    return alpha
 
 
 @func

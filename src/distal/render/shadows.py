@@ -155,8 +155,8 @@ def open_share(
     """
     # A ray beside the box is dimmed too, by what is within the disc's radius there.
     corner = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin))
-    room = width * min(length(corner), end)
-    span = crossing(ray, Bounds(bounds.low - room, bounds.high + room))
+    margin = width * min(length(corner), end)
+    span = crossing(ray, Bounds(bounds.low - margin, bounds.high + margin))
     last = min(end, span.y)
     t = max(span.x, 0.0) + numbers.threshold
     share = OPEN

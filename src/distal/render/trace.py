@@ -34,9 +34,11 @@ from distal.render.material import Shares, Surface, shares
 from distal.render.normals import EXACT, normal, unit_or_up
 
 # Rounding errors of a place, for each unit of its coordinates and of the ray's length; how often
-# the way from a surface is doubled; the steps of Newton's method to a surface.
+# the way from a surface is doubled.
 ROUNDING = 2e-6
 LEAVING_STEPS = 12
+# Steps of Newton's method. The largest error of a depth of 4 (a sphere, 160x120, without grazing
+# rays) after 0, 1 and 2 steps: 4e-3, 6e-7, 6e-7; where a ray hits it at 6 degrees 2e-2, 1e-3, 5e-6.
 NEWTON_STEPS = 2
 
 
@@ -191,10 +193,34 @@ def ray_offset(numbers: March, t: float, hybrid: bool) -> float:
 
 
 @func
+def refined(field: Field3, ray: Ray, hit: Hit, numbers: March, start: float) -> float:
+    """Return the distance to the surface, more precise than that of the march.
+
+    Newton's method along the ray, limited to the error of a hit. The distance of a ray that only
+    passes the surface within the threshold is not changed.
+
+    Args:
+        field: Signed distance.
+        ray: Ray.
+        hit: The hit of the march.
+        numbers: The parameters of the march.
+        start: Distance along the ray at which the method starts.
+    """
+    t = start
+    margin = FORGIVING * numbers.threshold * hit.t
+    for _ in range(NEWTON_STEPS):
+        p = ray.origin + t * ray.direction
+        slope = dot(gradient(field, p), ray.direction)
+        step = -field(p) / slope if abs(slope) > 1e-3 else 0.0
+        t = clamp(t + step, hit.t - margin, hit.t + margin)
+    return t
+
+
+@func
 def at_surface(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
     """Return the distance along a ray to the surface that it hit, as exactly as 32 bits allow.
 
-    Newton's method along the ray from just before the hit, limited to the error of a march.
+    Newton's method starts just before the hit, where fields have a gradient.
 
     Args:
         field: Signed distance.
@@ -202,14 +228,8 @@ def at_surface(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
         hit: Where it ended, at a surface.
         numbers: The parameters of the march.
     """
-    t = hit.t * (1.0 - 0.5 * numbers.threshold)
-    room = FORGIVING * numbers.threshold * hit.t
-    for _ in range(NEWTON_STEPS):
-        p = ray.origin + t * ray.direction
-        slope = dot(gradient(field, p), ray.direction)
-        step = -field(p) / slope if abs(slope) > 1e-3 else 0.0
-        t = clamp(t + step, hit.t - room, hit.t + room)
-    return max(t, 0.0)
+    start = hit.t * (1.0 - 0.5 * numbers.threshold)
+    return max(refined(field, ray, hit, numbers, start), 0.0)
 
 
 @func

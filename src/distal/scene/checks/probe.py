@@ -16,6 +16,7 @@ from distal.ir.nodes import CompareOp, Expr, Param, Read, Return
 from distal.ir.types import VEC2
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.render_options import place_of_pixel
 from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
 from distal.render.march import OUT_OF_STEPS, PASSED
@@ -109,12 +110,9 @@ def probe(
     Raises:
         ValueError: The picture has no such pixel.
     """
-    (x, y), (width, height) = pixel, size
-    if not (0 <= x < width and 0 <= y < height):
-        raise ValueError(f"a picture of {width}x{height} has no pixel {x},{y}")
+    place = place_of_pixel(pixel, size)
     program = _Program(scene)
-    place = (x + 0.5, height - y - 0.5)
-    resolution = (float(width), float(height))
+    resolution = (float(size[0]), float(size[1]))
     seen = executor().call(program, (place, resolution), {}, params=params, time=time)
     slope = float(
         executor().call(scene.shape._bounds_function, (), {}, params=params, time=time)[0]

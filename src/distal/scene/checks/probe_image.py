@@ -17,7 +17,7 @@ from distal.ir.nodes import Construct, Read
 from distal.ir.types import BOOL, FLOAT, FRAME, INT, UINT, VEC3, Kind, Struct, Type, Vector
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
-from distal.lang.render_options import RenderOptions
+from distal.lang.render_options import RenderOptions, place_of_pixel
 from distal.lang.runtime_access import executor
 from distal.scene.checks.validation import place_json
 from distal.scene.lowering.local_views import Local, kept_values, locals_of, watched
@@ -102,12 +102,10 @@ def probe_image(
         ValueError: The picture has no such pixel.
         CompileError: The image has mistakes.
     """
-    (x, y), (width, height) = pixel, size
-    if not (0 <= x < width and 0 <= y < height):
-        raise ValueError(f"a picture of {width}x{height} has no pixel {x},{y}")
+    place = place_of_pixel(pixel, size)
     found = locals_of(image, TYPES)
     options = RenderOptions(size=size, params=params or {}, time=time)
-    seen = executor().at_pixel(_ImageLocals(image, found), (x + 0.5, height - y - 0.5), options)
+    seen = executor().at_pixel(_ImageLocals(image, found), place, options)
     *values, color = seen
     pairs = zip(values[::2], values[1::2], strict=True)
     known = tuple(

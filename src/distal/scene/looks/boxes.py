@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
 from distal.compiler.constant_functions import evaluate
-from distal.fields.combine import joins
 from distal.fields.guarantees import ended
 from distal.frontend import Assembly, lower
 from distal.ir.build import field
@@ -26,6 +25,7 @@ from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError
 from distal.scene.lowering.bounds import BoundsComposer
+from distal.scene.lowering.union_parts import parts_of
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
@@ -90,17 +90,6 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
     whole = _boxes([root], params, time)[0] or ((-math.inf,) * 3, (math.inf,) * 3)
     pairs = [_cut(a, b) for a, b in zip(*whole, strict=True)]
     return SubjectBox(tuple(a for a, _ in pairs), tuple(b for _, b in pairs), endless, cut=True)
-
-
-def parts_of(root: Node) -> Iterator[Node]:
-    """Yield the members of the unions at the root of a tree."""
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        if node.rule is joins.UNION:
-            stack.extend(reversed(node.children))
-        else:
-            yield node
 
 
 def plain_number(number: Number, params: Mapping[str, Any], time: float) -> Any:

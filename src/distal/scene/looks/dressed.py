@@ -13,9 +13,10 @@ from typing import Any
 
 from distal.diagnostics import Span
 from distal.fields.combine import joins
-from distal.scene.looks.boxes import parts_of, subject_box
+from distal.scene.looks.boxes import subject_box
 from distal.scene.looks.dressing import Dressing
 from distal.scene.looks.look import Look
+from distal.scene.lowering.union_parts import parts_of
 from distal.scene.objects.backgrounds import Background, Surroundings, as_background
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import BaseShape

@@ -22,6 +22,13 @@ from distal.scene.tree.source_places import author_place
 
 CLAY: Final = (0.78, 0.70, 0.61)
 
+NO_RIM: Final = {
+    "rim_azimuth": 0.0,
+    "rim_elevation": 0.0,
+    "rim_intensity": 0.0,
+    "rim_color": (1.0, 1.0, 1.0),
+}
+
 ROWS: Final[dict[str, LookRow]] = {
     "studio": LookRow(
         doc="A photographer's studio: a seamless floor, a large soft lamp, a rim light.",
@@ -68,10 +75,7 @@ ROWS: Final[dict[str, LookRow]] = {
             "light_intensity": 2.3,
             "light_color": (1.0, 0.87, 0.68),
             "light_angle": 0.035,
-            "rim_azimuth": 0.0,
-            "rim_elevation": 0.0,
-            "rim_intensity": 0.0,
-            "rim_color": (1.0, 1.0, 1.0),
+            **NO_RIM,
             "fill": 0.54,
             "sky": (0.42, 0.62, 1.0),
             "ground": (0.40, 0.36, 0.30),
@@ -97,10 +101,7 @@ ROWS: Final[dict[str, LookRow]] = {
             "light_intensity": 2.8,
             "light_color": (1.0, 0.52, 0.22),
             "light_angle": 0.05,
-            "rim_azimuth": 0.0,
-            "rim_elevation": 0.0,
-            "rim_intensity": 0.0,
-            "rim_color": (1.0, 1.0, 1.0),
+            **NO_RIM,
             "fill": 0.44,
             "sky": (0.34, 0.48, 0.98),
             "ground": (0.40, 0.26, 0.24),
@@ -158,10 +159,7 @@ ROWS: Final[dict[str, LookRow]] = {
             "light_intensity": 0.75,
             "light_color": (1.0, 1.0, 1.0),
             "light_angle": 0.15,
-            "rim_azimuth": 0.0,
-            "rim_elevation": 0.0,
-            "rim_intensity": 0.0,
-            "rim_color": (1.0, 1.0, 1.0),
+            **NO_RIM,
             "fill": 0.62,
             "sky": (0.90, 0.95, 1.0),
             "ground": (0.45, 0.50, 0.60),

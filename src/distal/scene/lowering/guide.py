@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, ClassVar
 
-from distal.fields.combine.joins import UNION
 from distal.frontend import Assembly
 from distal.ir.build import field
 from distal.ir.nodes import EntryKind, Expr, Param, Read, Return
@@ -22,6 +21,7 @@ from distal.render import guide
 from distal.scene import steering
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.lowering.shapes import ZERO_CELL
+from distal.scene.lowering.union_parts import parts_of
 from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
@@ -74,12 +74,8 @@ def _finite_box(made: SceneLowering, body: StatementList, root: Node) -> Expr:
     """Return the box around all parts of the scene that are finite; planes have no part in it."""
     composer = made.composer
     parts = body.let("parts", composer.call(guide.no_parts, {}))
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        if node.rule is UNION:
-            stack.extend(node.children)
-            continue
+    # The last part first: of boxes of the same size the first one counts.
+    for node in reversed(list(parts_of(root))):
         part = composer.bounds.of(body, node, composer.values.all(node)).bounds
         parts = body.let("parts", composer.call(guide.with_part, {"parts": parts, "bounds": part}))
     return composer.call(guide.box_of, {"parts": parts})

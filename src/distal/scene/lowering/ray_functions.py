@@ -24,6 +24,7 @@ from distal.render import settings, shadows, trace
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.lowering.union_parts import parts_of
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -65,13 +66,8 @@ def split_planes(root: Node) -> tuple[list[Node], list[Node]]:
     """Return the planes that a tree is united with, and the other shapes of this union."""
     planes: list[Node] = []
     others: list[Node] = []
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        if node.rule is UNION:
-            stack.extend(reversed(node.children))
-        else:
-            (planes if is_linear(node) else others).append(node)
+    for node in parts_of(root):
+        (planes if is_linear(node) else others).append(node)
     return planes, others
 
 
