@@ -12,16 +12,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from distal.lang import Buffer, clamp, exp, floor, func, ivec2, max, mix, vec2, vec3, vec4
+from distal.lang import Buffer, clamp, exp, floor, func, ivec2, max, mix, select, vec2, vec3, vec4
 
 # The side of a block of pixels, and the reach of a blur, as a share of the picture's height.
 BLOCK_PX: Final = 4
 REACH = 0.12
 MOST_BLOCKS = 1024
 # Standard deviations of both Gaussians, as shares of the height, and the weight of the narrow one.
-NARROW = 0.012
-WIDE = 0.045
-NARROW_WEIGHT = 0.6
+NARROW: Final = 0.012
+WIDE: Final = 0.045
+NARROW_WEIGHT: Final = 0.6
 # The data of this buffer is replaced for each step.
 LIGHT: Final = Buffer([vec4(0.0)])
 
@@ -69,19 +69,20 @@ def brightest_blocks(coord: vec2, resolution: vec2, size: vec2) -> vec4:
 
 
 @func
-def blurred(coord: vec2, resolution: vec2, way: ivec2, deviation: float) -> vec4:
+def blurred(coord: vec2, resolution: vec2, is_across: bool, deviation: float) -> vec4:
     """Return the buffer, of the picture's size, blurred along a direction by a Gaussian.
 
     Args:
         coord: Middle of the pixel.
         resolution: Size of the picture in pixels.
-        way: One pixel along the direction.
+        is_across: Whether the direction is that of rows, else that of columns.
         deviation: Standard deviation, as a share of the picture's height.
     """
     size = ivec2(int(resolution.x), int(resolution.y))
     middle = floor(from_top(coord, resolution))
     pixels = max(deviation * resolution.y, 0.3)
     reach = clamp(int(REACH * resolution.y) + 1, 1, MOST_BLOCKS)
+    way = select(is_across, ivec2(1, 0), ivec2(0, 1))
     total = vec3(0.0)
     weights = 0.0
     for k in range(-reach, reach + 1):
@@ -90,30 +91,6 @@ def blurred(coord: vec2, resolution: vec2, way: ivec2, deviation: float) -> vec4
         total += weight * light_at(ivec2(int(middle.x), int(middle.y)) + k * way, size)
         weights += weight
     return vec4(total / weights, 1.0)
-
-
-@func
-def narrow_across(coord: vec2, resolution: vec2, size: vec2) -> vec4:
-    """Blur the buffer across by the narrow Gaussian."""
-    return blurred(coord, resolution, ivec2(1, 0), NARROW)
-
-
-@func
-def narrow_along(coord: vec2, resolution: vec2, size: vec2) -> vec4:
-    """Blur the buffer along by the narrow Gaussian, and weight it."""
-    return blurred(coord, resolution, ivec2(0, 1), NARROW) * NARROW_WEIGHT
-
-
-@func
-def wide_across(coord: vec2, resolution: vec2, size: vec2) -> vec4:
-    """Blur the buffer across by the wide Gaussian."""
-    return blurred(coord, resolution, ivec2(1, 0), WIDE)
-
-
-@func
-def wide_along(coord: vec2, resolution: vec2, size: vec2) -> vec4:
-    """Blur the buffer along by the wide Gaussian, and weight it."""
-    return blurred(coord, resolution, ivec2(0, 1), WIDE) * (1.0 - NARROW_WEIGHT)
 
 
 @func

@@ -139,7 +139,8 @@ class PythonExecutor:
             if len(parts) > 1:
                 linear, pixels = pixels, passes.shown(pixels)
         if linear is not None and isinstance(image, Composed) and image.glow > 0.0:
-            linear += np.float32(image.glow) * glow.halo(linear, partial(self._step, device))
+            step = partial(self._step, device, options)
+            linear += np.float32(image.glow) * glow.halo(linear, step)
             pixels = passes.shown(linear)
         stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
         stats["render_s"] = time.perf_counter() - compiled
@@ -170,21 +171,16 @@ class PythonExecutor:
     def _step(
         self,
         device: str,
+        options: RenderOptions,
         step: Composed,
         size: tuple[int, int],
-        of: tuple[int, int],
+        numbers: Mapping[str, Any],
         light: NDArray[np.float32],
     ) -> NDArray[np.float32]:
-        """Render a step of ``runtime.glow``: of a size, from light of another size."""
+        """Render a step of ``runtime.glow``; the first two are those of the whole picture."""
         lowered = self._lower(step, None)
-        uniforms = {
-            "resolution": (float(size[0]), float(size[1])),
-            glow.SIZE: (float(of[0]), float(of[1])),
-        }
-        data = dict.fromkeys(lowered.resources, light.reshape(-1, 4))
-        known = {u.name for u in lowered.module.uniforms}
-        needed = {name: value for name, value in uniforms.items() if name in {*known, "resolution"}}
-        return self.kernels.kernel(lowered, device, 32).render(*size, needed, data)
+        kernel = self.kernels.kernel(lowered, device, 32)
+        return _over(kernel, lowered.resources, size, numbers, light, options)
 
     def draw(
         self, image: Image | Composed, target: DrawTarget, options: RenderOptions
@@ -359,14 +355,34 @@ class _Passes:
     ) -> NDArray[np.float32]:
         """Return the contrast of each pixel of display values with its neighbours."""
         height, width, _ = shown.shape
-        return kernel.render(
-            width,
-            height,
-            {"resolution": (float(width), float(height))},
-            dict.fromkeys(resources, shown.reshape(-1, 4)),
-            threads=self.options.threads,
-            cancel=self.options.cancel,
-        )[..., 0]
+        return _over(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
+
+
+def _over(
+    kernel: Kernel,
+    resources: Mapping[str, Any],
+    size: tuple[int, int],
+    numbers: Mapping[str, Any],
+    light: NDArray[np.float32],
+    options: RenderOptions,
+) -> NDArray[np.float32]:
+    """Render a picture that reads another one, as a buffer of colors.
+
+    Args:
+        kernel: The kernel of the picture.
+        resources: Its buffers by name.
+        size: Width and height in pixels.
+        numbers: Its other uniforms by name.
+        light: The picture that it reads, (height, width, 4).
+        options: The threads, and the event that ends the work early.
+    """
+    return kernel.render(
+        *size,
+        {**numbers, "resolution": (float(size[0]), float(size[1]))},
+        dict.fromkeys(resources, light.reshape(-1, 4)),
+        threads=options.threads,
+        cancel=options.cancel,
+    )
 
 
 class _ValueOf(Composed):
