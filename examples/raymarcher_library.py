@@ -33,13 +33,13 @@ from distal.render.bounce import seen_plain
 from distal.render.camera import Ray, look_at
 from distal.render.footprint import Footprint, pixel_cone
 from distal.render.lights import LightSample, distant_light
-from distal.render.march import march
 from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
 from distal.render.settings import march_numbers
 from distal.render.shade import Shading
-from distal.render.shadows import soft_shadow
+from distal.render.shadows import shadow_beside_planes
 from distal.render.tonemap import ACES, decode_srgb, display
+from distal.render.trace import first_surface_or_plane, plane_crossing
 
 softness = slider("Softness", 0.05, high=0.2, help="How far sphere and torus melt.")
 
@@ -110,15 +110,24 @@ def picture(frame: Frame) -> vec4:
     numbers = march_numbers(1.0, 0.001, 60.0, frame.resolution)
     seen = seen_plain(
         camera(uv, time),
-        lambda ray: march(lambda p: min(blob(p, time), floor(p)), ray, bounds, numbers, 160),
+        lambda ray: first_surface_or_plane(
+            lambda p: blob(p, time),
+            floor,
+            lambda ray: plane_crossing(floor, ray),
+            ray,
+            bounds,
+            numbers,
+            60.0,
+            160,
+        ),
         lambda p: min(blob(p, time), floor(p)),
         lambda p, sides: material(p, sides, time),
         lambda i, p: sun(p),
         lambda n: hemisphere_light(n, vec3(0.5), vec3(0.25), 1.0),
         sky,
         lambda direction: FOG,
-        lambda origin, light, i, n: soft_shadow(
-            lambda p: min(blob(p, time), floor(p)), origin, light, bounds, numbers, 64
+        lambda origin, light, i, n: shadow_beside_planes(
+            lambda p: blob(p, time), floor, origin, light, bounds, numbers, 320, False, i, n
         ),
         numbers,
         Shading(0.4, 0.06),

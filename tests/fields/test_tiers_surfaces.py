@@ -142,7 +142,7 @@ def stored_block(p: vec3) -> float:
 
 @func
 def ground(p: vec3) -> float:
-    return heightfield.heightfield(p, GROUND, vec2(2.0), 1.0, 0.0)
+    return heightfield.heightfield(p, GROUND, vec2(2.0), 1.0, vec2(0.0))
 
 
 def test_a_stored_ball_is_a_ball():

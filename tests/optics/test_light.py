@@ -301,6 +301,14 @@ def test_a_penumbra_is_as_wide_as_similar_triangles_say(radius):
     assert 0.6 * expected < found < 1.5 * expected
 
 
+@pytest.mark.parametrize("radius", [0.05, 0.2])
+def test_a_penumbra_is_the_share_of_the_disc_beside_a_straight_edge(radius):
+    x, share = penumbra(radius)
+    c = np.clip(x / radius, -1.0, 1.0)
+    expected = 0.5 + (c * np.sqrt(1.0 - c * c) + np.arcsin(c)) / math.pi
+    assert np.sqrt(np.mean((share - expected)[np.abs(x) < 1.3 * radius] ** 2)) < 0.02
+
+
 def test_a_point_casts_a_hard_shadow():
     assert width_of(*penumbra(0.0)) < 0.02
 

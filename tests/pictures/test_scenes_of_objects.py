@@ -21,7 +21,8 @@ def test_objects_draw_what_the_library_draws(time):
         for name in ("objects", "library")
     )
     assert difference(objects, library).is_agreement
-    assert np.abs(objects - library).max() < 1e-3
+    # The box of the objects is tighter, so that rays begin and step at other places.
+    assert np.abs(objects - library).max() < 1 / 255
 
 
 def test_the_softness_of_objects_is_the_shaders_blend():

@@ -15,7 +15,8 @@ import distal
 from tests.pictures.comparison import difference
 
 SIZE = (160, 120)
-TIMES = (0.0, 2.9, 11.3)
+# At 2.9 a lid of glass is seen at 4 degrees, and moving the camera by 1e-6 changes what it shows.
+TIMES = (0.0, 2.5, 11.3)
 TARGETS = ("glsl-es300", "wgsl", "wgsl-compute")
 ALL = os.environ.get("DISTAL_ALL_PICTURES") == "1"
 # NumPy follows all rays of mirrors and glass through all steps: a minute for some of these.
@@ -33,7 +34,7 @@ CASES = [
     for example in sorted(distal.gallery())
     for target in TARGETS
     for time in TIMES
-    if ALL or is_small(example) or (time == 2.9 and target != "wgsl-compute")
+    if ALL or is_small(example) or (time == 2.5 and target != "wgsl-compute")
 ]
 
 

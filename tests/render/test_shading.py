@@ -43,15 +43,17 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
     """The field is ``at.x`` times the way, but for ``at.y`` of way at the start."""
     light = LightSample(vec3(0.0, 0.6, 0.8), end, vec3(1.0), radius)
     room = Bounds(vec3(-1e18), vec3(1e18))
-    found = shadows.soft_shadow(
+    found = shadows.find_edge(
         lambda p: at.x * length(p - vec3(0.5, 1.0, 2.0)) + at.y,
-        vec3(0.5, 1.0, 2.0),
-        light,
+        Ray(vec3(0.5, 1.0, 2.0), light.direction),
+        max(radius, shadows.SHARPEST),
+        end,
         room,
         March(divisor, 0.0, 50.0, 1e-3),
         80,
+        False,
     )
-    return found.share
+    return shadows.share_of_disc(found.offset)
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.05])
@@ -89,14 +91,16 @@ def test_what_stands_beyond_the_light_the_far_end_or_the_box_hides_nothing():
     assert asked(shadow_of_a_ball, -ball, 9.0, 50.0, 50.0)[0] == pytest.approx(1.0)
 
 
-def test_a_ball_beside_the_ray_dims_by_its_closest_approach():
-    """At the tangent's foot the gap is its least share of the light's width."""
+def test_a_ball_beside_the_ray_hides_as_much_of_the_disc_as_rays_count():
     beside = np.array([0.45, 0.6, 0.7, 0.8, 0.95])
     at = np.stack([np.full(5, 4.0), beside, 0.0 * beside], axis=1)
-    t = np.linspace(0.01, 9.0, 20001)
-    gaps = np.array([((np.hypot(t - 4.0, b) - 0.5) / (0.1 * t)).min() for b in beside])
+    k = np.arange(2000.0)
+    out, angle = 0.1 * np.sqrt((k + 0.5) / 2000.0), 2.399963 * k
+    rays = np.stack([np.ones(2000), out * np.cos(angle), out * np.sin(angle)], axis=1)
+    along = at @ rays.T / np.linalg.norm(rays, axis=1)
+    missed = (np.sum(at**2, axis=1)[:, None] - along**2 > 0.25).mean(axis=1)
     found = asked(shadow_of_a_ball, at, 9.0, 50.0, 50.0)
-    assert found == pytest.approx(left_of(gaps), abs=2e-2)
+    assert np.sqrt(np.mean((found - missed) ** 2)) < 0.02
 
 
 # Fog: of a color, exp(-density * way) is left, the rest is the fog's.

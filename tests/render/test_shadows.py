@@ -123,10 +123,11 @@ def errors(samples: int) -> list[float]:
     return [float(np.sqrt((error**2).mean())) for error in found]
 
 
-@pytest.mark.parametrize(("samples", "allowed"), [(1, 0.03), (4, 0.03), (16, 0.015)])
+@pytest.mark.parametrize(("samples", "allowed"), [(1, 0.01), (4, 0.015), (16, 0.009)])
 def test_a_lights_disc_shows_as_much_as_its_rays_count(samples, allowed):
-    """The mean over eighteen pictures; today's of thin boxes was 0.13 alone."""
-    assert np.mean(errors(samples)) < allowed
+    found = errors(samples)
+    assert np.mean(found) < allowed
+    assert np.max(found) < 5.0 * allowed
 
 
 LIGHTS = {"high": SUN, "above": (0.0, 1.0, 0.0), "low": (0.9, 0.3, 0.1)}
@@ -209,7 +210,7 @@ def under_a_lamp(p: vec3, lamp: vec3, radius: float, sample: int, samples: int) 
     return found.share
 
 
-@pytest.mark.parametrize(("radius", "allowed"), [(0.01, 0.01), (0.1, 0.02), (0.4, 0.035)])
+@pytest.mark.parametrize(("radius", "allowed"), [(0.01, 0.002), (0.1, 0.015), (0.4, 0.03)])
 def test_a_lamp_above_a_plate_shows_as_much_of_itself_as_rays_count(radius, allowed):
     """The lamp is a ball, whose disc faces each point; 16 samples."""
     lamp = np.array((0.4, 3.0, 0.2))
