@@ -21,8 +21,8 @@ def test_objects_draw_what_the_library_draws(time):
         for name in ("objects", "library")
     )
     assert difference(objects, library).is_agreement
-    # The box of the objects is tighter, so that rays begin and step at other places.
-    assert np.abs(objects - library).max() < 1 / 255
+    # The box of the objects is tighter, so that shadow rays begin and step at other places.
+    assert np.percentile(np.abs(objects - library), 99.9) < 1e-3
 
 
 def test_the_softness_of_objects_is_the_shaders_blend():

@@ -15,7 +15,7 @@ import pytest
 from distal.fields.guarantees import Bounds
 from distal.lang import func, length, max, min, vec2, vec3
 from distal.lang.runtime_access import executor
-from distal.render import ambient, lights, material, shade, shadows, sky, trace
+from distal.render import ambient, lights, material, shade, shadow_ray, shadows, sky, trace
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
@@ -43,7 +43,7 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
     """The field is ``at.x`` times the way, but for ``at.y`` of way at the start."""
     light = LightSample(vec3(0.0, 0.6, 0.8), end, vec3(1.0), radius)
     room = Bounds(vec3(-1e18), vec3(1e18))
-    found = shadows.find_edge(
+    found = shadow_ray.find_edge(
         lambda p: at.x * length(p - vec3(0.5, 1.0, 2.0)) + at.y,
         Ray(vec3(0.5, 1.0, 2.0), light.direction),
         max(radius, shadows.SHARPEST),
@@ -52,8 +52,9 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
         March(divisor, 0.0, 50.0, 1e-3),
         80,
         False,
+        1,
     )
-    return shadows.share_of_disc(found.offset)
+    return shadow_ray.share_of_disc(found.offset)
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.05])

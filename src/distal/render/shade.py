@@ -33,7 +33,8 @@ from distal.render.lights import LightSample
 from distal.render.march import March
 from distal.render.material import highlight
 from distal.render.normals import tangent
-from distal.render.shadows import GOLDEN_ANGLE, Opening, true_slope
+from distal.render.shadow_ray import true_slope
+from distal.render.shadows import GOLDEN_ANGLE, Opening
 from distal.render.trace import SurfacePoint, ray_offset
 
 OCCLUSION_DIRECTIONS = 5
