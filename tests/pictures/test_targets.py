@@ -20,7 +20,16 @@ TIMES = (0.0, 2.5, 11.3)
 TARGETS = ("glsl-es300", "wgsl", "wgsl-compute")
 ALL = os.environ.get("DISTAL_ALL_PICTURES") == "1"
 # NumPy follows all rays of mirrors and glass through all steps: a minute for some of these.
-LONG_BY_REFERENCE = ("still_life", "sdfray_glass", "sdfray_refraction", "sdfray_csg_on_checker")
+LONG_BY_REFERENCE = (
+    "castle",
+    "catalogue",
+    "enclosure",
+    "gyroid_part",
+    "sdfray_csg_on_checker",
+    "sdfray_glass",
+    "sdfray_refraction",
+    "still_life",
+)
 
 
 def is_small(example):

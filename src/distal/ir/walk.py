@@ -179,7 +179,11 @@ def substitute(e: Expr, replacements: dict[Expr, Expr], memo: dict[Expr, Expr]) 
 
 def nodes_in(*roots: Expr) -> Iterator[Expr]:
     """Yield every distinct node of the expressions, including ``roots``; operands before users."""
-    seen: set[Expr] = set()
+    return _unseen(roots, set())
+
+
+def _unseen(roots: tuple[Expr, ...], seen: set[Expr]) -> Iterator[Expr]:
+    """Yield the nodes of expressions that are not in ``seen``, and add them to it."""
     # A node is pushed again inside a one-element tuple; it is yielded when the tuple is popped,
     # after its operands.
     stack: list[Any] = list(reversed(roots))
@@ -239,10 +243,7 @@ def expressions_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
     """Yield every distinct expression node of a block, including the blocks inside it."""
     seen: set[Expr] = set()
     for stmt in statements_in(body):
-        for e in nodes_in(*expressions(stmt)):
-            if e not in seen:
-                seen.add(e)
-                yield e
+        yield from _unseen(expressions(stmt), seen)
 
 
 def is_unchanging(e: Expr, variables: Collection[str]) -> bool:

@@ -12,7 +12,6 @@ from distal.frontend.lowering.argument_matching import Argument, closeness, matc
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.lowering.statements import lower_statements
 from distal.frontend.problems import FollowupError, SceneError
-from distal.frontend.scopes import analyse_scopes
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, FunctionSignature
 from distal.frontend.source import Node
@@ -161,7 +160,7 @@ def lower_function(
         instance: The instance, whose result type is set.
         bindings: The types bound to its type variables.
     """
-    scopes = analyse_scopes(signature.node.body, {s.name for s in signature.parameters})
+    scopes = signature.definition.scopes
     body = FunctionBody(compilation, signature.name, signature.source, signature.names, scopes)
     body.bindings = bindings
     params = []

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import FunctionType
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.name_lookup import NameLookup, names_of
 from distal.frontend.problems import SceneError
+from distal.frontend.scopes import ScopeAnalysis, analyse_scopes
 from distal.frontend.source import SourceMap, parse_definition
 from distal.lang.functions import Overload
 from distal.lang.source import capture
@@ -42,14 +45,49 @@ class SignatureParameter:
     by_keyword: bool = True
 
 
+class Definition:
+    """A parsed definition; the same for every compilation of the function.
+
+    Attributes:
+        node: Its syntax tree.
+        source: Makes source spans from nodes.
+    """
+
+    def __init__(self, overload: Overload) -> None:
+        name = overload.python.__code__.co_name
+        self.node, self.source = parse_definition(overload.source, name)
+
+    @cached_property
+    def scopes(self) -> ScopeAnalysis:
+        """The locals of the function."""
+        a = self.node.args
+        return analyse_scopes(
+            self.node.body, {arg.arg for arg in (*a.posonlyargs, *a.args, *a.kwonlyargs)}
+        )
+
+
+_definitions: WeakKeyDictionary[Overload, Definition] = WeakKeyDictionary()
+
+
+def definition_of(overload: Overload) -> Definition:
+    """Return the parsed definition of a function, parsed at the first call.
+
+    Raises:
+        CompileError: The source text is not available or cannot be parsed.
+    """
+    found = _definitions.get(overload)
+    if found is None:
+        found = _definitions[overload] = Definition(overload)
+    return found
+
+
 @dataclass(eq=False, slots=True)
 class FunctionSignature:
     """A function's signature, as its ``def`` line declares it.
 
     Attributes:
         name: The function's name.
-        node: Its syntax tree.
-        source: Makes source spans from nodes.
+        definition: The parsed definition.
         names: Looks up its names.
         parameters: Its parameters.
         result: The evaluated result annotation; ``MISSING`` if there is none.
@@ -59,14 +97,23 @@ class FunctionSignature:
     """
 
     name: str
-    node: ast.FunctionDef
-    source: SourceMap
+    definition: Definition
     names: NameLookup
     parameters: tuple[SignatureParameter, ...]
     result: Any
     overload: Overload
     problems: list[Diagnostic] = field(default_factory=list)
     unusable: bool = False
+
+    @property
+    def node(self) -> ast.FunctionDef:
+        """The syntax tree."""
+        return self.definition.node
+
+    @property
+    def source(self) -> SourceMap:
+        """Makes source spans from nodes."""
+        return self.definition.source
 
     @property
     def span(self) -> Span:
@@ -94,9 +141,9 @@ def read_signature(overload: Overload) -> FunctionSignature:
         CompileError: The source text is not available or cannot be parsed.
     """
     python = overload.python
-    node, source = parse_definition(overload.source, python.__code__.co_name)
+    definition = definition_of(overload)
     names = names_of(python, overload.enclosing)
-    signature = FunctionSignature(python.__name__, node, source, names, (), MISSING, overload)
+    signature = FunctionSignature(python.__name__, definition, names, (), MISSING, overload)
     if _is_method(python):
         message = f"'{python.__qualname__}' is a method; scene code is plain functions"
         signature.problems.append(Diagnostic(message, signature.span, "move it out of the class"))
@@ -109,8 +156,8 @@ def read_signature(overload: Overload) -> FunctionSignature:
         signature.unusable = True
         return signature
     signature.parameters = tuple(_parameters_of(signature, python))
-    if node.returns is not None:
-        signature.result = _evaluated(signature, node.returns)
+    if definition.node.returns is not None:
+        signature.result = _evaluated(signature, definition.node.returns)
     return signature
 
 
