@@ -40,10 +40,12 @@ LONGEST = 4.0
 SLIGHT = 0.1
 # Where two free balls touch this close to the ray, in radii, the ray goes back to look there.
 NEAR_MISS = 0.5
-# Two steps with slopes along the ray that differ by less are steps towards a flat surface, which is
-# there if this part of the distance to it, or less, is left after a step to it.
+# Two steps with slopes along the ray that differ by less are steps towards a flat surface. If the
+# ray starts beside it, closer than the last fraction of the ray's length, it is there if the second
+# part of the distance, or less, is left.
 ALIKE = 0.02
 PREDICTED = 0.5
+BESIDE_SURFACE = 0.003
 # The middle of a chord between two flat faces is as deep as the entry predicts, half as deep in a
 # ball near its outline: above the second part the faces count as flat, below the first as a ball's.
 ROUND = 0.6
@@ -202,6 +204,7 @@ def pass_surfaces(
     share = OPEN  # by the closest surface outside, or by the depth
     chord = vec3(0.0)  # begin, end and flatness of the chord between two flat faces
     closest = t
+    lift = 0.0  # the distance at the first point, if the ray starts beside a surface
     free = 0.0  # the distance at the previous point
     step = 0.0  # from the previous point to this one
     least = 0.0  # the least step that was allowed there
@@ -216,6 +219,8 @@ def pass_surfaces(
             break
         p = ray.origin + t * ray.direction
         value = field(p) / numbers.divisor
+        if i == 0 and value < BESIDE_SURFACE * last:
+            lift = value
         if value < share * width * t:
             share = value / (width * t)
             closest = t
@@ -233,7 +238,7 @@ def pass_surfaces(
             and step > max(free, least)
             and value + free < step
             and not (
-                abs(value) < max(NEARLY * t, PREDICTED * free)
+                abs(value) < max(NEARLY * t, select(free <= lift, PREDICTED * free, 0.0))
                 and abs((value - free) / step - slope) < ALIKE
             )
         ):
