@@ -310,6 +310,37 @@ def test_it_draws_into_a_texture_of_a_window(lost_gpu: None) -> None:
     assert off.far_off == 0.0
 
 
+def test_a_window_is_drawn_in_parts_which_can_be_stopped_between() -> None:
+    kernel, _, sources = of(resources, "fragment")
+    kernel.tile_sizer = TileSizer(64)
+    extent, uniforms = (33, 20), {"resolution": (33, 20)}
+    wgpu, shown = adapters.wgpu_module(), adapters.opened(adapters.chosen())
+    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+    texture = shown.device.create_texture(size=(*extent, 1), format="rgba8unorm", usage=usage)
+    view = texture.create_view()
+    shares: list[float] = []
+    stop = threading.Event()
+
+    def progress(share: float) -> None:
+        shares.append(share)
+        if len(shares) == 3:
+            stop.set()
+
+    with pytest.raises(Cancelled):
+        kernel.draw(view, "rgba8unorm", *extent, uniforms, sources, progress=progress, cancel=stop)
+    assert len(shares) == 3
+    assert 0 < shares[0] < shares[1] < shares[2] < 1
+    kernel.draw(view, "rgba8unorm", *extent, uniforms, sources)
+    assert kernel.stats["tiles"] >= 11
+    data = shown.device.queue.read_texture(
+        {"texture": texture}, {"bytes_per_row": 33 * 4}, (*extent, 1)
+    )
+    pixels = np.frombuffer(data, np.uint8).reshape(20, 33, 4)
+    off = difference(kernel.render(*extent, uniforms, sources), pixels)
+    assert off.mean < 0.5
+    assert off.far_off == 0.0
+
+
 def test_a_large_picture_needs_no_binding_as_large() -> None:
     kernel, _, sources = of(place, "compute")
     kernel.tile_sizer = TileSizer(2**18)

@@ -53,6 +53,22 @@ def test_a_sudden_slow_part_makes_the_next_one_small() -> None:
     assert tile_sizer.next() <= budget * TARGET_S * 1.01
 
 
+@pytest.mark.parametrize("pixel_s", [1e-7, 1e-5])
+def test_parts_are_smaller_where_pixels_have_several_samples(pixel_s: float) -> None:
+    tile_sizer = TileSizer(10**8)
+    run(1600, 1000, tile_sizer, pixel_s)
+    before = run(1600, 1000, tile_sizer, pixel_s)
+    times = []
+    for tile in tiles(1600, 1000, tile_sizer, samples=16):
+        times.append(tile.pixels * pixel_s * 16)
+        tile_sizer.measured(tile, times[-1])
+    assert max(times) <= TARGET_S * 1.01
+    assert len(times) <= 2.5 * sum(times) / TARGET_S
+    # What was learned is valid for any number of samples.
+    after = run(1600, 1000, tile_sizer, pixel_s)
+    assert len(after) == pytest.approx(len(before), rel=0.1)
+
+
 def test_the_drivers_compilation_counts_for_nothing() -> None:
     tile_sizer = TileSizer(10**8)
     first = tile_sizer.start(10**6)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 from weakref import WeakKeyDictionary
@@ -167,34 +167,59 @@ class GpuKernel:
             DeviceError: The GPU was lost, or has too little memory.
         """
         assert self._is_image, "a function has no picture"
-        wanted = cancel_test(cancel)
         with self._lock:
-            program, started = self._ready(), time.perf_counter()
+            program = self._ready()
             picture = PICTURES.take((height, width, 4))
-            with program.gpu.commands() as device:
-                program.load(resources)
-            run = self._draw_part if "fragment" in program.interface["stages"] else self._part
-            done = parts = 0
-            for tile in tiles(width, height, self.tile_sizer):
-                if wanted():
-                    raise Cancelled
-                begin = time.perf_counter()
-                with program.gpu.commands() as device:
-                    place = (tile.x, tile.y, tile.width, tile.height)
-                    program.set_uniforms(uniforms, place)
-                    encoder = device.create_command_encoder()
-                    if parts == 0:
-                        program.encode_frame(encoder)
-                    run(program, encoder, tile, picture)
-                self.tile_sizer.measured(tile, time.perf_counter() - begin)
-                done, parts = done + tile.pixels, parts + 1
-                if progress is not None:
-                    progress(done / (width * height))
+            part = self._draw_part if "fragment" in program.interface["stages"] else self._part
+
+            def run(encoder: Any, tile: Tile) -> None:
+                program.set_uniforms(uniforms, (tile.x, tile.y, tile.width, tile.height))
+                part(program, encoder, tile, picture)
+
+            parts = tiles(width, height, self.tile_sizer)
+            self._in_tiles(parts, width * height, resources, run, progress, cancel)
+            return picture
+
+    def _in_tiles(
+        self,
+        parts: Iterable[Tile],
+        pixels: int,
+        resources: Mapping[str, Any],
+        run: Callable[[Any, Tile], None],
+        progress: Progress | None,
+        cancel: Cancel | None,
+    ) -> None:
+        """Render the parts of a picture one after the other, and measure the time of each.
+
+        Args:
+            parts: The parts.
+            pixels: The number of pixels of all parts together.
+            resources: As for ``render``.
+            run: Adds the commands of a part to an encoder, submits them, and waits for the GPU.
+            progress: As for ``render``.
+            cancel: As for ``render``.
+        """
+        wanted, program, started = cancel_test(cancel), self._ready(), time.perf_counter()
+        with program.gpu.commands():
+            program.load(resources)
+        done = count = 0
+        for tile in parts:
             if wanted():
                 raise Cancelled
-            self.stats["tiles"] = parts
-            self.stats["render_s"] = time.perf_counter() - started
-            return picture
+            begin = time.perf_counter()
+            with program.gpu.commands() as device:
+                encoder = device.create_command_encoder()
+                if count == 0:
+                    program.encode_frame(encoder)
+                run(encoder, tile)
+            self.tile_sizer.measured(tile, time.perf_counter() - begin)
+            done, count = done + tile.pixels, count + 1
+            if progress is not None:
+                progress(done / pixels)
+        if wanted():
+            raise Cancelled
+        self.stats["tiles"] = count
+        self.stats["render_s"] = time.perf_counter() - started
 
     def _part(
         self, program: GpuProgram, encoder: Any, tile: Tile, picture: NDArray[np.float32]
@@ -217,7 +242,7 @@ class GpuKernel:
     ) -> None:
         """Draw a part of a picture and read it back."""
         texture, view = self._texture(program, tile)
-        program.encode_draw(encoder, view, _FORMAT, tile.width, tile.height)
+        program.encode_draw(encoder, view, _FORMAT, (0, 0, tile.width, tile.height))
         stride = -(-tile.width * _PIXEL_BYTES // _ROW_BYTES) * _ROW_BYTES
         size = stride * tile.height
         staging = self._staging(program, size)
@@ -407,8 +432,12 @@ class GpuKernel:
         height: int,
         uniforms: Mapping[str, Any],
         resources: Mapping[str, Any],
+        *,
+        samples: int = 1,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
     ) -> None:
-        """Draw the picture into a texture view of this device, without waiting for the GPU.
+        """Draw the picture into a texture view of this device, and wait until it is drawn.
 
         Args:
             view: A view of a texture of at least this size that can be rendered to.
@@ -417,17 +446,25 @@ class GpuKernel:
             height: Pixels down.
             uniforms: As for ``render``.
             resources: As for ``render``.
+            samples: The number of samples in each pixel, for the size of the parts.
+            progress: As for ``render``.
+            cancel: As for ``render``; then the texture has some parts of the picture.
 
         Raises:
+            Cancelled: ``cancel`` stopped the work.
             DeviceError: The GPU was lost.
         """
         with self._lock:
             program = self._ready()
             assert "fragment" in program.interface["stages"], "only the fragment path draws"
-            with program.gpu.commands("drawing") as device:
-                program.load(resources)
+
+            def run(encoder: Any, tile: Tile) -> None:
                 program.set_uniforms(uniforms)
-                encoder = device.create_command_encoder()
-                program.encode_frame(encoder)
-                program.encode_draw(encoder, view, format, width, height)
-                device.queue.submit([encoder.finish()])
+                place = (tile.x, tile.y, tile.width, tile.height)
+                program.encode_draw(encoder, view, format, place, keeps=(tile.x, tile.y) != (0, 0))
+                # In wgpu 0.32 for Python, waiting for the queue fails; reading a buffer does not.
+                self._read(program, encoder, self._output(program, _PIXEL_BYTES), _PIXEL_BYTES)
+                self._memory["staging"].unmap()
+
+            parts = tiles(width, height, self.tile_sizer, samples)
+            self._in_tiles(parts, width * height, resources, run, progress, cancel)

@@ -226,21 +226,30 @@ class GpuProgram:
         step.dispatch_workgroups(*groups)
         step.end()
 
-    def encode_draw(self, encoder: Any, view: Any, format: str, width: int, height: int) -> None:
-        """Encode a drawing into the upper left part of a texture view.
+    def encode_draw(
+        self,
+        encoder: Any,
+        view: Any,
+        format: str,
+        place: tuple[int, int, int, int],
+        *,
+        keeps: bool = False,
+    ) -> None:
+        """Encode a drawing into a part of a texture view.
 
         Args:
             encoder: The command encoder.
             view: The texture view.
             format: The texture's format.
-            width: Pixels across.
-            height: Pixels down.
+            place: The part: its corner from the top left, its width and height, in pixels.
+            keeps: Whether the rest of the texture keeps its values; otherwise it is cleared.
         """
-        clear = {"view": view, "load_op": "clear", "store_op": "store"}
-        step = encoder.begin_render_pass(color_attachments=[clear])
+        load = "load" if keeps else "clear"
+        target = {"view": view, "load_op": load, "store_op": "store"}
+        step = encoder.begin_render_pass(color_attachments=[target])
         step.set_pipeline(self.fragment(format))
         for group in (_SHARED, _READ):
             step.set_bind_group(group, self._group("draw", group, {}))
-        step.set_scissor_rect(0, 0, width, height)
+        step.set_scissor_rect(*place)
         step.draw(3)
         step.end()

@@ -39,6 +39,9 @@ class Tile:
 class TileSizer:
     """Measures the speed of one kernel, and determines the size of its next part.
 
+    Speed is counted in samples, so that a picture with several samples in each pixel has smaller
+    parts from its first one on.
+
     Attributes:
         most: The maximum pixels of a part, limited by the size of a binding; 8 or more.
         first: The pixels of the first part.
@@ -47,22 +50,28 @@ class TileSizer:
     def __init__(self, most: int, first: int = FIRST_PIXELS) -> None:
         self.most = most
         self.first = first
-        self._picture_rate = 0.0  # pixels per second of the last picture
+        self._picture_rate = 0.0  # samples per second of the last picture
         self._part_rate = 0.0  # of the last part
-        self._pixels, self._seconds = 0, 0.0  # of this picture up to now
+        self._samples, self._seconds = 0, 0.0  # of this picture up to now
         self._budget = 1
+        self._samples_of_pixel = 1
         self._is_warm = False  # the driver has compiled the program
 
-    def start(self, pixels: int) -> int:
-        """Begin a picture, and return the size limit of its first part, in pixels."""
-        self._pixels, self._seconds = 0, 0.0
+    def start(self, pixels: int, samples: int = 1) -> int:
+        """Begin a picture, and return the size limit of its first part, in pixels.
+
+        Args:
+            pixels: The number of pixels.
+            samples: The number of samples in each pixel.
+        """
+        self._samples, self._seconds, self._samples_of_pixel = 0, 0.0, samples
         rate = self._part_rate = self._picture_rate
         if rate <= 0.0:
-            budget = self.first
-        elif pixels <= rate * WHOLE_S:
+            budget = self.first // samples
+        elif pixels * samples <= rate * WHOLE_S:
             budget = pixels
         else:
-            budget = int(rate * TARGET_S)
+            budget = int(rate * TARGET_S / samples)
         self._budget = max(1, min(budget, self.most))
         return self._budget
 
@@ -71,14 +80,15 @@ class TileSizer:
         if not self._is_warm:  # drivers compile at the first use, so its time is not measured
             self._is_warm = True
             return
-        self._pixels += tile.pixels
+        samples = tile.pixels * self._samples_of_pixel
+        self._samples += samples
         self._seconds += max(seconds, 1e-6)
-        self._picture_rate = self._pixels / self._seconds
+        self._picture_rate = self._samples / self._seconds
         # The slower of the last two parts predicts the next part.
-        rate = tile.pixels / max(seconds, 1e-6)
+        rate = samples / max(seconds, 1e-6)
         slower = min(rate, self._part_rate or rate)
         self._part_rate = rate
-        grown = min(int(slower * TARGET_S), tile.pixels * _GROWTH)
+        grown = min(int(slower * TARGET_S / self._samples_of_pixel), tile.pixels * _GROWTH)
         self._budget = max(1, min(grown, self.most))
 
     def next(self) -> int:
@@ -86,7 +96,7 @@ class TileSizer:
         return self._budget
 
 
-def tiles(width: int, height: int, tile_sizer: TileSizer) -> Iterator[Tile]:
+def tiles(width: int, height: int, tile_sizer: TileSizer, samples: int = 1) -> Iterator[Tile]:
     """Yield the parts of a picture, top row first; each is sized when it is requested.
 
     The caller reports each part's time to ``tile_sizer`` before it requests the next part.
@@ -95,8 +105,9 @@ def tiles(width: int, height: int, tile_sizer: TileSizer) -> Iterator[Tile]:
         width: Pixels across.
         height: Pixels down.
         tile_sizer: Determines the size of the parts.
+        samples: The number of samples in each pixel.
     """
-    y, budget = 0, tile_sizer.start(width * height)
+    y, budget = 0, tile_sizer.start(width * height, samples)
     while y < height:
         rows = min(budget // width, height - y)
         if rows == height - y or rows >= _ROW:

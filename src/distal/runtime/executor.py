@@ -185,7 +185,7 @@ class PythonExecutor:
     def draw(
         self, image: Image | Composed, target: DrawTarget, options: RenderOptions
     ) -> dict[str, Any]:
-        """Draw an image of display values into a texture of wgpu, without waiting for the GPU.
+        """Draw an image of display values into a texture of wgpu, and wait until it is drawn.
 
         Args:
             image: The image to draw; its pixels are display values.
@@ -196,6 +196,7 @@ class PythonExecutor:
             The statistics of the kernel.
 
         Raises:
+            Cancelled: ``options.cancel`` stopped the work.
             DeviceError: The device is missing or was lost.
         """
         run = self._parts(image)
@@ -203,7 +204,16 @@ class PythonExecutor:
         uniforms = run.declared.for_kernel(0, *_uniforms(run.declared, options))
         device = GPU_FRAGMENT if target.adapter is None else f"{GPU_FRAGMENT}:{target.adapter}"
         kernel = cast("GpuKernel", self.kernels.kernel(run.parts[0], device, 32))
-        kernel.draw(target.view, target.format, *options.size, uniforms, run.parts[0].resources)
+        kernel.draw(
+            target.view,
+            target.format,
+            *options.size,
+            uniforms,
+            run.parts[0].resources,
+            samples=(options.settings or {}).get(film.SAMPLES, 1),
+            progress=options.progress,
+            cancel=options.cancel,
+        )
         return kernel.stats
 
     def call(
