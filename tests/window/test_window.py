@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from PIL import Image
 
 import distal
 from distal.images.picture_files import read
@@ -58,18 +59,18 @@ def told(shown: dict[str, Any]) -> Steering:
     return Steering(numbers["yaw"], numbers["pitch"], numbers["zoom"], tuple(numbers["pan"]))
 
 
-def samples_of(device: str) -> int | None:
-    """Samples in a pixel of a picture at rest: adaptive on the CPU."""
-    return None if device == "cpu" else 1
+def samples_of(device: str, view: str = "color") -> int | None:
+    """Samples in a pixel of a picture at rest: adaptive on the CPU, 16 on a GPU."""
+    return 1 if view != "color" else None if device == "cpu" else 16
 
 
 def expected(
     path: str, shown: dict[str, Any], size: tuple[int, int], device: str
 ) -> NDArray[np.float32]:
-    """What the CPU says should be seen; a GPU's window draws one sample a pixel."""
+    """What the CPU says should be seen."""
     scene = viewable(distal.load(path))
     options = RenderOptions(size=size, time=shown["time"], params=shown["parameters"])
-    options = replace(options, samples=samples_of(device))
+    options = replace(options, samples=samples_of(device, shown["view"]))
     moved = told(shown) if shown["steering"] else None
     pixels: NDArray[np.float32] = scene.render(options, view=shown["view"], steering=moved).array
     return pixels
@@ -117,8 +118,13 @@ def test_the_screen_shows_what_the_cpu_says(display: str, tmp_path: Path, device
         window.hands("key", "r", "key", "V", "key", "V", "key", "V", "key", "V")
         assert window.sharp(count, view="color", steering=first["steering"]) == first
         assert difference(window.screenshot(SIZE), seen).mean == 0
+        # A saved picture is that on the screen.
+        window.hands("key", "s")
+        saved = Path(window.wait(lambda event: event["event"] == "saved")["path"])
+        assert read(saved).provenance.samples == samples_of(device)
+        assert difference(seen, np.asarray(Image.open(saved))).is_agreement
         assert window.end() == 130
-        assert window.errors == ""
+        assert window.errors == f"saved {saved}\n"
 
 
 def test_time_and_parameters_by_keys_and_a_saved_picture(display: str, tmp_path: Path) -> None:

@@ -228,7 +228,7 @@ class PagePrograms:
         """
         scene = self._seen.steers
         # Of a scene, the player takes several samples where the picture rests.
-        sampled = scene and view == COLOR
+        sampled = self._seen.is_sampled(view)
         return self._added_program(
             self._seen.image(view, steered=scene, encoded=True, sampled=sampled)
         )

@@ -32,7 +32,7 @@ from distal.window.reload import PERIOD_S, FileWatcher, ReloadedScene, files_in,
 from distal.window.screen import copy_text, set_full_screen
 from distal.window.screenshots import free_name
 from distal.window.session import Session
-from distal.window.worker import Worker
+from distal.window.worker import Done, Job, Worker
 
 if TYPE_CHECKING:
     from distal.window.surface import WindowSurface
@@ -281,8 +281,13 @@ class Application:
         def job(_: object) -> ReloadedScene:
             return load_again(source.path, source.name, shot, renderer, source.look)
 
-        self._worker.submit(job, self._loaded)
+        self._submit(job, self._loaded)
         self.wake()
+
+    def _submit(self, job: Job, done: Done) -> None:
+        """Run a job, which does not wait for the refinement of a still."""
+        self._worker.submit(job, done)
+        self._scheduler.postpone_refinement()
 
     def _loaded(self, result: ReloadedScene | BaseException) -> None:
         self._is_loading = False
@@ -386,8 +391,9 @@ class Application:
         """Save the current picture at the size of a frame in the window."""
         session, size = self._session, self._frame_size()
         shot, viewable = session.shot(time.monotonic()), session.viewable
-        device, title = self._scheduler.renderer.device, self._source.title
-        options = render_options(shot, size, device, is_refined=True)
+        renderer, title = self._scheduler.renderer, self._source.title
+        samples = renderer.samples[-1] if viewable.is_sampled(shot.view) else 1
+        options = render_options(shot, size, renderer.device, samples=samples)
 
         def job(_: object) -> Path:
             path = free_name(Path.cwd(), title, shot)
@@ -403,7 +409,7 @@ class Application:
                 self._log("saved", path=str(result))
             self.wake()
 
-        self._worker.submit(job, done)
+        self._submit(job, done)
 
     def _copy_camera(self) -> None:
         """Copy the camera as Python to the clipboard."""
@@ -427,4 +433,5 @@ def _facts(request: FrameRequest) -> dict[str, Any]:
         "mouse": shot.mouse.pixels(request.pixels),
         "pixels": request.pixels,
         "share": request.share,
+        "refinement": request.refinement,
     }

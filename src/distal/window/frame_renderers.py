@@ -18,6 +18,7 @@ from distal.devices.base import Cancelled
 from distal.images.png import quantise
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
+from distal.render.film import SAMPLES
 from distal.runtime.executor import DrawTarget
 from distal.scene.view_ranges import with_range
 from distal.window.session import Shot
@@ -53,11 +54,12 @@ class FrameRenderer(Protocol):
 
     Attributes:
         device: Its name, as for ``render``.
-        refines: Whether it can make edges smooth.
+        samples: The samples in a pixel of the first frame of a still, and of the finer ones that
+            follow it where a view has several samples (``Viewable.is_sampled``); None: adaptive.
     """
 
     device: str
-    refines: bool
+    samples: tuple[int | None, ...]
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs, so that errors are found before anything is replaced."""
@@ -70,7 +72,7 @@ class FrameRenderer(Protocol):
         size: tuple[int, int],
         cancel: threading.Event,
         *,
-        is_refined: bool = False,
+        samples: int | None = 1,
     ) -> RenderedFrame:
         """Render a frame.
 
@@ -79,7 +81,7 @@ class FrameRenderer(Protocol):
             shot: Time, parameters, view and camera.
             size: Width and height in pixels.
             cancel: Set to stop the rendering early.
-            is_refined: Whether edges are smooth: several samples where pixels differ.
+            samples: One of ``samples``.
 
         Raises:
             CompileError: The scene code has mistakes.
@@ -89,7 +91,7 @@ class FrameRenderer(Protocol):
 
 
 def render_options(
-    shot: Shot, size: tuple[int, int], device: str, *, is_refined: bool = False
+    shot: Shot, size: tuple[int, int], device: str, *, samples: int | None = 1
 ) -> RenderOptions:
     """Return the options for rendering a shot.
 
@@ -97,7 +99,7 @@ def render_options(
         shot: Time, parameters, view and camera.
         size: Width and height in pixels.
         device: The device that renders.
-        is_refined: Whether edges are smooth: several samples where pixels differ.
+        samples: Samples in each pixel; None: adaptive for a scene's colors, else one.
     """
     return RenderOptions(
         size=size,
@@ -105,7 +107,7 @@ def render_options(
         params=dict(shot.parameters),
         mouse=shot.mouse.pixels(size),
         index=shot.index,
-        samples=None if is_refined else 1,
+        samples=samples,
         device=device,
     )
 
@@ -124,7 +126,7 @@ def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
 class PixelRenderer:
     """Renders pixels, on any device that renders to memory."""
 
-    refines = True
+    samples: tuple[int | None, ...] = (1, None)
 
     def __init__(self, device: str) -> None:
         self.device = device
@@ -140,7 +142,7 @@ class PixelRenderer:
         size: tuple[int, int],
         cancel: threading.Event,
         *,
-        is_refined: bool = False,
+        samples: int | None = 1,
     ) -> RenderedFrame:
         """Render a frame; if cancelled, return the finished fraction and the time.
 
@@ -149,7 +151,7 @@ class PixelRenderer:
             shot: Time, parameters, view and camera.
             size: Width and height in pixels.
             cancel: Set to stop the rendering early.
-            is_refined: Whether edges are smooth: several samples where pixels differ.
+            samples: One of ``samples``.
         """
         done = 0.0
         begin = time.perf_counter()
@@ -160,7 +162,7 @@ class PixelRenderer:
                 begin = time.perf_counter()
             done = share
 
-        options = render_options(shot, size, self.device, is_refined=is_refined)
+        options = render_options(shot, size, self.device, samples=samples)
         try:
             made = picture(viewable, shot, replace(options, cancel=cancel, progress=progress))
         except Cancelled:
@@ -172,9 +174,12 @@ class PixelRenderer:
 
 
 class TextureRenderer:
-    """Draws into textures of a GPU, by its fragment path."""
+    """Draws into textures of a GPU, by its fragment path.
 
-    refines = False
+    One program takes any number of samples, so that nothing is compiled when a picture is refined.
+    """
+
+    samples: tuple[int | None, ...] = (1, 4, 16)
 
     def __init__(self, device: str, gpu: Any, adapter: str | None) -> None:
         """Make a renderer.
@@ -188,15 +193,16 @@ class TextureRenderer:
         self._gpu = gpu
         self._adapter = adapter
         self._ready: tuple[Viewable | None, set[str]] = (None, set())
-        self._textures: list[Any] = []
-        self._texel: Any = None
+        self._finished: Any = None  # the texture of the last finished frame
+        self._spare: Any = None  # the texture that the next frame is drawn into
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs, by drawing a few pixels of it."""
         known, views = self._ready
         if known is viewable and shot.view in views:
             return
-        self._draw(viewable, shot, self._texture(_SMALLEST), _SMALLEST)
+        options = render_options(shot, _SMALLEST, self.device)
+        self._draw(viewable, shot, self._texture(_SMALLEST), options)
         self._ready = (viewable, {shot.view, *(views if known is viewable else ())})
 
     def render(
@@ -206,48 +212,46 @@ class TextureRenderer:
         size: tuple[int, int],
         cancel: threading.Event,
         *,
-        is_refined: bool = False,
+        samples: int | None = 1,
     ) -> RenderedFrame:
-        """Render a frame.
+        """Render a frame; if cancelled, return the finished fraction and the time.
 
         Args:
             viewable: The object to show.
             shot: Time, parameters, view and camera.
             size: Width and height in pixels.
-            cancel: Has no effect, because a GPU finishes what it has begun.
-            is_refined: Has no effect: this path draws one sample a pixel.
+            cancel: Set to stop the rendering early, after the part that the GPU draws.
+            samples: One of ``samples``; has no effect where a view has one sample.
         """
         self.prepare(viewable, shot)
-        # Two textures are enough: the window shows one while the other is drawn.
-        texture = self._textures.pop(0) if len(self._textures) > 1 else None
-        if texture is None or texture.size[:2] != size:
-            texture = self._texture(size)
-        self._textures.append(texture)
+        done = 0.0
+
+        def progress(share: float) -> None:
+            nonlocal done
+            done = share
+
+        if self._spare is None or self._spare.size[:2] != size:
+            self._spare = self._texture(size)
+        options = render_options(shot, size, self.device, samples=samples)
         begin = time.perf_counter()
-        self._draw(viewable, shot, texture, size)
-        return RenderedFrame(texture=texture, seconds=time.perf_counter() - begin)
+        try:
+            self._draw(
+                viewable, shot, self._spare, replace(options, cancel=cancel, progress=progress)
+            )
+        except Cancelled:
+            return RenderedFrame(seconds=time.perf_counter() - begin, share=min(done, 0.999))
+        # The window shows the finished texture until the next frame is finished in the other one.
+        self._spare, self._finished = self._finished, self._spare
+        return RenderedFrame(texture=self._finished, seconds=time.perf_counter() - begin)
 
-    def _draw(self, viewable: Viewable, shot: Shot, texture: Any, size: tuple[int, int]) -> None:
+    def _draw(self, viewable: Viewable, shot: Shot, texture: Any, options: RenderOptions) -> None:
+        is_steered, is_sampled = shot.steering is not None, viewable.is_sampled(shot.view)
+        image = viewable.image(shot.view, steered=is_steered, encoded=True, sampled=is_sampled)
         settings = viewable.settings(shot.steering) if shot.steering else {}
-        image = viewable.image(shot.view, steered=shot.steering is not None, encoded=True)
-        options = replace(render_options(shot, size, self.device), settings=settings)
+        if is_sampled:
+            settings = {**settings, SAMPLES: options.samples}
         target = DrawTarget(texture.create_view(), TEXTURE_FORMAT, self._adapter)
-        executor().draw(image, target, with_range(image, options))
-        self._wait_for(texture)
-
-    def _wait_for(self, texture: Any) -> None:
-        """Wait until a texture is drawn, so that frames do not queue up and timings are right.
-
-        It reads one texel; in wgpu 0.32 for Python, waiting for the queue itself fails.
-        """
-        if self._texel is None:
-            self._texel = self._gpu.create_buffer(size=256, usage="COPY_DST|MAP_READ")
-        encoder = self._gpu.create_command_encoder()
-        place = {"buffer": self._texel, "offset": 0, "bytes_per_row": 256, "rows_per_image": 1}
-        encoder.copy_texture_to_buffer({"texture": texture}, place, (1, 1, 1))
-        self._gpu.queue.submit([encoder.finish()])
-        self._texel.map_async("READ").sync_wait()
-        self._texel.unmap()
+        executor().draw(image, target, with_range(image, replace(options, settings=settings)))
 
     def _texture(self, size: tuple[int, int]) -> Any:
         return self._gpu.create_texture(

@@ -37,19 +37,19 @@ class FrameRequest:
         shot: Time, parameters, view and camera.
         size: Width and height of the window's picture in pixels.
         share: The fraction of width and height that is rendered.
-        is_refined: Whether edges are smooth: several samples where pixels differ.
+        refinement: How often a still was refined: the index in the samples of the renderer.
     """
 
     viewable: Viewable
     shot: Shot
     size: tuple[int, int]
     share: float
-    is_refined: bool = False
+    refinement: int = 0
 
     @property
-    def quality(self) -> tuple[float, bool]:
+    def quality(self) -> tuple[float, int]:
         """What a better frame has more of."""
-        return self.share, self.is_refined
+        return self.share, self.refinement
 
     @property
     def pixels(self) -> tuple[int, int]:
@@ -58,7 +58,7 @@ class FrameRequest:
         return max(round(width * self.share), 1), max(round(height * self.share), 1)
 
     def shows_the_same(self, other: FrameRequest) -> bool:
-        """Return whether two requests differ at most in their resolution."""
+        """Return whether two requests differ at most in their quality."""
         mine, its = (self.viewable, self.shot, self.size), (other.viewable, other.shot, other.size)
         return mine == its
 
@@ -129,7 +129,7 @@ class FrameScheduler:
             return None
         if not self._is_wanted(request):
             return None
-        rest = _LEAST_REST_S if request.is_refined else 0.0
+        rest = _LEAST_REST_S if request.refinement == 1 else 0.0
         wait = max(self._begun + _LEAST_GAP_S, self._ended + rest) - time.monotonic()
         if wait > 0:
             return wait
@@ -144,12 +144,23 @@ class FrameScheduler:
         shown = self.shown if self.shown is not None and self.shown.shows_the_same(best) else None
         is_first = shown is None or shown.share < _PREVIEWED
         share = self._resolution.share(size, is_moving=is_moving, is_first=is_first)
-        is_sharp = not is_moving and shown is not None and shown.share == 1.0
-        return replace(best, share=share, is_refined=is_sharp and self.renderer.refines)
+        refinement = 0
+        if shown is not None and shown.share == 1.0 and not is_moving:
+            refinement = min(shown.refinement + 1, self._last_refinement(shown))
+        return replace(best, share=share, refinement=refinement)
 
     def is_final(self, request: FrameRequest) -> bool:
         """Return whether no better frame will follow, unless something changes."""
-        return request.quality >= (1.0, self.renderer.refines)
+        return request.quality >= (1.0, self._last_refinement(request))
+
+    def _last_refinement(self, request: FrameRequest) -> int:
+        is_sampled = request.viewable.is_sampled(request.shot.view)
+        return len(self.renderer.samples) - 1 if is_sampled else 0
+
+    def postpone_refinement(self) -> None:
+        """Cancel a refinement that is being rendered; it begins again after submitted jobs."""
+        if self._in_progress is not None and self._in_progress.refinement > 0:
+            self._worker.cancel()
 
     def _forget(self, viewable: Viewable, shot: Shot) -> None:
         assert self.shown is not None
@@ -181,7 +192,7 @@ class FrameScheduler:
                 request.shot,
                 request.pixels,
                 cancel,
-                is_refined=request.is_refined,
+                samples=self.renderer.samples[request.refinement],
             ),
             lambda result: self._end(request, result),
         )
@@ -194,7 +205,7 @@ class FrameScheduler:
             self._on_failure(request, result)
             return
         width, height = request.pixels
-        if not request.is_refined:
+        if request.refinement == 0:
             self._resolution.learn(result.seconds, width * height * result.share)
         if result.share == 1.0:
             self.shown, self.made, self.failed = request, result, None

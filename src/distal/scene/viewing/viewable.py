@@ -122,6 +122,10 @@ class Viewable:
             self._images[view] = view_of_image(self._source, view)
         return self._images[view]
 
+    def is_sampled(self, view: str) -> bool:
+        """Return whether a still of a view gets several samples in a pixel: a scene's colors."""
+        return self.scene is not None and view == COLOR
+
     def settings(self, steering: Steering = STILL) -> dict[str, Any]:
         """Return the uniforms of a steered program; empty if there is no camera."""
         return steering.settings if self.steers else {}
