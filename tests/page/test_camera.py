@@ -80,7 +80,7 @@ def test_drags_in_eight_directions_and_the_wheel_end_outside(tmp_path: Path, nam
             place = guide.place(steered(looked), moment)
             assert float(scene.shape(np.asarray(place.position))) > 0.0, (k, steered(looked))
             assert looked.picture()[..., :3].mean() > 8, (k, "black")
-            stops += steered(looked).zoom > 0.7 or place.room < 0.2
+            stops += steered(looked).zoom > 0.7 or place.clearance < 0.2
         assert stops > 0, "nothing was in the way"
 
 

@@ -79,11 +79,11 @@ def test_random_drags_end_outside_and_go_most_of_the_way(name):
         yaw, pitch = source.normal(0, 1.2), source.uniform(-1.2, 1.2)
         pan = tuple(source.normal(0, 0.4, 2)) if source.random() < 0.5 else (0.0, 0.0)
         goal = Steering(yaw, pitch, math.exp(source.uniform(-2.5, 0.7)), pan)
-        blocked += guide.place(goal, moment).room <= 0.0
+        blocked += guide.place(goal, moment).clearance <= 0.0
         end = dragged(guide, goal, moment)
         place = guide.place(end, moment)
         assert field_at(scene, place) > 0.0
-        assert place.room > 0.0
+        assert place.clearance > 0.0
         gone += math.dist(end.numbers, STILL.numbers)
         wanted += math.dist(goal.numbers, STILL.numbers)
     assert gone > 0.8 * wanted, "the camera is stopped where it need not be"
@@ -113,7 +113,7 @@ def test_no_jump_over_a_wall_in_one_event():
     wall = Box((20, 20, 0.01)).translate(z=2.0)
     scene = Scene(wall | Sphere(0.5), camera=Camera((0, 0, 4)))
     guide = Guide(scene)
-    assert guide.place(Steering(zoom=0.2), Moment()).room > 0.0
+    assert guide.place(Steering(zoom=0.2), Moment()).clearance > 0.0
     near = guide.go(STILL, Steering(zoom=0.2), Moment())
     assert 2.005 < guide.place(near, Moment()).position[2] < 2.2
     # And from the side: the way around through the wall's plane is blocked too.
@@ -126,7 +126,7 @@ def test_a_wheel_stops_before_a_wall(notches):
     guide, moment, now = Guide(SCENES["room"]), Moment(), STILL
     for _ in range(60 // notches):
         now = guide.go(now, Steering(zoom=max(now.zoom * 1.15**-notches, 0.02)), moment)
-        assert guide.place(now, moment).room > 0.0
+        assert guide.place(now, moment).clearance > 0.0
     for _ in range(60 // notches):
         now = guide.go(now, Steering(zoom=min(now.zoom * 1.15**notches, 60.0)), moment)
     # A room seen from inside stays a room.
@@ -138,7 +138,7 @@ def test_a_wheel_stops_before_a_wall(notches):
 def test_a_camera_that_starts_inside_moves_freely_and_does_not_return():
     scene = Scene(Sphere(2.0).paint(glass()), camera=Camera((0, 0, 1), (0, 0, -4)))
     guide, moment = Guide(scene), Moment()
-    assert guide.place(STILL, moment).room < 0.0
+    assert guide.place(STILL, moment).clearance < 0.0
     inside = Steering(yaw=0.05, zoom=0.9)
     assert guide.go(STILL, inside, moment) == inside
     outside = guide.go(STILL, Steering(zoom=1.6), moment)

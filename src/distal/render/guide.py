@@ -44,11 +44,11 @@ ACTIONS = ("go", "frame", "front", "back", "right", "left", "top", "bottom")
 GO, FRAME, FRONT, BACK, RIGHT, LEFT, TOP, BOTTOM = range(len(ACTIONS))
 # The numbers that hosts get, in the order of ``number_of``.
 NUMBERS = (
-    *("yaw", "pitch", "zoom", "pan_x", "pan_y", "arrived", "room", "opening", "height"),
+    *("yaw", "pitch", "zoom", "pan_x", "pan_y", "arrived", "clearance", "opening", "height"),
     *("eye_x", "eye_y", "eye_z", "target_x", "target_y", "target_z", "up_x", "up_y", "up_z"),
 )
 # The eye keeps this fraction of its distance from the pivot, but no less than this fraction of the
-# author's distance, and no more than this fraction of the room that the author's camera has.
+# author's distance, and no more than this fraction of the clearance that the author's camera has.
 _CLEAR = 0.02
 _LEAST_CLEAR = 0.004
 _OF_START = 0.8
@@ -85,7 +85,7 @@ class Guided:
         up: The direction that is up in its picture.
         opening: The angle from the bottom of its picture to the top, in degrees.
         height: Height of what it sees without perspective; 0 in perspective.
-        room: Distance of the eye from the nearest surface, at least; negative inside a solid.
+        clearance: Distance of the eye from the nearest surface, at least; negative inside a solid.
     """
 
     steer: Steer
@@ -95,7 +95,7 @@ class Guided:
     up: vec3
     opening: float
     height: float
-    room: float
+    clearance: float
 
 
 # The box of the finite parts
@@ -250,7 +250,7 @@ def angles_of(lens: Lens, action: int, now: Steer) -> vec2:
 
 
 @func
-def clearance(depth: float, zoom: float, start: float) -> float:
+def least_clearance(depth: float, zoom: float, start: float) -> float:
     """Return how far the eye must be from surfaces.
 
     Args:
@@ -346,7 +346,7 @@ def guided(
     # The first round measures the author's place, the second the present one.
     trial = Steer(0.0, 0.0, 1.0, vec2(0.0))
     start = 0.0
-    room = 0.0
+    clearance = 0.0
     attempt = 0
     moves = True
     arrived = False
@@ -355,12 +355,12 @@ def guided(
     for k in range(_ROUNDS):
         distance = field(moved_eye(lens, trial))
         start = select(k == 0, distance, start)
-        clear = clearance(lens.depth, trial.zoom, start)
+        required = least_clearance(lens.depth, trial.zoom, start)
         # A camera that is too close already, for the scene has moved, comes no closer.
-        enough = select(going, min(clear, room * 0.9999), clear)
+        enough = select(going, min(required, clearance * 0.9999), required)
         taken = moves and k > 0 and (k == 1 or distance >= enough)
         here = chosen(taken, trial, here)
-        room = select(taken, distance, room)
+        clearance = select(taken, distance, clearance)
         inside = going and k == 1 and distance <= 0.0
         here = chosen(inside, goal, here)
         attempt = select(k < 2 or taken, 0, attempt + 1)
@@ -370,25 +370,25 @@ def guided(
             break
         part = remaining(here, goal, min(attempt, _PARTS_COUNT - 1))
         moves = k == 0 or not going or size_of(part) > 0.0
-        kept = min(clearance(lens.depth, here.zoom, start), room)
+        kept = min(least_clearance(lens.depth, here.zoom, start), clearance)
         least = _LEAST_STRIDE * lens.depth * here.zoom
-        stride = max(max(room - kept, 0.5 * kept), least)
+        stride = max(max(clearance - kept, 0.5 * kept), least)
         share = min(stride / max(way_of_eye(lens, here, part), 1e-20), 1.0)
         pitch = min(angles.y + _RISE * float(attempt), 0.5 * _PI)
         seen = framed(lens, box, size.x / size.y, angles.x, pitch)
         trial = chosen(k == 0, now, chosen(going, advanced(here, part, share), seen))
-    return seen_from(lens, here, arrived, room)
+    return seen_from(lens, here, arrived, clearance)
 
 
 @func
-def seen_from(lens: Lens, steer: Steer, arrived: bool, room: float) -> Guided:
+def seen_from(lens: Lens, steer: Steer, arrived: bool, clearance: float) -> Guided:
     """Return a movement with the place of the camera.
 
     Args:
         lens: The author's camera.
         steer: The five numbers.
         arrived: Whether the camera is where it was asked to go.
-        room: Distance of the eye from the nearest surface.
+        clearance: Distance of the eye from the nearest surface.
     """
     motion = rig(lens, steer)
     eye = moved_eye(lens, steer)
@@ -405,7 +405,7 @@ def seen_from(lens: Lens, steer: Steer, arrived: bool, room: float) -> Guided:
         select(upright, lens.axis, upward),
         lens.opening * (180.0 / _PI),
         2.0 * lens.spread * steer.zoom,
-        room,
+        clearance,
     )
 
 
@@ -420,7 +420,7 @@ def number_of(guided: Guided, index: int) -> float:
     found = vec3(steer.yaw, steer.pitch, steer.zoom)
     arrived = select(guided.arrived, 1.0, 0.0)
     found = select(row == 1, vec3(steer.pan.x, steer.pan.y, arrived), found)
-    found = select(row == 2, vec3(guided.room, guided.opening, guided.height), found)
+    found = select(row == 2, vec3(guided.clearance, guided.opening, guided.height), found)
     found = select(row == 3, guided.eye, found)
     found = select(row == 4, guided.target, found)
     found = select(row == 5, guided.up, found)

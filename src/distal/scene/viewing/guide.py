@@ -58,7 +58,7 @@ class CameraPlace:
         up: The direction that is up in its picture.
         opening_deg: The angle from the bottom of its picture to the top, in degrees.
         height: Height of what it sees without perspective; 0 in perspective.
-        room: Distance from the nearest surface, at least; negative inside a solid.
+        clearance: Distance from the nearest surface, at least; negative inside a solid.
     """
 
     position: tuple[float, float, float]
@@ -66,7 +66,7 @@ class CameraPlace:
     up: tuple[float, float, float]
     opening_deg: float
     height: float
-    room: float
+    clearance: float
 
 
 class Guide:
@@ -117,7 +117,7 @@ class Guide:
         def point(name: str) -> tuple[float, float, float]:
             return found[f"{name}_x"], found[f"{name}_y"], found[f"{name}_z"]
 
-        flat = found["opening"], found["height"], found["room"]
+        flat = found["opening"], found["height"], found["clearance"]
         return CameraPlace(point("eye"), point("target"), point("up"), *flat)
 
     def text(self, place: CameraPlace) -> str:
