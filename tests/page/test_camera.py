@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from distal import Box, Camera, Plane, PointLight, Scene, Sphere
 from distal.export.page_options import PageOptions
 from distal.export.payload import payload
 from distal.scene.steering import STILL, Steering
-from distal.scene.viewing.guide import Guide, Moment
+from distal.scene.viewing.guide import CameraPlace, Guide, Moment, point_text
 from distal.scene.viewing.viewable import viewable
-from tests.browser import BrowserUnavailableError, browser
+from tests.browser import ACTION_MS, BrowserUnavailableError, browser
 from tests.page import player_pages
 from tests.page.looking import Looked, looked_at
 
@@ -41,9 +42,9 @@ def _needs_browser() -> None:
         pytest.skip(str(error))
 
 
-def page_of(folder: Path, scene: Scene) -> Path:
-    """A page of the scene without controls, 160x120."""
-    data = payload(viewable(scene), PageOptions(size=(160, 120), panel=False, views=("color",)))
+def page_of(folder: Path, scene: Scene, *, panel: bool = False) -> Path:
+    """A page of the scene, 160x120."""
+    data = payload(viewable(scene), PageOptions(size=(160, 120), panel=panel, views=("color",)))
     return player_pages.write(folder / "page.html", data)
 
 
@@ -133,6 +134,58 @@ def test_keys_show_the_scene_and_say_where_the_camera_is(tmp_path: Path) -> None
             place = guide.place(steered(looked), moment)
             away = np.array(place.position) - np.array(place.target)
             assert away @ np.array(wanted) > 0.95 * np.linalg.norm(away), key
+
+
+def test_the_panel_shows_where_the_camera_is_and_copies_it(tmp_path: Path) -> None:
+    scene = SCENES["ball"]
+    guide = Guide(scene)
+    with looked_at(page_of(tmp_path, scene, panel=True)) as looked:
+        page = looked.page
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        position = expect(page.locator(".position"))
+
+        def place() -> CameraPlace:
+            looked.settle()
+            size = page.evaluate("document.querySelector('[data-distal]').distal.frameSize")
+            return guide.place(steered(looked), Moment(tuple(size)))
+
+        def window_text() -> str:
+            return point_text(place().position, place())
+
+        page.get_by_label("Resolution").select_option("¼")
+        # The guide is compiled first.
+        position.to_have_text("(2, 0.6, 3)", timeout=ACTION_MS)
+        page.mouse.move(100, 60)
+        page.mouse.down()
+        page.mouse.move(150, 40, steps=3)
+        # While the button is held.
+        position.not_to_have_text("(2, 0.6, 3)")
+        page.mouse.up()
+        position.to_have_text(window_text())
+        page.mouse.wheel(0, 200)
+        position.to_have_text(window_text())
+
+        page.locator(".position").click(click_count=3)
+        page.keyboard.press("Control+c")
+        assert page.evaluate("navigator.clipboard.readText()").strip() == window_text()
+
+        page.get_by_role("button", name="Copy the camera as Python").click()
+        page.get_by_text("Copied").first.wait_for()
+        # That this text is a camera at the same place, tests/scene/test_guide.py checks.
+        assert page.evaluate("navigator.clipboard.readText()") == guide.text(place())
+
+
+def test_there_is_no_position_without_a_guide(tmp_path: Path) -> None:
+    flat = player_pages.program(player_pages.FLAT, player_pages.TINT)
+    broken = player_pages.program("void main() { nothing }")
+    view = {"views": [{"name": "color", "label": "Color", "program": 0}]}
+    for steering in (None, {"elevation": 0.0, "guide": -1}, {"elevation": 0.0, "guide": 1}):
+        data = player_pages.payload(flat, broken, steering=steering, **view)
+        path = player_pages.write(tmp_path / "page.html", data)
+        with looked_at(path) as looked:
+            looked.settle()
+            expect(looked.page.get_by_label("Resolution")).to_be_visible()
+            expect(looked.page.get_by_title("Copy the camera")).to_be_hidden()
 
 
 def test_a_camera_without_a_guide_moves_freely(tmp_path: Path) -> None:

@@ -85,6 +85,11 @@ export class Camera {
   /** Where the camera is; null where that is not known. */
   async place(): Promise<Guided | null> {
     await this.rest();
+    return this.here();
+  }
+
+  /** The same at once, even on the way to a goal. */
+  async here(): Promise<Guided | null> {
     const found = await this.ask?.("go", this.#state, this.#state).catch(() => null);
     return found ?? null;
   }

@@ -34,14 +34,22 @@ function literal(parameter: Parameter, value: Value): string {
   return tuple(value);
 }
 
-/** A camera at a place as Python, rounded to a ten-thousandth of its distance from the target. */
-export function cameraOf(place: Guided, name: string, mirror: boolean): string {
-  const { eyeX, eyeY, eyeZ, targetX, targetY, targetZ, upX, upY, upZ } = place;
+function point(numbers: readonly number[], unit: number): string {
+  return `(${numbers.map((n) => shown(rounded(n, unit))).join(", ")})`;
+}
+
+/** A camera's position and target as Python, rounded to a ten-thousandth of their distance. */
+export function pointsOf(place: Guided): [position: string, target: string] {
+  const { eyeX, eyeY, eyeZ, targetX, targetY, targetZ } = place;
   const away = Math.hypot(targetX - eyeX, targetY - eyeY, targetZ - eyeZ);
-  const point = (numbers: number[], unit: number) =>
-    `(${numbers.map((n) => shown(rounded(n, unit))).join(", ")})`;
   const unit = 0.1 * Math.max(away, 1e-6);
-  const parts = [point([eyeX, eyeY, eyeZ], unit), point([targetX, targetY, targetZ], unit)];
+  return [point([eyeX, eyeY, eyeZ], unit), point([targetX, targetY, targetZ], unit)];
+}
+
+/** A camera at a place as Python. */
+export function cameraOf(place: Guided, name: string, mirror: boolean): string {
+  const { upX, upY, upZ } = place;
+  const parts: string[] = pointsOf(place);
   if (upX || upZ || upY !== 1) parts.push(`up=${point([upX, upY, upZ], 0.1)}`);
   const { opening, height } = place;
   if (name === "Camera" || name === "FisheyeCamera") {

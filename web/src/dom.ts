@@ -40,6 +40,7 @@ export const ICONS = {
   full: "M4 8V4h4M12 4h4v4M16 12v4h-4M8 16H4v-4",
   views: "M10 4 3 7.5l7 3.5 7-3.5zM3 11l7 3.5 7-3.5",
   panel: "M3 4h14v12H3zM12 4v12M14 7.5h1M14 10h1",
+  copy: "M7 7V3h10v10h-4M3 7h10v10H3z",
   help: "M7.5 7.5a2.5 2.5 0 1 1 3.6 2.3c-.8.4-1.1.8-1.1 1.7M10 14.5v.2",
 };
 

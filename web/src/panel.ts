@@ -5,8 +5,9 @@
  * Input: the player. Output: an element that follows the player's events.
  */
 
+import { pointsOf } from "./code";
 import { rowOf, type Row } from "./controls";
-import { make } from "./dom";
+import { ICONS, iconButton, make } from "./dom";
 import { SPEEDS } from "./generated/interaction";
 import type { Player } from "./player";
 
@@ -83,7 +84,39 @@ function pictureGroup(player: Player): HTMLElement {
     player.on("speed", ({ speed }) => (select.value = String(speed)));
     rows.push(row);
   }
+  if ((player.payload.steering?.guide ?? -1) >= 0) rows.push(position(player));
   return group("Picture", ...rows, statistics(player));
+}
+
+/** Where the camera is, and a button that copies it. */
+function position(player: Player): HTMLElement {
+  const text = make("span", { className: "position" });
+  const button = iconButton("Copy the camera as Python (C)", ICONS.copy, () => void player.copyCamera());
+  button.classList.add("undo");
+  const label = make("span", { className: "label" }, "Camera");
+  const row = make("div", { className: "row camera" }, label, text, button);
+  // What plays never rests.
+  const played = new Promise<unknown>((resolve) => player.on("time", resolve));
+  let isNew = false;
+  let following: Promise<void> | undefined;
+  let isFirst = true;
+  const follow = async () => {
+    while (isNew) {
+      // After the first sharp picture, so that neither it nor the first gesture waits for the guide.
+      if (!player.playing) await Promise.race([isFirst && player.settled(), played]);
+      await new Promise((resolve) => setTimeout(resolve, STATISTICS_MS));
+      isFirst = isNew = false;
+      const place = await player.camera!.here();
+      row.style.display = place ? "" : "none";
+      if (place) text.textContent = pointsOf(place)[0];
+    }
+    following = undefined;
+  };
+  player.on("frame", () => {
+    isNew = true;
+    following ??= follow();
+  });
+  return row;
 }
 
 function actions(player: Player): HTMLElement {

@@ -439,8 +439,6 @@ export class Player {
     if (state === "ready") {
       notices.clear();
       notices.say(`${label} is shown`);
-      // After the first sharp picture, so that neither it nor the first gesture has to wait.
-      if (!this.payload.embed) void this.#renderer.rest().then(() => this.camera?.place());
     }
     if (state === "lost") {
       this.#frame.live = false;
