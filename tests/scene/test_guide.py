@@ -12,6 +12,7 @@ from distal import (
     FisheyeCamera,
     OrbitCamera,
     OrthographicCamera,
+    PanoramaCamera,
     Plane,
     Scene,
     Sphere,
@@ -20,6 +21,7 @@ from distal import (
     time,
 )
 from distal.lang import slider
+from distal.scene.objects.cameras import CLASSES
 from distal.scene.steering import STILL, Steering
 from distal.scene.viewing.guide import Guide, Moment
 
@@ -271,17 +273,13 @@ def test_nothing_finite_shows_the_authors_distance():
         OrthographicCamera((3, 2, 5), (0, 1, 0), height=3.0),
         Camera((2, -4, 2), up=(0, 0, 1), mirror=True),
         FisheyeCamera((1, 1, 2), fov_deg=120),
+        PanoramaCamera((1, 1, 2), (0, 1, 0)),
     ],
 )
 def test_the_text_is_the_camera(camera):
     guide = Guide(Scene(Sphere(0.1), camera=camera))
     place = guide.place(Steering(0.7, 0.2, 1.3, (0.1, -0.05)), Moment())
-    names = {"Camera": Camera, "OrthographicCamera": OrthographicCamera}
-    again = Guide(
-        Scene(
-            Sphere(0.1), camera=eval(guide.text(place), {**names, "FisheyeCamera": FisheyeCamera})
-        )
-    )
+    again = Guide(Scene(Sphere(0.1), camera=eval(guide.text(place), dict(CLASSES))))
     found = again.place(STILL, Moment())
     for mine, its in [
         (found.position, place.position),

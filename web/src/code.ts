@@ -5,7 +5,7 @@ import type { Steering } from "./camera";
 import { rounded } from "./generated/interaction";
 import type { Guided } from "./guide";
 import { shown } from "./numbers";
-import type { Parameter, Value, Values } from "./payload";
+import type { CameraForm, Parameter, Value, Values } from "./payload";
 import { same } from "./values";
 
 /** A Python literal of a number; -0 and integers stay what they are. */
@@ -47,15 +47,12 @@ export function pointsOf(place: Guided): [position: string, target: string] {
 }
 
 /** A camera at a place as Python. */
-export function cameraOf(place: Guided, name: string, mirror: boolean): string {
-  const { upX, upY, upZ } = place;
+export function cameraOf(place: Guided, { name, mirror, extent }: CameraForm): string {
+  const { upX, upY, upZ, opening, height } = place;
   const parts: string[] = pointsOf(place);
   if (upX || upZ || upY !== 1) parts.push(`up=${point([upX, upY, upZ], 0.1)}`);
-  const { opening, height } = place;
-  if (name === "Camera" || name === "FisheyeCamera") {
-    parts.push(`fov_deg=${shown(rounded(opening, 10))}`);
-  }
-  if (name === "OrthographicCamera") {
+  if (extent === "fov_deg") parts.push(`fov_deg=${shown(rounded(opening, 10))}`);
+  if (extent === "height") {
     parts.push(`height=${shown(rounded(height, 0.1 * Math.max(height, 1e-6)))}`);
   }
   if (mirror) parts.push("mirror=True");

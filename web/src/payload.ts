@@ -74,6 +74,14 @@ export interface View {
   program: number;
 }
 
+/** How a scene's camera is written as Python. */
+export interface CameraForm {
+  name: string;
+  mirror: boolean;
+  /** The argument that sets how much it sees. */
+  extent: "fov_deg" | "height" | "";
+}
+
 export interface Payload {
   format: number;
   name: string;
@@ -82,7 +90,7 @@ export interface Payload {
   embed: boolean;
   panel: boolean;
   /** Of a scene's camera: `guide` is the number of its guide's program, -1 if there is none. */
-  steering: { elevation: number; guide?: number; camera?: { name: string; mirror: boolean } } | null;
+  steering: { elevation: number; guide?: number; camera?: CameraForm } | null;
   time: { start: number; duration: number | null; animated: boolean };
   parameters: Parameter[];
   values: Values;

@@ -260,8 +260,8 @@ export class Player {
   /** Where the camera is, as the author would write it; null where no guide knows. */
   async cameraText(): Promise<string | null> {
     const place = await this.camera?.place();
-    const { name, mirror } = this.payload.steering?.camera ?? { name: "Camera", mirror: false };
-    return place ? cameraOf(place, name, mirror) : null;
+    const form = this.payload.steering?.camera;
+    return place && form ? cameraOf(place, form) : null;
   }
 
   async copyCamera(): Promise<void> {

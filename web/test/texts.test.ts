@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { pythonOf } from "../src/code";
+import { cameraOf, pythonOf } from "../src/code";
+import type { Guided } from "../src/guide";
 import { complaints } from "../src/lines";
 import type { Parameter } from "../src/payload";
 import { fileName } from "../src/taking";
@@ -66,4 +67,15 @@ test("names of files are such on every disk", () => {
   assert.equal(fileName("a/b\\c: <d>?"), "a-b-c-d");
   assert.equal(fileName("Größe 3 normal"), "Größe-3-normal");
   assert.equal(fileName("../.."), "picture");
+});
+
+test("a camera has the arguments of its class, rounded to what can be seen", () => {
+  const eye = { eyeX: 3.00001, eyeY: -0, eyeZ: 4, targetX: 0, targetY: 0, targetZ: 0 };
+  const place = { ...eye, upX: 0, upY: 1, upZ: 0, opening: 40.04, height: 0.25 } as Guided;
+  const points = "(3, 0, 4), (0, 0, 0)";
+  const form = { name: "Camera", mirror: false, extent: "fov_deg" } as const;
+  assert.equal(cameraOf(place, form), `Camera(${points}, fov_deg=40.04)`);
+  assert.equal(cameraOf(place, { ...form, extent: "", mirror: true }), `Camera(${points}, mirror=True)`);
+  const flat = cameraOf({ ...place, upY: 0, upZ: 1 }, { ...form, extent: "height" });
+  assert.equal(flat, `Camera(${points}, up=(0, 0, 1), height=0.25)`);
 });

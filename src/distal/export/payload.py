@@ -107,7 +107,7 @@ def _steering(seen: Viewable, programs: PagePrograms) -> dict[str, Any] | None:
     if seen.guide is None:
         return None
     form = seen.guide.form
-    camera = {"name": form.name, "mirror": form.mirror}
+    camera = {"name": form.name, "mirror": form.mirror, "extent": form.extent}
     return {"elevation": seen.elevation, "guide": programs.add_guide(seen.guide), "camera": camera}
 
 

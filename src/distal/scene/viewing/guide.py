@@ -7,6 +7,7 @@ time. Output: the numbers that it gets, and where it then is. The rules are scen
 
 from __future__ import annotations
 
+import inspect
 import math
 import struct
 import threading
@@ -29,8 +30,9 @@ if TYPE_CHECKING:
 
 _BYTE: Final = 255.0
 _PERSPECTIVE: Final = "Camera"
-_WITH_ANGLE: Final = (_PERSPECTIVE, "FisheyeCamera")
-_ORTHOGRAPHIC: Final = "OrthographicCamera"
+# The argument that sets how much a camera sees, if it has one.
+_ANGLE: Final = "fov_deg"
+_HEIGHT: Final = "height"
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,10 +162,12 @@ class CameraForm:
     Attributes:
         name: The class that has a position and a target.
         mirror: Whether it swaps left and right.
+        extent: The argument that sets how much it sees: "fov_deg", "height" or "" for none.
     """
 
     name: str
     mirror: bool
+    extent: str
 
 
 def camera_form(scene: Scene) -> CameraForm:
@@ -171,8 +175,11 @@ def camera_form(scene: Scene) -> CameraForm:
     kind = type(scene.camera).__name__
     values = scene.camera.call.values
     named = kind if kind in CLASSES and "target" in values and "position" in values else ""
+    name = named or _PERSPECTIVE
+    parameters = inspect.signature(CLASSES[name]).parameters
+    extent = next((n for n in (_ANGLE, _HEIGHT) if n in parameters), "")
     mirror = values.get("mirror")
-    return CameraForm(named or _PERSPECTIVE, bool(getattr(mirror, "plain", mirror)))
+    return CameraForm(name, bool(getattr(mirror, "plain", mirror)), extent)
 
 
 def camera_text(form: CameraForm, place: CameraPlace) -> str:
@@ -185,11 +192,11 @@ def camera_text(form: CameraForm, place: CameraPlace) -> str:
     arguments = [point_text(place.position, place), point_text(place.target, place)]
     if place.up != (0.0, 1.0, 0.0):
         arguments.append(f"up={_rounded(place.up, 0.1)}")
-    if form.name in _WITH_ANGLE:
-        arguments.append(f"fov_deg={shown(interaction.rounded(place.opening_deg, 10.0))}")
-    if form.name == _ORTHOGRAPHIC:
+    if form.extent == _ANGLE:
+        arguments.append(f"{_ANGLE}={shown(interaction.rounded(place.opening_deg, 10.0))}")
+    if form.extent == _HEIGHT:
         unit = 0.1 * max(place.height, 1e-6)
-        arguments.append(f"height={shown(interaction.rounded(place.height, unit))}")
+        arguments.append(f"{_HEIGHT}={shown(interaction.rounded(place.height, unit))}")
     if form.mirror:
         arguments.append("mirror=True")
     return f"{form.name}({', '.join(arguments)})"
