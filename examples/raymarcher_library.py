@@ -107,7 +107,7 @@ def picture(frame: Frame) -> vec4:
     time = frame.time
     uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
     bounds = Bounds(-EVERYWHERE, EVERYWHERE)
-    numbers = march_numbers(1.0, 0.001, 60.0, frame.resolution)
+    numbers = march_numbers(1.0, 0.001, 60.0, 0.25 / frame.resolution.y)
     seen = seen_plain(
         camera(uv, time),
         lambda ray: first_surface_or_plane(

@@ -288,22 +288,50 @@ def test_steps_are_shown_of_the_most_allowed():
 # The numbers of a march
 
 
+@func
+def threshold(height: float, fov: float, extent: float, away: float) -> float:
+    """Of a camera that looks at a ball: orthographic if ``fov`` is 0."""
+
+    def ray(uv: vec2) -> Ray:
+        eye = vec3(0.0, 0.0, away)
+        up = vec3(0.0, 1.0, 0.0)
+        if fov > 0.0:
+            return camera.look_at(uv, eye, vec3(0.0), up, fov=fov)
+        return camera.orthographic(uv, eye, vec3(0.0), up, height=extent)
+
+    ball = Bounds(vec3(-1.0), vec3(1.0))
+    return settings.hit_threshold(vec2(1.5 * height, height), ball, ray)
+
+
 @pytest.mark.parametrize("height", [240, 480, 1080, 2160])
 def test_a_hit_is_within_a_third_of_a_pixel(height):
     """Of a lens of 40 degrees."""
     pixel = 2.0 * math.tan(math.radians(20.0)) / height
-    found = settings.march_numbers(1.7, 0.1, 60.0, (1.5 * height, float(height)))
-    assert 0.9 * pixel / 3.0 <= found.threshold <= 1.05 * pixel / 3.0
-    assert found.near == pytest.approx(0.1)
-    assert found.far == 60.0
-    assert found.divisor == pytest.approx(1.7)
+    found = asked(threshold, float(height), math.radians(40.0), 0.0, 5.0)
+    assert 0.9 * pixel / 3.0 <= found <= 1.05 * pixel / 3.0
+
+
+@pytest.mark.parametrize("away", [10.0, 400.0, 3700.0])
+def test_a_hit_is_within_a_third_of_a_pixel_of_cameras_far_away(away):
+    pixel = 3.0 / 480.0  # at the ball, which fills most of the picture
+    allowed = max(0.35 * pixel, 2.1e-6 * away)  # what 32 bits tell
+    for fov, extent in ((2.0 * math.atan(1.5 / away), 0.0), (0.0, 3.0)):
+        assert asked(threshold, 480.0, fov, extent, away) * away <= allowed
 
 
 def test_a_hit_is_no_nearer_than_32_bits_tell_and_no_farther_than_a_thousandth():
-    for height, threshold in ((10.0, 1e-3), (90000.0, 1e-4)):
-        found = settings.march_numbers(0.3, 0.1, 60.0, (height, height))
-        assert found.threshold == pytest.approx(threshold)
-        assert found.divisor == 1.0, "a field that is too flat is not stretched"
+    assert asked(threshold, 10.0, 1.0, 0.0, 5.0) == pytest.approx(1e-3)
+    pixel = 2.0 * math.tan(0.5) / 90000.0
+    assert asked(threshold, 90000.0, 1.0, 0.0, 5.0) == pytest.approx(0.343 * pixel, rel=0.05)
+    assert asked(threshold, 480.0, 0.0, 1e-6, 1e6) == pytest.approx(2e-6)
+
+
+def test_the_numbers_of_a_march():
+    found = settings.march_numbers(1.7, 0.1, 60.0, 5e-4)
+    assert (found.near, found.far, found.threshold) == pytest.approx((0.1, 60.0, 5e-4))
+    assert found.divisor == pytest.approx(1.7)
+    flat = settings.march_numbers(0.3, 0.1, 60.0, 5e-4)
+    assert flat.divisor == 1.0, "a field that is too flat is not stretched"
 
 
 def test_a_box_has_room_for_rounding():

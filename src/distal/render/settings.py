@@ -11,6 +11,7 @@ from collections.abc import Callable
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds
 from distal.lang import clamp, dot, func, max, min, select, vec2, vec3
 from distal.render.camera import Ray
+from distal.render.footprint import pixel_cone
 from distal.render.heightfield_march import Stride
 from distal.render.march import March
 from distal.render.shade import Shading
@@ -19,24 +20,43 @@ from distal.render.steer import pivot_within
 # Rays through an infinite scene end at this distance, and at this many distances to the subject.
 FAR = 200.0
 FAR_DISTANCES = 40.0
+# The least threshold of a hit: rounding errors of a place, for each unit of the ray's length.
+PRECISION = 2e-6
+
+
+@func
+def hit_threshold(resolution: vec2, bounds: Bounds, camera: Callable[[vec2], Ray]) -> float:
+    """Return how close to a surface a ray has hit it, as a part of the ray's length.
+
+    A third of a pixel of a lens of 40 degrees, also for wider ones. Longer lenses and orthographic
+    cameras, which also look from far away: a third of a pixel at the subject. Not below 32-bit
+    precision.
+
+    Args:
+        resolution: Size of the picture in pixels.
+        bounds: Box around the surfaces.
+        camera: Ray of a place in the picture.
+    """
+    eye = camera(vec2(0.0))
+    depth = dot(pivot_within(bounds, camera) - eye.origin, eye.direction)
+    pixel = pixel_cone(camera, vec2(0.0), 2.0 / resolution.y)
+    third = 0.343 * (pixel.width / max(depth, 1e-6) + pixel.spread)
+    return min(clamp(0.25 / resolution.y, 1e-4, 1e-3), max(third, PRECISION))
 
 
 @func
 def march_numbers(
-    divisor: float, near: float, far: float, resolution: vec2, steepest: float = 1.0
+    divisor: float, near: float, far: float, threshold: float, steepest: float = 1.0
 ) -> March:
     """Return the parameters of a march.
-
-    The threshold is a third of a pixel of a usual lens, but not below 32-bit precision.
 
     Args:
         divisor: Distances are divided by it to get a safe step.
         near: Distance along the ray where rays begin.
         far: Distance along the ray where rays end.
-        resolution: Size of the picture in pixels.
+        threshold: A ray has hit a surface that is closer than this part of the ray's length.
         steepest: The largest number by which the field already divides one of its parts.
     """
-    threshold = clamp(0.25 / resolution.y, 1e-4, 1e-3)
     return March(max(divisor, 1.0), near, far, threshold, max(steepest, 1.0))
 
 

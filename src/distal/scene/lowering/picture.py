@@ -220,6 +220,7 @@ class SceneLowering:
         given["farthest_plane"] = self._numbers.get("far", number(UNBOUNDED))
         if "far" not in self._numbers:
             given["far"] = body.let("far", composer.call(settings.automatic_far, given))
+        given["threshold"] = body.let("threshold", composer.call(settings.hit_threshold, given))
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))
