@@ -35,7 +35,7 @@ from distal.render.footprint import Footprint, pixel_cone
 from distal.render.lights import LightSample, distant_light
 from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
-from distal.render.settings import march_numbers
+from distal.render.settings import hit_threshold, march_numbers
 from distal.render.shade import Shading
 from distal.render.shadows import shadow_beside_planes
 from distal.render.tonemap import ACES, decode_srgb, display
@@ -107,7 +107,8 @@ def picture(frame: Frame) -> vec4:
     time = frame.time
     uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
     bounds = Bounds(-EVERYWHERE, EVERYWHERE)
-    numbers = march_numbers(1.0, 0.001, 60.0, 0.25 / frame.resolution.y)
+    threshold = hit_threshold(frame.resolution, bounds, lambda at: camera(at, time))
+    numbers = march_numbers(1.0, 0.001, 60.0, threshold)
     seen = seen_plain(
         camera(uv, time),
         lambda ray: first_surface_or_plane(

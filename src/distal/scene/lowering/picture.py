@@ -244,7 +244,7 @@ class SceneLowering:
             return integer(self._scene.steps)
         values = self.composer.values.all(self._node)
         divisor = self.composer.bounds.of(body, self._node, values).divisor
-        return body.let("steps", step_limit(divisor))
+        return body.let("steps", step_limit(divisor, in_glass=self._scene.renderer == "refracted"))
 
     def _function(
         self,

@@ -44,9 +44,14 @@ Make: TypeAlias = "Callable[[StatementList, Mapping[str, Expr]], Expr]"
 Define: TypeAlias = "Callable[[str, list[tuple[str, Type]], Make, list[Expr]], FunctionRef]"
 
 
-def step_limit(divisor: Expr) -> Expr:
-    """Return the number of steps for a field whose values are divided by a number."""
-    least, most = float(STEPS), float(MOST_STEPS)
+def step_limit(divisor: Expr, *, in_glass: bool = False) -> Expr:
+    """Return the number of steps for a field whose values are divided by a number.
+
+    Args:
+        divisor: The number.
+        in_glass: Whether rays go on inside of solids, where many graze a surface.
+    """
+    least, most = float(STEPS * (2 if in_glass else 1)), float(MOST_STEPS)
     wanted = builtin("max", multiply(divisor, constant_number(least)), constant_number(least))
     return _whole(builtin("min", wanted, constant_number(most)))
 
