@@ -31,7 +31,7 @@ from distal.render.camera import Ray, look_at
 from distal.render.heightfield_march import STRIDE, march_heightfield
 from distal.render.march import Hit, March, march
 from distal.render.normals import EXACT, FORWARD, SIX_TAPS, TETRAHEDRON, normal
-from distal.render.settings import grown_bounds, march_numbers, stride_over
+from distal.render.settings import grown_bounds, hit_threshold, march_numbers, stride_over
 
 SIZE = (640, 400)
 TIMES = (0.0, 1.7, 5.3, 40.0)
@@ -60,7 +60,8 @@ def sea_ray(uv: vec2) -> Ray:
 @func
 def sea_hit(frame: Frame, hybrid: bool) -> vec4:
     """A pixel's march over the sea."""
-    numbers = march_numbers(SLOPE, 0.001, sea.FAR, frame.resolution)
+    threshold = hit_threshold(frame.resolution, slab(), sea_ray)
+    numbers = march_numbers(SLOPE, 0.001, sea.FAR, threshold)
     ray = sea_ray((2.0 * frame.coord - frame.resolution) / frame.resolution.y)
     time = frame.time
     if hybrid:
