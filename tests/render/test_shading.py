@@ -52,7 +52,7 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
         March(divisor, 0.0, 50.0, 1e-3),
         80,
         False,
-        1,
+        True,
     )
     return shadow_ray.share_of_disc(found.offset)
 

@@ -25,6 +25,13 @@ PRECISION = 2e-6
 
 
 @func
+def subject_depth(bounds: Bounds, camera: Callable[[vec2], Ray]) -> float:
+    """Return the distance from the camera to the point that it turns around, along its axis."""
+    eye = camera(vec2(0.0))
+    return dot(pivot_within(bounds, camera) - eye.origin, eye.direction)
+
+
+@func
 def hit_threshold(resolution: vec2, bounds: Bounds, camera: Callable[[vec2], Ray]) -> float:
     """Return how close to a surface a ray has hit it, as a part of the ray's length.
 
@@ -37,10 +44,8 @@ def hit_threshold(resolution: vec2, bounds: Bounds, camera: Callable[[vec2], Ray
         bounds: Box around the surfaces.
         camera: Ray of a place in the picture.
     """
-    eye = camera(vec2(0.0))
-    depth = dot(pivot_within(bounds, camera) - eye.origin, eye.direction)
     pixel = pixel_cone(camera, vec2(0.0), 2.0 / resolution.y)
-    third = 0.343 * (pixel.width / max(depth, 1e-6) + pixel.spread)
+    third = 0.343 * (pixel.width / max(subject_depth(bounds, camera), 1e-6) + pixel.spread)
     return min(clamp(0.25 / resolution.y, 1e-4, 1e-3), max(third, PRECISION))
 
 
@@ -106,7 +111,5 @@ def automatic_far(bounds: Bounds, camera: Callable[[vec2], Ray]) -> float:
     """
     low = min(bounds.low.x, min(bounds.low.y, bounds.low.z))
     high = max(bounds.high.x, max(bounds.high.y, bounds.high.z))
-    eye = camera(vec2(0.0))
-    depth = dot(pivot_within(bounds, camera) - eye.origin, eye.direction)
     finite = max(-low, high) < ENDLESS
-    return select(finite, UNBOUNDED, max(FAR, FAR_DISTANCES * depth))
+    return select(finite, UNBOUNDED, max(FAR, FAR_DISTANCES * subject_depth(bounds, camera)))

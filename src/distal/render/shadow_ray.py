@@ -80,7 +80,7 @@ class Edge:
         offset: Its distance from the ray, in radii of the light's disc: 1 or more if the whole disc
             is visible, 0 if a straight edge is in the middle, -1 or less if nothing is.
         is_sure: Whether all or nothing of the disc is visible, with nothing small in front of it.
-            lost: Whether the steps of the ray ran out.
+        lost: Whether the steps of the ray ran out.
     """
 
     offset: float
@@ -309,7 +309,7 @@ def find_edge(
     numbers: March,
     steps: int,
     steep: bool,
-    solids: int,
+    needs_offset: bool,
 ) -> Edge:
     """Return where the edge of a shadow is, as one ray to the middle of a light's disc finds it.
 
@@ -322,8 +322,7 @@ def find_edge(
         numbers: The parameters of the march.
         steps: Maximum number of steps.
         steep: Whether values may be less than distances; a constant.
-        solids: So many solids with flat faces are followed along the ray; with 0, ``offset`` is not
-            known where ``is_sure`` is false.
+        needs_offset: Whether ``offset`` must be known where ``is_sure`` is false.
     """
     # A ray beside the box is dimmed too, by what is within the disc's radius there.
     corner = max(abs(bounds.low - ray.origin), abs(bounds.high - ray.origin))
@@ -334,7 +333,7 @@ def find_edge(
     offset = OPEN
     is_sure = True
     lost = False
-    for i in range(MOST_SOLIDS):
+    for _ in range(MOST_SOLIDS):
         found = pass_surfaces(field, ray, width, start, last, numbers, steps)
         share = found.share
         if steep and share < 1.0 and share > -1.0:
@@ -344,13 +343,13 @@ def find_edge(
         through = found.chord.y > found.chord.x
         if through:
             is_sure = False
-        if through and solids > 0:
+        if through and needs_offset:
             across = outline_offset(field, ray, found.chord.x, found.chord.y) / width
             share = min(share, mix(min(share, 0.0), -across, found.chord.z))
         offset = min(offset, share)
         # A ray that ran out of steps is lost if what it has not seen could change the picture.
         lost = lost or (not through and found.t <= last and share_of_disc(offset) > UNSEEN)
-        if offset <= BESIDE or not through or i + 1 >= solids:
+        if offset <= BESIDE or not through or not needs_offset:
             break
         # The ray goes through something, but part of the disc is beside it: what is behind?
         start = found.t

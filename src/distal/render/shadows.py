@@ -25,7 +25,7 @@ from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
 from distal.render.normals import tangent
-from distal.render.shadow_ray import MOST_SOLIDS, find_edge, share_of_disc
+from distal.render.shadow_ray import find_edge, share_of_disc
 
 SHARPEST = 0.003  # smallest tangent of a light's half angle: sharper shadows would be noisy
 NARROW = 0.01  # below this tangent, one ray to the middle of the light is enough
@@ -119,6 +119,7 @@ def soft_shadow(
     by_sample = samples >= ENOUGH_SAMPLES and not is_narrow
     parts = samples if by_sample else rays_to(light.radius)
     part = part_of_disc(parts)
+    is_alone = is_narrow or by_sample
     total = 0.0
     lost = False
     # The first ray goes to the middle of the whole disc, but that of a sample to its own part.
@@ -128,9 +129,8 @@ def soft_shadow(
         if k > 0 or by_sample:
             ray = Ray(origin, toward_light(light, sample if by_sample else k - 1, parts))
             width = whole * part
-        is_alone = k == 0 and (is_narrow or by_sample)
-        solids = MOST_SOLIDS if is_alone or k > 0 else 0
-        found = find_edge(field, ray, width, end, bounds, numbers, steps, steep, solids)
+        needs_offset = is_alone or k > 0
+        found = find_edge(field, ray, width, end, bounds, numbers, steps, steep, needs_offset)
         lost = lost or found.lost
         share = share_of_disc(found.offset)
         if is_alone or (k == 0 and found.is_sure):
