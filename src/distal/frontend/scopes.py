@@ -154,10 +154,15 @@ def _part(base: ast.expr, block: _BlockUses, captures: dict[str, set[str]]) -> N
         _uses(base, block, captures)
 
 
+def plain_parameters(arguments: ast.arguments) -> list[ast.arg]:
+    """Return all parameters of a function but those with stars."""
+    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+
+
 def free_names(function: ast.FunctionDef | ast.Lambda) -> set[str]:
     """Return the names that a nested function uses from its enclosing scopes."""
     a = function.args
-    own = {p.arg for p in (*a.posonlyargs, *a.args, *a.kwonlyargs)}
+    own = {p.arg for p in plain_parameters(a)}
     loads: set[str] = set()
     body = function.body if isinstance(function.body, list) else [function.body]
     for node in (n for part in body for n in ast.walk(part)):

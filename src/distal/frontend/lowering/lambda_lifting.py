@@ -17,7 +17,7 @@ from distal.frontend.lowering.argument_matching import parameter_type
 from distal.frontend.lowering.builtin_calls import exact_instances
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.problems import FollowupError, SceneError
-from distal.frontend.scopes import analyse_scopes
+from distal.frontend.scopes import analyse_scopes, plain_parameters
 from distal.frontend.signatures.signatures import MISSING, FunctionSignature
 from distal.frontend.source import Node
 from distal.frontend.types.coercion import coerce_or_raise, with_default_type
@@ -165,7 +165,7 @@ def builtin_function(
 def _closure_value(
     body: FunctionBody, closure: Closure, type: FunctionType, node: Node
 ) -> Expr | None:
-    args = _parameters(closure)
+    args = plain_parameters(closure.node.args)
     extra = args[len(type.params) :]
     if len(args) < len(type.params) or any(a.arg not in closure.defaults for a in extra):
         wanted = len(type.params)
@@ -201,11 +201,6 @@ def captured(body: FunctionBody, variable: Variable, node: Node) -> Expr:
     return body.capture(variable)
 
 
-def _parameters(closure: Closure) -> list[ast.arg]:
-    a = closure.node.args
-    return [*a.posonlyargs, *a.args, *a.kwonlyargs]
-
-
 def call_closure(
     body: FunctionBody,
     closure: Closure,
@@ -224,7 +219,7 @@ def call_closure(
         SceneError: The arguments do not match its parameters.
         FollowupError: The called function has errors, which are reported already.
     """
-    params = _parameters(closure)
+    params = plain_parameters(closure.node.args)
     given: dict[str, tuple[Value, ast.expr]] = {}
     if len(args) > len(params):
         message = f"'{closure.name}' takes {len(params)} arguments, got {len(args)}"
@@ -302,7 +297,7 @@ def lift_closure(
 def _lower_closure(closure: Closure, instance: Instance, result: Type | None) -> None:
     node, owner = closure.node, closure.owner
     compilation = owner.compilation
-    args = _parameters(closure)
+    args = plain_parameters(closure.node.args)
     body_nodes: list[ast.stmt]
     if isinstance(node, ast.Lambda):
         returned = ast.Return(node.body)

@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.name_lookup import NameLookup, names_of
 from distal.frontend.problems import SceneError
-from distal.frontend.scopes import ScopeAnalysis, analyse_scopes
+from distal.frontend.scopes import ScopeAnalysis, analyse_scopes, plain_parameters
 from distal.frontend.source import SourceMap, parse_definition
 from distal.lang.functions import Overload
 from distal.lang.source import capture
@@ -60,10 +60,7 @@ class Definition:
     @cached_property
     def scopes(self) -> ScopeAnalysis:
         """The locals of the function."""
-        a = self.node.args
-        return analyse_scopes(
-            self.node.body, {arg.arg for arg in (*a.posonlyargs, *a.args, *a.kwonlyargs)}
-        )
+        return analyse_scopes(self.node.body, {a.arg for a in plain_parameters(self.node.args)})
 
 
 _definitions: WeakKeyDictionary[Overload, Definition] = WeakKeyDictionary()
@@ -122,8 +119,7 @@ class FunctionSignature:
 
     def text(self) -> str:
         """Return ``name(p: vec3, r: float) -> float`` as the author wrote it, for hints."""
-        a = self.node.args
-        written = {arg.arg: arg.annotation for arg in (*a.posonlyargs, *a.args, *a.kwonlyargs)}
+        written = {a.arg: a.annotation for a in plain_parameters(self.node.args)}
         parts = []
         for parameter in self.parameters:
             annotation = written.get(parameter.name)
