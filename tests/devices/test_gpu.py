@@ -294,18 +294,25 @@ def test_64_bits_are_refused_in_words() -> None:
         gpu.prepare(lower(graded, (VEC4,)), precision=64)
 
 
+def texture_of_a_window(extent: tuple[int, int]) -> Any:
+    wgpu, shown = adapters.wgpu_module(), adapters.opened(adapters.chosen())
+    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+    return shown.device.create_texture(size=(*extent, 1), format="rgba8unorm", usage=usage)
+
+
+def pixels_of(texture: Any) -> Any:
+    width, height, _ = texture.size
+    queue = adapters.opened(adapters.chosen()).device.queue
+    data = queue.read_texture({"texture": texture}, {"bytes_per_row": width * 4}, texture.size)
+    return np.frombuffer(data, np.uint8).reshape(height, width, 4)
+
+
 def test_it_draws_into_a_texture_of_a_window(lost_gpu: None) -> None:
     kernel, _, sources = of(resources, "fragment")
     extent, uniforms = (33, 20), {"resolution": (33, 20)}
-    wgpu, shown = adapters.wgpu_module(), adapters.opened(adapters.chosen())
-    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-    texture = shown.device.create_texture(size=(*extent, 1), format="rgba8unorm", usage=usage)
+    texture = texture_of_a_window(extent)
     kernel.draw(texture.create_view(), "rgba8unorm", *extent, uniforms, sources)
-    data = shown.device.queue.read_texture(
-        {"texture": texture}, {"bytes_per_row": 33 * 4}, (*extent, 1)
-    )
-    pixels = np.frombuffer(data, np.uint8).reshape(20, 33, 4)
-    off = difference(kernel.render(*extent, uniforms, sources), pixels)
+    off = difference(kernel.render(*extent, uniforms, sources), pixels_of(texture))
     assert off.mean < 0.5
     assert off.far_off == 0.0
 
@@ -314,9 +321,7 @@ def test_a_window_is_drawn_in_parts_which_can_be_stopped_between() -> None:
     kernel, _, sources = of(resources, "fragment")
     kernel.tile_sizer = TileSizer(64)
     extent, uniforms = (33, 20), {"resolution": (33, 20)}
-    wgpu, shown = adapters.wgpu_module(), adapters.opened(adapters.chosen())
-    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-    texture = shown.device.create_texture(size=(*extent, 1), format="rgba8unorm", usage=usage)
+    texture = texture_of_a_window(extent)
     view = texture.create_view()
     shares: list[float] = []
     stop = threading.Event()
@@ -332,11 +337,7 @@ def test_a_window_is_drawn_in_parts_which_can_be_stopped_between() -> None:
     assert 0 < shares[0] < shares[1] < shares[2] < 1
     kernel.draw(view, "rgba8unorm", *extent, uniforms, sources)
     assert kernel.stats["tiles"] >= 11
-    data = shown.device.queue.read_texture(
-        {"texture": texture}, {"bytes_per_row": 33 * 4}, (*extent, 1)
-    )
-    pixels = np.frombuffer(data, np.uint8).reshape(20, 33, 4)
-    off = difference(kernel.render(*extent, uniforms, sources), pixels)
+    off = difference(kernel.render(*extent, uniforms, sources), pixels_of(texture))
     assert off.mean < 0.5
     assert off.far_off == 0.0
 

@@ -14,7 +14,7 @@ import pytest
 
 from distal import DistantLight, Plane, Scene, Shape
 from distal.fields.guarantees import Bounds
-from distal.lang import abs, func, length, max, min, normalize, vec3
+from distal.lang import Field3, abs, func, length, max, min, normalize, vec3
 from distal.lang.runtime_access import executor
 from distal.render import shadows
 from distal.render.lights import LightSample
@@ -35,13 +35,10 @@ def box(p: vec3, size: vec3) -> float:
 
 
 @func
-def under_a_box(
-    p: vec3, toward: vec3, size: vec3, height: float, radius: float, sample: int, samples: int
-) -> float:
-    """What is left of a light under a box that is ``height`` above the floor."""
-    light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
+def left_of(field: Field3, p: vec3, light: LightSample, sample: int, samples: int) -> float:
+    """What is left of a light at a point, by 64 steps of each ray in an endless box."""
     found = shadows.soft_shadow(
-        lambda q: min(q.y, box(q - vec3(0.0, height + 0.5 * size.y, 0.0), size)),
+        field,
         p,
         light,
         Bounds(vec3(-1e18), vec3(1e18)),
@@ -55,20 +52,26 @@ def under_a_box(
 
 
 @func
-def under_a_ball(p: vec3, toward: vec3, radius: float, sample: int, samples: int) -> float:
+def under_a_box(
+    p: vec3, toward: vec3, size: vec3, height: float, radius: float, sample: int, samples: int
+) -> float:
+    """What is left of a light under a box that is ``height`` above the floor."""
     light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
-    found = shadows.soft_shadow(
-        lambda q: min(q.y, length(q - vec3(0.0, 1.0, 0.0)) - 0.6),
+    return left_of(
+        lambda q: min(q.y, box(q - vec3(0.0, height + 0.5 * size.y, 0.0), size)),
         p,
         light,
-        Bounds(vec3(-1e18), vec3(1e18)),
-        March(1.0, 0.001, 600.0, 5e-4),
-        64,
-        False,
         sample,
         samples,
     )
-    return found.share
+
+
+@func
+def under_a_ball(p: vec3, toward: vec3, radius: float, sample: int, samples: int) -> float:
+    light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
+    return left_of(
+        lambda q: min(q.y, length(q - vec3(0.0, 1.0, 0.0)) - 0.6), p, light, sample, samples
+    )
 
 
 def disc(toward: Any, radius: float, count: int = 400) -> Any:
@@ -157,15 +160,7 @@ def test_no_light_leaks_through_a_plate_of_any_thickness(toward, height):
 def over(p: vec3, toward: vec3, radius: float, big: float) -> float:
     """On a ball of this radius about the origin; a plane if it is 0."""
     light = LightSample(normalize(toward), 1e9, vec3(1.0), radius)
-    found = shadows.soft_shadow(
-        lambda q: q.y if big <= 0.0 else length(q) - big,
-        p,
-        light,
-        Bounds(vec3(-1e18), vec3(1e18)),
-        March(1.0, 0.001, 600.0, 5e-4),
-        64,
-    )
-    return found.share
+    return left_of(lambda q: q.y if big <= 0.0 else length(q) - big, p, light, 0, 1)
 
 
 @pytest.mark.parametrize("degrees", [1.0, 2.0, 10.0])
@@ -196,18 +191,13 @@ def under_a_lamp(p: vec3, lamp: vec3, radius: float, sample: int, samples: int) 
     offset = lamp - p
     distance = length(offset)
     light = LightSample(offset / distance, distance, vec3(1.0), radius / distance)
-    found = shadows.soft_shadow(
+    return left_of(
         lambda q: min(q.y, box(q - vec3(0.0, 1.001, 0.0), vec3(1.0, 0.002, 1.0))),
         p,
         light,
-        Bounds(vec3(-1e18), vec3(1e18)),
-        March(1.0, 0.001, 600.0, 5e-4),
-        64,
-        False,
         sample,
         samples,
     )
-    return found.share
 
 
 @pytest.mark.parametrize(("radius", "allowed"), [(0.01, 0.002), (0.1, 0.015), (0.4, 0.03)])
