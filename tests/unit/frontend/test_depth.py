@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from distal.diagnostics import CompileError
@@ -19,6 +21,7 @@ def chain(length: int) -> str:
 
 
 def test_a_long_chain_of_calls_is_one_error() -> None:
+    assert sys.getrecursionlimit() == 1000, "a test has raised Python's recursion limit for good"
     with pytest.raises(CompileError) as caught:
         lower(from_text(chain(500), "g499"))
     (found,) = caught.value.diagnostics
