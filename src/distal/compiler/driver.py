@@ -104,7 +104,8 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
     if target not in COMPILE_TARGETS:
         raise ValueError(f"there is no target '{target}'; targets: {', '.join(COMPILE_TARGETS)}")
     description = get_target(target)
-    return emit(run_passes(lower(obj), description), description)
+    module = lower(obj, buffers=description.buffers)
+    return emit(run_passes(module, description), description)
 
 
 __all__ = ["Artifact", "CompileError", "compile", "run_passes"]

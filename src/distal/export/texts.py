@@ -104,8 +104,9 @@ def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Expo
     """
     values = checked_values(seen.parameters, options.params)
     image = seen.image(options.view, encoded=True)
-    module = lower(image.text() if isinstance(image, Composed) else image)
     description = TEXT_TARGETS[target]
+    text_of = image.text() if isinstance(image, Composed) else image
+    module = lower(text_of, buffers=description.buffers)
     artifact = emit(run_passes(_set(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
     text = with_header(artifact, target, name)

@@ -35,6 +35,7 @@ class Target:
         integer_floor: Has floored // and % of ints with x // 0 = x (else the prelude's are used).
         saturating_cast: Its conversion from float to int saturates and gives 0 for NaN.
         texel_fetch: Can read single texels and texture sizes.
+        buffers: Can read buffers.
         samples: Filters textures itself (else the prelude filters single texels).
         rough: Built-ins whose errors in the target's drivers may be visible in a picture. They are
             replaced by the intrinsics' ``careful`` functions, unless the host has measured that its
@@ -57,6 +58,7 @@ class Target:
     integer_floor: bool = False
     saturating_cast: bool = False
     texel_fetch: bool = True
+    buffers: bool = True
     samples: bool = True
     rough: frozenset[str] = frozenset()
     inline: bool = False

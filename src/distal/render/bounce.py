@@ -33,6 +33,7 @@ def seen_plain(
     first_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3, Footprint], Surface],
+    occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
@@ -45,7 +46,6 @@ def seen_plain(
     normal_step: float = 1e-3,
     hybrid: bool = False,
     cone: Cone = THIN,
-    steep: bool = False,
     counted: bool = False,
 ) -> vec4:
     """Return the direct light at the first surface.
@@ -55,6 +55,7 @@ def seen_plain(
         first_hit: The first surface along a ray.
         field: Signed distance.
         surface: The material at a point, averaged over a footprint.
+        occlusion: The fraction of ambient light that reaches a point, by its normal and |gradient|.
         lights: The light with a given index, from 0, at a point.
         ambient: Light from all directions on a white surface, by its normal.
         background: Light from a direction without a surface.
@@ -67,7 +68,6 @@ def seen_plain(
         normal_step: Step of the normals' differences, in scene units at distance 1.
         hybrid: Whether the march for terrain and water finds the hits; a constant.
         cone: The cone of the ray.
-        steep: Whether values of the field may be less than distances; a constant.
         counted: Whether alpha is marked with why rays were lost (``lost_rays``); a constant.
 
     Returns:
@@ -81,7 +81,7 @@ def seen_plain(
         return vec4(background(ray.direction), marked(alpha, lost, counted))
     point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
     light = direct_light(
-        ray, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid, steep,
+        ray, point, occlusion, lights, ambient, shadow, numbers, look, light_count, hybrid,
         cone.sample, cone.samples,
     )  # fmt: skip
     lost = merged(lost, select(light.lost, SHADOWS, 0))
@@ -95,6 +95,7 @@ def seen_mirrored(
     first_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3, Footprint], Surface],
+    occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
@@ -108,7 +109,6 @@ def seen_mirrored(
     normal_step: float = 1e-3,
     hybrid: bool = False,
     cone: Cone = THIN,
-    steep: bool = False,
     counted: bool = False,
 ) -> vec4:
     """As ``seen_plain``, with mirrors: one ray continues, at most ``bounces`` times."""
@@ -134,8 +134,8 @@ def seen_mirrored(
         alpha = 1.0
         point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
         light = direct_light(
-            here, point, field, lights, ambient, shadow, numbers, look, light_count, hybrid,
-            steep, cone.sample, cone.samples,
+            here, point, occlusion, lights, ambient, shadow, numbers, look, light_count, hybrid,
+            cone.sample, cone.samples,
         )  # fmt: skip
         lost = merged(lost, select(light.lost, SHADOWS, 0))
         color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
@@ -158,6 +158,7 @@ def seen_refracted(
     next_hit: Callable[[Ray], Hit],
     field: Field3,
     surface: Callable[[vec3, Footprint], Surface],
+    occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     background: Callable[[vec3], vec3],
@@ -170,7 +171,6 @@ def seen_refracted(
     normals: int = EXACT,
     normal_step: float = 1e-3,
     cone: Cone = THIN,
-    steep: bool = False,
     counted: bool = False,
 ) -> vec4:
     """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue.
@@ -218,8 +218,8 @@ def seen_refracted(
             throughput = throughput * exp(-point.surface.absorption * (exact + ways[waiting]))
         else:
             light = direct_light(
-                here, point, field, lights, ambient, shadow, numbers, look, light_count,
-                False, steep, cone.sample, cone.samples,
+                here, point, occlusion, lights, ambient, shadow, numbers, look, light_count,
+                False, cone.sample, cone.samples,
             )  # fmt: skip
             lost = merged(lost, select(light.lost, SHADOWS, 0))
             color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)

@@ -95,7 +95,20 @@ def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -
         numbers: The parameters of the march.
         steps: Maximum number of steps.
     """
-    span = crossing(ray, bounds)
+    return march_between(field, ray, crossing(ray, bounds), numbers, steps)
+
+
+@func
+def march_between(field: Field3, ray: Ray, span: vec2, numbers: March, steps: int) -> Hit:
+    """Return the first surface between two places of a ray.
+
+    Args:
+        field: Signed distance.
+        ray: Ray.
+        span: Where the box around the surface begins and ends, along the ray.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps.
+    """
     t = max(span.x, numbers.near)
     end = min(span.y, numbers.far)
     taken = 0

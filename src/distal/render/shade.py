@@ -116,6 +116,31 @@ def ambient_occlusion(
 
 
 @func
+def occlusion_in(
+    field: Field3,
+    p: vec3,
+    n: vec3,
+    slope: float,
+    look: Shading,
+    numbers: March,
+    steep: bool,
+) -> float:
+    """Return the fraction of ambient light that reaches a point of a scene.
+
+    Args:
+        field: Signed distance.
+        p: Point on a surface or just above it.
+        n: Unit normal.
+        slope: |gradient| of the field at the point.
+        look: How far to search for surfaces.
+        numbers: The parameters of the march.
+        steep: Whether values may be less than distances; a constant.
+    """
+    flattest = true_slope(0.0, numbers)
+    return ambient_occlusion(field, p, n, look.occlusion, slope, flattest, steep)
+
+
+@func
 def fogged(color: vec3, t: float, fog_color: vec3, fog_density: float) -> vec3:
     """Return a color seen through fog of a given density per scene unit, ``t`` units away."""
     return mix(fog_color, color, exp(-fog_density * t))
@@ -134,7 +159,7 @@ def at_horizon(direction: vec3) -> vec3:
 def direct_light(
     ray: Ray,
     point: SurfacePoint,
-    field: Field3,
+    occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
     shadow: Callable[[vec3, LightSample, int, int], Opening],
@@ -142,7 +167,6 @@ def direct_light(
     look: Shading,
     light_count: int,
     hybrid: bool,
-    steep: bool = False,
     sample: int = 0,
     samples: int = 1,
 ) -> Lit:
@@ -154,7 +178,8 @@ def direct_light(
     Args:
         ray: The ray that hit the surface.
         point: The surface at the hit.
-        field: Signed distance.
+        occlusion: The fraction of ambient light that reaches a point; takes the normal there, and
+            |gradient| of the field.
         lights: The light with a given index, from 0, at a point.
         ambient: Light from all directions on a white surface, by its normal.
         shadow: The visible fraction of a light at a point, for a pixel's sample of several.
@@ -162,7 +187,6 @@ def direct_light(
         look: Ambient occlusion and fog.
         light_count: Number of lights.
         hybrid: Whether the hybrid march found the surface; a constant.
-        steep: Whether values of the field may be less than distances; a constant.
         sample: The number of the pixel's sample, from 0.
         samples: How many samples the pixel has.
     """
@@ -174,11 +198,7 @@ def direct_light(
     if point.surface.roughness > 0.0:
         around += point.shares.mirrored * point.surface.roughness * ambient(reflect(-view, n))
     if look.occlusion > 0.0:
-        flattest = true_slope(0.0, numbers)
-        slope = true_slope(point.slope, numbers)
-        around = around * ambient_occlusion(
-            field, lifted, n, look.occlusion, slope, flattest, steep
-        )
+        around = around * occlusion(lifted, n, true_slope(point.slope, numbers))
     color = point.surface.emission + around
     lost = False
     for i in range(light_count):

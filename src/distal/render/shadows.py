@@ -148,6 +148,20 @@ def rays_to(radius: float) -> int:
 
 
 @func
+def above_planes(planes: Field3, origin: vec3, light: LightSample) -> float:
+    """Return how much of a light is above planes.
+
+    Args:
+        planes: Signed distance of the planes' union.
+        origin: A point above the planes.
+        light: The light at the point.
+    """
+    # How far the middle of the disc is above the planes, in radii of the disc.
+    radius = max(light.radius, SHARPEST) * light.distance
+    return share_of_disc(planes(origin + light.distance * light.direction) / radius)
+
+
+@func
 def shadow_beside_planes(
     field: Field3,
     planes: Field3,
@@ -174,9 +188,7 @@ def shadow_beside_planes(
         sample: The number of the pixel's sample, from 0.
         samples: How many samples the pixel has.
     """
-    # How far the middle of the disc is above the planes, in radii of the disc.
-    radius = max(light.radius, SHARPEST) * light.distance
-    over = share_of_disc(planes(origin + light.distance * light.direction) / radius)
+    over = above_planes(planes, origin, light)
     if over <= 0.0:
         return Opening(0.0)
     found = soft_shadow(field, origin, light, bounds, numbers, steps, steep, sample, samples)

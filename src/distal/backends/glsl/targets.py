@@ -156,6 +156,7 @@ _SHADERTOY = GlslTarget(
     host_macros=SHADERTOY_MACROS,
     resource_names=shadertoy_channels,
     declares_textures=False,
+    buffers=False,
 )
 
 _WEBGL_1 = GlslTarget(
@@ -166,6 +167,7 @@ _WEBGL_1 = GlslTarget(
     dynamic_loops=False,
     dynamic_index=False,
     texel_fetch=False,
+    buffers=False,
     place="WebGL 1",
     use="The fragment stage; draw anything that covers the picture. Set every uniform.",
     version="100",

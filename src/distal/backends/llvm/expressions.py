@@ -156,6 +156,8 @@ class LaneExpressions:
                 kind = kind_of(type)
                 assert kind is not None
                 return tuple(arithmetic.cast(leaf, kind) for leaf in self.value(value))
+            case Builtin("anywhere", (condition,)):
+                return (self._anywhere(self.scalar(condition)),)
             case Builtin(name, args):
                 types = tuple(a.type for a in args)
                 return builtin(arithmetic, name, tuple(map(self.value, args)), types)
@@ -187,6 +189,13 @@ class LaneExpressions:
         return leaf
 
     # Operators
+
+    def _anywhere(self, condition: Leaf) -> Leaf:
+        """Return whether a condition holds in any active lane, as a scalar."""
+        if condition.uniform:
+            return condition
+        active = Leaf(Kind.BOOL, self.within(condition), False)
+        return Leaf(Kind.BOOL, (self.arithmetic.any_lane(active),), True)
 
     def _logical(self, e: Logical) -> Leaf:
         arithmetic = self.arithmetic

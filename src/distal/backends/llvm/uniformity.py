@@ -15,6 +15,7 @@ from typing import assert_never
 from distal.ir.nodes import (
     Assign,
     Break,
+    Builtin,
     Const,
     Continue,
     Expr,
@@ -66,6 +67,8 @@ class Uniformity:
                 case Read(name):
                     known = name in self.varying
                 case Const() | Uniform() | PerFrame() | Resource() | Size():
+                    known = False
+                case Builtin("anywhere"):
                     known = False
                 case _:
                     known = any(self.varies(c) for c in children(e))

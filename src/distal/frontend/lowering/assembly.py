@@ -40,6 +40,11 @@ class Assembly:
         self._compilation = compilation
         self.made: dict[Any, Any] = {}
 
+    @property
+    def has_buffers(self) -> bool:
+        """Whether objects may put their numbers into buffers: whether the target has them."""
+        return self._compilation.has_buffers
+
     def call(self, func: Func, arguments: Mapping[str, Expr]) -> Expr:
         """Return a call of a scene function, with arguments bound by parameter name.
 

@@ -52,9 +52,11 @@ class Compilation:
         instances: The lowered functions, by source and argument types.
         is_too_deep: Whether calls exceeded Python's recursion limit, which was reported.
         assembly: The interface for objects that add functions.
+        has_buffers: Whether objects may put their numbers into buffers.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, has_buffers: bool = True) -> None:
+        self.has_buffers = has_buffers
         self.expression: Callable[[FunctionBody, ast.expr], Value] = lower_expression
         self.functions: list[Function] = []
         self.diagnostics: list[Diagnostic] = []

@@ -31,18 +31,21 @@ R = TypeVar("R")
 SceneCode: TypeAlias = Func | Composed | LangFunction
 
 
-def lower(obj: SceneCode, arg_types: tuple[Type, ...] | None = None) -> Module:
+def lower(
+    obj: SceneCode, arg_types: tuple[Type, ...] | None = None, *, buffers: bool = True
+) -> Module:
     """Lower an image, or a function for the types of its arguments.
 
     Args:
         obj: A function decorated with ``@image`` or ``@func``, a shape, a scene, or a built-in.
         arg_types: The argument types; they select the overload and bind type variables. None if
             the annotations alone determine the types.
+        buffers: Whether objects may put their numbers into buffers: whether the target has them.
 
     Raises:
         CompileError: The function, or a function that it calls, has errors; contains all of them.
     """
-    return _lower(Compilation(), obj, arg_types)
+    return _lower(Compilation(has_buffers=buffers), obj, arg_types)
 
 
 def lower_captured(

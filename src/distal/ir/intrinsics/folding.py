@@ -96,6 +96,11 @@ def all_true(call: ConstantCall) -> Components:
     return (all(call.args[0]),)
 
 
+def unchanged(call: ConstantCall) -> Components:
+    """Return the only argument."""
+    return call.args[0]
+
+
 def never(call: ConstantCall) -> Components:
     """Return False for each component: no constant is NaN or infinite."""
     return tuple(False for _ in call.args[0])

@@ -23,6 +23,10 @@ class _OfTwoIntegers(Protocol):
     def __call__(self, a: Integers, b: Integers, /) -> Integers: ...
 
 
+class _OfACondition(Protocol):
+    def __call__(self, condition: bool, /) -> bool: ...
+
+
 class _FloatToInt(Protocol):
     def __call__(self, x: float, /) -> int: ...
 
@@ -31,6 +35,7 @@ class _FloatToUint(Protocol):
     def __call__(self, x: float, /) -> uint: ...
 
 
+anywhere: Final[_OfACondition] = LangFunction(INTRINSICS["anywhere"])
 raw_atan2: Final[_OfTwoFloats] = LangFunction(INTRINSICS["raw_atan2"])
 raw_power: Final[_OfTwoFloats] = LangFunction(INTRINSICS["raw_power"])
 saturated_int: Final[_FloatToInt] = LangFunction(INTRINSICS["saturated_int"])

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from distal.frontend import Assembly
-from distal.ir.build import compare, number, select
-from distal.ir.nodes import CompareOp, Expr, Param, Read, Return
+from distal.ir.nodes import Param, Read, Return
 from distal.ir.types import VEC2
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
@@ -21,9 +20,8 @@ from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
 from distal.render.march import OUT_OF_STEPS, PASSED
 from distal.scene.checks.validation import guarantee_names, place_json
-from distal.scene.lowering.attributes import AttributePoint, Part, SurfaceAttribute
+from distal.scene.lowering.attributes import ListedMaterial, Part
 from distal.scene.lowering.picture import SceneLowering
-from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.scene import Scene
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
@@ -164,7 +162,7 @@ class _Program(Composed):
         resolution = Read("resolution", VEC2)
         given = made.given(body, resolution)
         given |= {"coord": Read("coord", VEC2), "resolution": resolution}
-        part, paint = Part(made.composer), _Paint(made.composer, self._scene.material)
+        part, paint = Part(made.composer), ListedMaterial(made.composer, self._scene.material)
         given["part"] = made.known_of_place("part", part)
         given["paint"] = made.known_of_place("paint", paint)
         self.parts, self.paints = part.nodes, paint.materials
@@ -176,22 +174,6 @@ class _Program(Composed):
     def functions(self) -> Iterable[Func]:
         """Yield the scene functions that the scene calls."""
         return self._scene.functions()
-
-
-class _Paint(SurfaceAttribute):
-    """The number of the material at a place; of a blend, that with the larger share."""
-
-    def __init__(self, composer: ShapeComposer, default: Any) -> None:
-        super().__init__(composer, default)
-        self.materials: list[Any] = []
-
-    def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
-        """Return the number with the larger share."""
-        return select(compare(CompareOp.GT, share, number(0.5)), b, a)
-
-    def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
-        self.materials.append(material)
-        return number(float(len(self.materials) - 1))
 
 
 # Plain values

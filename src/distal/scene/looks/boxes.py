@@ -26,6 +26,7 @@ from distal.lang.runtime_access import executor
 from distal.packages import PackageError
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.union_parts import parts_of
+from distal.scene.parts.table import rolled
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
@@ -79,6 +80,7 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
     """
+    root = rolled(root).node
     parts = list(parts_of(root))
     known = list(zip(parts, _boxes(parts, params, time), strict=True))
     finite = [box for _, box in known if box is not None and _is_finite(*box)]
@@ -153,6 +155,10 @@ class _ConstantValues(Values):
     def own(self, node: Node) -> tuple[Expr, ...]:
         """Return the values of a node's own numbers."""
         return tuple(self.constant(number) for number in node.numbers.values())
+
+    def fixed(self, stem: str, type: Type, value: Any) -> Expr:
+        """Return a number that no author can change as a constant."""
+        return self.assembly.constant(value, type)
 
     def constant(self, number: Number) -> Expr:
         """Return a number as a constant."""

@@ -8,23 +8,34 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 from distal.fields.guarantees import Operator, Primitive
-from distal.ir.build import builtin, compare, field, number, select
-from distal.ir.nodes import CompareOp, Expr, Gradient
-from distal.ir.types import VEC3
+from distal.ir.build import add, builtin, cast, compare, field, index, multiply, number, select
+from distal.ir.nodes import Call, CompareOp, Expr, Gradient, Read
+from distal.ir.types import FLOAT, VEC3, Kind, Type
 from distal.lang.functions import Func
+from distal.lang.resources import Buffer
 from distal.render.footprint import moved_footprint, point_footprint, step_along
-from distal.render.material import mix_surfaces
+from distal.render.material import Surface, mix_surfaces
+from distal.scene.lowering.part_functions import POINT
 from distal.scene.lowering.shapes import ShapeComposer
+from distal.scene.parts.kinds import Kind as KindOfPart
+from distal.scene.parts.kinds import leaves_of, materials_in
+from distal.scene.parts.table import TableNode
 from distal.scene.tree.calls import FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
 
 class Attribute(ABC):
-    """An attribute of a place."""
+    """An attribute of a place.
+
+    Attributes:
+        name: The name of functions that return it.
+    """
+
+    name: ClassVar[str]
 
     def __init__(self, composer: ShapeComposer) -> None:
         self.composer = composer
@@ -56,6 +67,26 @@ class Attribute(ABC):
     def averages(self, node: Node) -> bool:
         """Return whether the attribute of the subtree depends on the footprint of the pixel."""
         return False
+
+    # Parts of a table. Most attributes depend on the numbers of the row alone.
+
+    @property
+    def result(self) -> Type:
+        """The type of the attribute."""
+        return FLOAT
+
+    def begin(self, kind: KindOfPart) -> None:
+        """Prepare for the attribute of a kind of parts."""
+
+    def in_row(self, kind: KindOfPart, found: Expr, ordinal: Expr) -> Expr:
+        """Return the attribute of one part of a kind.
+
+        Args:
+            kind: The kind.
+            found: The attribute as the kind's tree gives it.
+            ordinal: The number of the part among those of the kind, as a float.
+        """
+        return found
 
 
 class AttributePoint:
@@ -95,6 +126,9 @@ def _visit(
     """Return a subtree's attribute, and its distance if ``measured``."""
     composer = kind.composer
     whole = kind.leaf(body, node, site)
+    if isinstance(node, TableNode) and whole is None:
+        d = composer.table(node).distance(site.p) if measured else None
+        return d, _of_table(body, kind, node, site)
     if whole is not None:
         d = composer.distance(body, node, site.p, site.cell, site.values) if measured else None
         return d, whole
@@ -116,6 +150,26 @@ def _visit(
         assert d is not None
         d = body.let("d", composer.call(rule.finish, {**given, "d": d}))
     return d, result
+
+
+def _of_table(body: StatementList, kind: Attribute, node: TableNode, site: AttributePoint) -> Expr:
+    """Return the attribute of the part of a table that is nearest to a point."""
+    composer = kind.composer
+    functions = composer.table(node)
+    given: dict[str, Expr] = {"p": site.p, "part": functions.nearest(body, site.p)}
+    if site.footprint is not None:
+        given["footprint"] = site.footprint
+
+    def make(inner: StatementList, _: int, of: KindOfPart) -> Expr:
+        footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
+        here = AttributePoint(POINT, site.cell, composer.values.all(of.node), footprint)
+        kind.begin(of)
+        found = attribute(inner, kind, of.node, here)
+        return kind.in_row(of, found, functions.ordinal)
+
+    params = [(name, value.type) for name, value in given.items()]
+    made = functions.of_part(kind.name, params, kind.result, make)
+    return Call(made.name, tuple(given.values()), kind.result)
 
 
 def _around(
@@ -219,6 +273,8 @@ def paints(node: Node) -> bool:
 class SurfaceAttribute(Attribute):
     """The appearance of a place: a ``Surface``."""
 
+    name: ClassVar[str] = "part_surface"
+
     def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer)
         self._default = default
@@ -231,6 +287,11 @@ class SurfaceAttribute(Attribute):
         if material is None and (isinstance(node.rule, Primitive) or not self._paints(node)):
             material = self._default
         return None if material is None else self._shown(body, material, node, site)
+
+    @property
+    def result(self) -> Type:
+        """The type of the attribute."""
+        return self.composer.assembly.struct(Surface)
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Interpolate every number of both surfaces."""
@@ -270,30 +331,72 @@ class SurfaceAttribute(Attribute):
         return body.let("shown", surface)
 
 
-class MaterialNumber(SurfaceAttribute):
-    """The material of a place, as a number from 1 on, in the order of the author's tree."""
+class ListedMaterial(SurfaceAttribute):
+    """The material of a place, as its number in a list of all materials that are shown somewhere.
+
+    Attributes:
+        materials: The list. A material may be in it several times.
+    """
+
+    name: ClassVar[str] = "part_material"
 
     def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer, default)
         self.materials: list[Any] = []
+        self._first = 0
+
+    @property
+    def result(self) -> Type:
+        """The type of the attribute."""
+        return FLOAT
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Return the number with the larger share."""
         return _more_shown(a, b, share)
 
     def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
-        if not any(known is material for known in self.materials):
-            self.materials.append(material)
-        found = next(i for i, known in enumerate(self.materials, 1) if known is material)
-        return number(float(found))
+        self.materials.append(material)
+        return number(float(len(self.materials) - 1))
+
+    def begin(self, kind: KindOfPart) -> None:
+        """Prepare for the materials of a kind of parts."""
+        self._first = len(self.materials)
+
+    def in_row(self, kind: KindOfPart, found: Expr, ordinal: Expr) -> Expr:
+        """Return the number of the part's own material."""
+        shown = self.materials[self._first :]
+        del self.materials[self._first :]
+        places = {id(m): i for i, m in enumerate(materials_in(kind.node))}
+        for member in kind.members:
+            own = list(materials_in(member.part))
+            self.materials += [own[places[id(m)]] if id(m) in places else m for m in shown]
+        return add(found, multiply(ordinal, number(float(len(shown)))))
+
+
+class MaterialNumber(ListedMaterial):
+    """The material of a place, as a number from 1 on, in the order of the author's tree."""
+
+    def found(self, place: Expr) -> Expr:
+        """Return the number of a material, given its place in the list."""
+        known: dict[int, int] = {}
+        numbers = [float(known.setdefault(id(m), len(known) + 1)) for m in self.materials]
+        table = self.composer.assembly.resource(Buffer(numbers), "material_numbers")
+        return index(table, cast(place, Kind.INT))
 
 
 class Part(Attribute):
-    """The leaf of the tree that a place belongs to, as a number."""
+    """The leaf of the tree that a place belongs to, as a number.
+
+    Attributes:
+        nodes: The leaves, by number.
+    """
+
+    name: ClassVar[str] = "part_leaf"
 
     def __init__(self, composer: ShapeComposer) -> None:
         super().__init__(composer)
         self.nodes: list[Node] = []
+        self._first = 0
 
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the next number for a library shape."""
@@ -309,3 +412,17 @@ class Part(Attribute):
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the cutter's own part: it made the face."""
         return attribute(body, self, node, site)
+
+    def begin(self, kind: KindOfPart) -> None:
+        """Prepare for the leaves of a kind of parts."""
+        self._first = len(self.nodes)
+
+    def in_row(self, kind: KindOfPart, found: Expr, ordinal: Expr) -> Expr:
+        """Return the number of the part's own leaf."""
+        shown = self.nodes[self._first :]
+        del self.nodes[self._first :]
+        places = {id(leaf): i for i, leaf in enumerate(leaves_of(kind.node))}
+        for member in kind.members:
+            own = list(leaves_of(member.source))
+            self.nodes += [own[places[id(leaf)]] for leaf in shown]
+        return add(found, multiply(ordinal, number(float(len(shown)))))

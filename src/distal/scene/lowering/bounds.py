@@ -15,6 +15,7 @@ from distal.fields.boxes import everywhere, everywhere2, hull, hull2
 from distal.fields.guarantees import (
     BOUNDS_OF_CHILD,
     UNBOUNDED,
+    Bounds,
     Bounds2,
     Growth,
     Guarantee,
@@ -27,6 +28,7 @@ from distal.ir.build import number as constant_number
 from distal.ir.nodes import Const, Construct, Expr
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
+from distal.scene.parts.table import Table, TableNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
 
@@ -85,6 +87,8 @@ class BoundsComposer:
             node: The root of the subtree.
             values: The numbers of the subtree.
         """
+        if isinstance(node, TableNode):
+            return self._of_table(node.table)
         own, shares = self._values.split(node, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -93,6 +97,15 @@ class BoundsComposer:
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
         return self.of_operator(body, rule, inner, own)
+
+    def _of_table(self, table: Table) -> ShapeBounds:
+        corners = (
+            self._values.fixed("parts_low", VEC3, table.low),
+            self._values.fixed("parts_high", VEC3, table.high),
+        )
+        slope = constant_number(table.slope)
+        box = Construct(corners, self._values.assembly.struct(Bounds))
+        return ShapeBounds(slope, ONE, box, UNKNOWN, UNKNOWN)
 
     def of_operator(
         self,

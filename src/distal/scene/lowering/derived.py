@@ -11,6 +11,7 @@ from distal.ir.types import VEC2, VEC3, tuple_type
 from distal.lang.composed import Composed
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.parts.table import rolled_for
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 
@@ -26,7 +27,7 @@ class GradientOf(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""
-        node = self._node
+        node = rolled_for(assembly, self._node)
         composer = ShapeComposer(assembly, [node])
         field = composer.field(node, composer.values.all(node), ZERO_CELL)
         p = Read("p", self.result)
@@ -50,7 +51,7 @@ class BoundsOf(Composed):
 
         It returns (slope, divisor, low, high, growth, side_growth).
         """
-        body, node = StatementList(), self._node
+        body, node = StatementList(), rolled_for(assembly, self._node)
         values = Values(assembly)
         found = BoundsComposer(values).of(body, node, values.all(node))
         body.statements.append(Return(found.packed(body)))

@@ -12,7 +12,17 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from distal.fields.guarantees import UNBOUNDED
 from distal.frontend import Assembly
 from distal.ir.build import add, boolean, compare, field, integer, number
-from distal.ir.nodes import CompareOp, Construct, Expr, FunctionRef, If, Param, Read, Return
+from distal.ir.nodes import (
+    Call,
+    CompareOp,
+    Construct,
+    Expr,
+    FunctionRef,
+    If,
+    Param,
+    Read,
+    Return,
+)
 from distal.ir.types import BOOL, FLOAT, FRAME, INT, IVEC4, VEC2, VEC3, VEC4, FunctionType, Type
 from distal.lang.functions import Func
 from distal.render import (
@@ -42,6 +52,7 @@ from distal.scene.lowering.attributes import (
 )
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.parts.table import rolled_for
 from distal.scene.tree.calls import expression_of
 from distal.scene.tree.values import StatementList
 
@@ -73,7 +84,7 @@ class SceneLowering:
     def __init__(self, assembly: Assembly, scene: Scene) -> None:
         self._assembly = assembly
         self._scene = scene
-        self._node = scene.shape.node
+        self._node = scene.shape.node if self._hybrid else rolled_for(assembly, scene.shape.node)
         self.composer = ShapeComposer(assembly, [self._node])
         self._view_numbers: dict[str, Expr] = {}
         self._numbers = {
@@ -226,6 +237,7 @@ class SceneLowering:
         given["look"] = body.let("look", composer.call(settings.look, given))
         rays = RayFunctions(composer, node, self._function)
         given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
+        given["occlusion"] = rays.occlusion(body, given, hybrid=self._hybrid)
         given["shadow"] = rays.shadow(body, given, casts=scene.shadows, hybrid=self._hybrid)
         if scene.renderer == "refracted":
             on_surface = {**given, "near": number(0.0)}
@@ -300,7 +312,7 @@ class SceneLowering:
                 asked |= self._shown_numbers(view, body, asked)
             if shown is layers.layer_material:
                 kind = MaterialNumber(self.composer, self._scene.material)
-                asked["identity"] = self.known_of_place("material_number", kind)
+                asked["identity"] = self._material_number(kind)
             return self.composer.call(shown, asked)
 
         ray, cone = self._assembly.struct(Ray), self._assembly.struct(Cone)
@@ -383,6 +395,15 @@ class SceneLowering:
         if averaged:
             params = (*params, ("footprint", self._assembly.struct(Footprint)))
         return self._function(name, params, make)
+
+    def _material_number(self, kind: MaterialNumber) -> FunctionRef:
+        """Return the function ``(p) -> float``: the number of the material at a place."""
+        listed = self.known_of_place("material_place", kind)
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            return kind.found(Call(listed.name, (given["p"],), FLOAT))
+
+        return self._function("material_number", (("p", VEC3),), make)
 
     def _samples(self) -> list[Any]:
         return [light.sample for light in self._scene.lights if light.sample is not None]

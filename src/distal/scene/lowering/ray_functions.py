@@ -1,9 +1,10 @@
 """The functions that follow rays through one scene: to the first surface, and to a light.
 
 Input: the scene's tree and the values of its march. Output: a function ``(ray) -> Hit``, which all
-renderers, views and layers call, and a function of a point and a light that returns the visible
-share of the light. Planes that the scene is united with are met in closed form; the other shapes
-are marched.
+renderers, views and layers call, a function of a point and a light that returns the visible share
+of the light, and one of a point and a normal that returns the share of ambient light. Planes that
+the scene is united with are met in closed form; the parts of a table are each marched in its box;
+the other shapes are marched together.
 """
 
 from __future__ import annotations
@@ -14,17 +15,18 @@ from typing import Final, TypeAlias
 
 from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
-from distal.ir.build import builtin, cast, integer, multiply
+from distal.ir.build import boolean, builtin, cast, integer, multiply
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Const, Expr, FunctionRef
-from distal.ir.types import INT, VEC3, Kind, Type
+from distal.ir.types import FLOAT, INT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
-from distal.render import settings, shadows, trace
+from distal.render import part_shading, part_tree, settings, shade, shadows, trace
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.union_parts import parts_of
+from distal.scene.parts.table import TableNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -37,10 +39,22 @@ SHADOW_STEPS: Final = 2
 LEAST_SHADOW_STEPS: Final = 64
 
 # What the marches take besides the ray and the fields.
-_TAKEN: Final = ("bounds", "numbers", "steps", "hybrid", "stride", "farthest_plane", "steep")
+_TAKEN: Final = (
+    "bounds",
+    "others_bounds",
+    "has_others",
+    "numbers",
+    "steps",
+    "hybrid",
+    "stride",
+    "farthest_plane",
+    "steep",
+    "look",
+)
 
 # Adds a function to the program: its name, its parameters, its body, captured values.
 Make: TypeAlias = "Callable[[StatementList, Mapping[str, Expr]], Expr]"
+Params: TypeAlias = "Sequence[tuple[str, Type]]"
 Define: TypeAlias = "Callable[[str, list[tuple[str, Type]], Make, list[Expr]], FunctionRef]"
 
 
@@ -95,7 +109,10 @@ class RayFunctions:
         self._composer = composer
         self._root = root
         self._define = define
-        self._planes, self._others = split_planes(root)
+        self._planes, others = split_planes(root)
+        self._others = [node for node in others if not isinstance(node, TableNode)]
+        tables = [node for node in others if isinstance(node, TableNode)]
+        self._table = composer.table(tables[0]) if tables else None
 
     def first_hit(
         self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool
@@ -108,9 +125,22 @@ class RayFunctions:
             hybrid: Whether the march for terrain and water is used.
         """
         params = [("ray", self._composer.assembly.struct(Ray))]
+        if self._table is None:
+            return self._first_of_others(body, params, given, hybrid=hybrid)
+        others = self._bound(part_tree.nothing_else, params, given, {})
+        if self._planes or self._others:
+            others = self._first_of_others(body, params, given, hybrid=hybrid)
+        functions = {"others": others, "field": self._safe_field(self._root)}
+        return self._bound(part_tree.first_of_parts, params, given, functions)
+
+    def _first_of_others(
+        self, body: StatementList, params: Params, given: Mapping[str, Expr], *, hybrid: bool
+    ) -> FunctionRef:
+        """Return the function ``(ray) -> Hit`` of all shapes but those of the table."""
         if hybrid or not self._planes:
-            field = self._field(self._root) if hybrid else self._safe_field(self._root)
-            return self._bound(trace.first_surface, params, given, {"field": field})
+            field = self._field(self._root) if hybrid else self._others_field()
+            values = given if self._table is None else {**given, **self._without_planes(body)}
+            return self._bound(trace.first_surface, params, values, {"field": field})
         values = {**given, **self._without_planes(body)}
         functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
         return self._bound(trace.first_surface_or_plane, params, values, functions)
@@ -131,18 +161,63 @@ class RayFunctions:
         if not casts:
             return self._bound(shadows.no_shadow, params, {}, {})
         values = {**given, "steps": body.let("shadow_steps", shadow_step_limit(given["steps"]))}
+        if self._table is not None:
+            return self._shadow_of_parts(body, params, values)
         if hybrid or not self._planes:
             field = self._field(self._root) if hybrid else self._safe_field(self._root)
             return self._bound(shadows.soft_shadow, params, values, {"field": field})
         values |= self._without_planes(body)
         return self._bound(shadows.shadow_beside_planes, params, values, self._fields())
 
+    def _shadow_of_parts(
+        self, body: StatementList, params: Params, given: Mapping[str, Expr]
+    ) -> FunctionRef:
+        assert self._table is not None
+        values = {**given, **self._beside_table(body)}
+        functions = {"others": self._others_field()}
+        if not self._planes:
+            return self._bound(part_shading.shadow_of_parts, params, values, functions)
+        functions["planes"] = self._planes_field()
+        return self._bound(part_shading.shadow_of_parts_and_planes, params, values, functions)
+
+    def occlusion(
+        self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool
+    ) -> FunctionRef:
+        """Return the function ``(p, n, slope) -> float``.
+
+        Args:
+            body: The statements of the function that calls it.
+            given: The values of the march, by name.
+            hybrid: Whether the march for terrain and water is used.
+        """
+        params = [("p", VEC3), ("n", VEC3), ("slope", FLOAT)]
+        if self._table is None:
+            field = self._field(self._root) if hybrid else self._safe_field(self._root)
+            return self._bound(shade.occlusion_in, params, given, {"field": field})
+        values = {**given, **self._beside_table(body)}
+        beside = [*self._planes, *self._others]
+        others = self._safe_field(united(self._root, beside)) if beside else self._nothing()
+        values["has_others"] = boolean(bool(beside))
+        functions = {"others": others}
+        return self._bound(part_shading.occlusion_of_parts, params, values, functions)
+
+    def _beside_table(self, body: StatementList) -> dict[str, Expr]:
+        """Return whether shapes are beside the table and the planes, and their box."""
+        bounds = self._without_planes(body)["bounds"]
+        return {"has_others": boolean(bool(self._others)), "others_bounds": bounds}
+
+    def _others_field(self) -> FunctionRef:
+        """Return the distance to the shapes besides the planes and the table."""
+        if not self._others:
+            return self._nothing()
+        return self._safe_field(united(self._root, self._others))
+
+    def _planes_field(self) -> FunctionRef:
+        return self._field(united(self._root, self._planes))
+
     def _fields(self) -> dict[str, FunctionRef]:
         """Return the distance to the planes, and that to the other shapes."""
-        others = self._nothing()
-        if self._others:
-            others = self._safe_field(united(self._root, self._others))
-        return {"field": others, "planes": self._field(united(self._root, self._planes))}
+        return {"field": self._others_field(), "planes": self._planes_field()}
 
     def _field(self, node: Node) -> FunctionRef:
         return self._composer.field(node, self._composer.values.all(node), ZERO_CELL)
@@ -186,7 +261,7 @@ class RayFunctions:
     def _bound(
         self,
         function: Func,
-        params: Sequence[tuple[str, Type]],
+        params: Params,
         values: Mapping[str, Expr],
         functions: Mapping[str, FunctionRef],
     ) -> FunctionRef:
@@ -200,6 +275,8 @@ class RayFunctions:
         """
         constants = {n: values[n] for n in _TAKEN if n in values and isinstance(values[n], Const)}
         captured = {n: values[n] for n in _TAKEN if n in values and n not in constants}
+        if self._table is not None:
+            constants |= self._table.given
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             return self._composer.call(function, {**constants, **functions, **given})

@@ -26,7 +26,9 @@ from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
+from distal.scene.lowering.part_functions import PartFunctions
 from distal.scene.lowering.safe_parts import SafeParts
+from distal.scene.parts.table import TableNode
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
@@ -52,6 +54,7 @@ class ShapeComposer:
         self._count: dict[int, int] = {}
         self._kinds: dict[int, set[int]] = {}
         self._count_kinds(root_nodes)
+        self._tables: dict[int, PartFunctions] = {}
 
     # Equality of subtrees
 
@@ -61,7 +64,9 @@ class ShapeComposer:
         if found is None:
             constants = tuple((n, _identity(v)) for n, v in node.constants.items())
             numbers = tuple((n, number.type) for n, number in node.numbers.items())
-            whole = (id(node.rule), constants, numbers, *(self.key(c) for c in node.children))
+            table = id(node) if node.has_rows else None
+            inner = (self.key(c) for c in node.children)
+            whole = (id(node.rule), table, constants, numbers, *inner)
             found = self._known_keys.setdefault(whole, len(self._known_keys))
             self._keys[id(node)] = found
         return found
@@ -84,6 +89,13 @@ class ShapeComposer:
             names = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
             found = "cell" in names or any(map(self.uses_cell, node.children))
             self._uses_cell[id(node)] = found
+        return found
+
+    def table(self, node: TableNode) -> PartFunctions:
+        """Return the functions of a table's parts."""
+        found = self._tables.get(id(node))
+        if found is None:
+            found = self._tables[id(node)] = PartFunctions(self, node.table)
         return found
 
     # Distances
@@ -140,7 +152,8 @@ class ShapeComposer:
         If no other subtree is of the same kind, the function reads its numbers itself.
         """
         key = self.key(node)
-        closed = len(self._kinds.get(key, ())) <= 1 and tuple(values) == self.values.all(node)
+        alone = len(self._kinds.get(key, ())) <= 1 and not self.values.has_columns(node)
+        closed = alone and tuple(values) == self.values.all(node)
         passed = () if closed else tuple(values)
         if safe and not closed and not factors:
             closed = True  # the root of a safe field computes its factors itself
@@ -223,6 +236,8 @@ class ShapeComposer:
     ) -> Expr:
         if factors and not self.parts.splits(node):
             return self._scaled(body, node, p, cell, values, factors)
+        if isinstance(node, TableNode):
+            return body.let("d", self.table(node).distance(p))
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):

@@ -24,6 +24,7 @@ from distal.lang.runtime_access import executor
 from distal.scene.lowering.derived import BoundsOf, GradientOf
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_gradient, check_slope
+from distal.scene.parts.table import rolled_for
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
@@ -35,7 +36,7 @@ from distal.scene.tree.source_places import author_place
 from distal.scene.tree.values import plain_name
 
 # The most primitives in a tree: with more, compilation takes minutes.
-MOST_PARTS: Final = 2048
+MOST_PARTS: Final = 1_000_000
 
 
 class BaseShape(Composed, Presentable):
@@ -81,8 +82,9 @@ class BaseShape(Composed, Presentable):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the distance function to the program, and return its name."""
-        composer = ShapeComposer(assembly, [self.node])
-        found = composer.field(self.node, composer.values.all(self.node), ZERO_CELL)
+        node = rolled_for(assembly, self.node)
+        composer = ShapeComposer(assembly, [node])
+        found = composer.field(node, composer.values.all(node), ZERO_CELL)
         if not found.captures:
             return found.name
         value = Call(found.name, (Read("p", self.point_type), *found.captures), FLOAT)

@@ -27,6 +27,8 @@ from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import Number
 
 FOOTPRINT: Final = "footprint"
+# With the id of a number: the key in ``Assembly.made`` of the expression that reads its column.
+COLUMN: Final = "column"
 
 
 class Composer(Protocol):
@@ -123,8 +125,8 @@ def result_of(func: Func) -> Type | None:
 def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, stem: str) -> Expr:
     """Return a value as an expression of a program.
 
-    A constant number becomes a uniform, an expression of the author stays one, and a texture or
-    buffer becomes a resource.
+    A constant number becomes a uniform, a column of a table (``scene.parts``) a read of the row, an
+    expression of the author stays one, and a texture or buffer becomes a resource.
 
     Args:
         assembly: The program.
@@ -133,6 +135,9 @@ def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, ste
     """
     if not isinstance(value, Number):
         return assembly.resource(value, stem)
+    column: Expr | None = assembly.made.get((COLUMN, id(value)))
+    if column is not None:
+        return column
     if isinstance(value.value, Expression):
         return assembly.expression(value.value)
     return assembly.number(stem, value.type, value.value)

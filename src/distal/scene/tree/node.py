@@ -53,6 +53,11 @@ class Node:
             object.__setattr__(self, "parts", sum(child.parts for child in self.children))
 
     @property
+    def has_rows(self) -> bool:
+        """Whether the numbers of its children are rows of a table (``scene.parts``)."""
+        return False
+
+    @property
     def name(self) -> str:
         """The author's name for the shape, else that of the primitive or operator."""
         return self.label or self.rule.name

@@ -13,9 +13,9 @@ from typing import Any
 from distal.fields.guarantees import Operator
 from distal.frontend import Assembly
 from distal.ir.nodes import Const, Expr, Let, Read, Stmt
-from distal.ir.types import BOOL, INT
+from distal.ir.types import BOOL, INT, Type
 from distal.lang.resources import Buffer, TextureValue
-from distal.scene.tree.calls import expression_of
+from distal.scene.tree.calls import COLUMN, expression_of
 from distal.scene.tree.node import Node, Rule
 
 
@@ -45,6 +45,7 @@ class Values:
         self.assembly = assembly
         self._own: dict[int, tuple[Expr, ...]] = {}
         self._all: dict[int, tuple[Expr, ...]] = {}
+        self._count: dict[int, int] = {}
         self._alive: list[Node] = []  # keys are ids, so the nodes must stay alive
 
     def own(self, node: Node) -> tuple[Expr, ...]:
@@ -60,15 +61,47 @@ class Values:
             self._alive.append(node)
         return found
 
+    def fixed(self, stem: str, type: Type, value: Any) -> Expr:
+        """Return a number that no author can change, once for each stem and value.
+
+        Args:
+            stem: The start of its name.
+            type: Its type.
+            value: Its value.
+        """
+        made, key = self.assembly.made, (Values, stem, value)
+        if key not in made:
+            made[key] = self.assembly.number(stem, type, value)
+        found: Expr = made[key]
+        return found
+
     def all(self, node: Node) -> tuple[Expr, ...]:
         """Return the values of all numbers of a subtree: the node's own, then its children's."""
         found = self._all.get(id(node))
         if found is None:
             parts = list(self.own(node))
-            for child in node.children:
+            for child in () if node.has_rows else node.children:
                 parts.extend(self.all(child))
             found = self._all[id(node)] = tuple(parts)
         return found
+
+    def count(self, node: Node) -> int:
+        """Return how many numbers a subtree has."""
+        found = self._count.get(id(node))
+        if found is None:
+            inner = () if node.has_rows else node.children
+            found = len(node.numbers) + sum(map(self.count, inner))
+            self._count[id(node)] = found
+            self._alive.append(node)
+        return found
+
+    def has_columns(self, node: Node) -> bool:
+        """Return whether numbers of a subtree are columns of a row that its caller knows."""
+        if node.has_rows:
+            return False
+        made = self.assembly.made
+        own = any((COLUMN, id(number)) in made for number in node.numbers.values())
+        return own or any(map(self.has_columns, node.children))
 
     def split(
         self, node: Node, values: Sequence[Expr]
@@ -77,7 +110,7 @@ class Values:
         own = dict(zip(node.numbers, values, strict=False))
         shares, at = [], len(own)
         for child in node.children:
-            count = len(self.all(child))
+            count = self.count(child)
             shares.append(values[at : at + count])
             at += count
         return self.complete(node.rule, own, node.constants, node.name), shares

@@ -1,0 +1,476 @@
+"""Many parts in one field: a tree of boxes around them, and what is found through it.
+
+Input: the tree, and the distance to each part. Output: distances, hits, lists of the parts near a
+ray or a point. A part is the number of its row in a table (``scene.parts``).
+
+The tree is a buffer with two vec4 for each box, parents first: (low corner, number of the box that
+follows if this one is skipped), (high corner, part), where the part is -1 for a box around others.
+So a walk needs no stack. ``anywhere`` makes it one walk for all pixels that the CPU computes
+together: numbers of boxes and rows are scalars then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.boxes import everywhere
+from distal.fields.guarantees import UNBOUNDED, Bounds
+from distal.lang import (
+    Buffer,
+    abs,
+    array,
+    dot,
+    func,
+    length,
+    max,
+    min,
+    select,
+    size,
+    struct,
+    vec2,
+    vec3,
+    vec4,
+)
+from distal.lang.prelude.hidden import anywhere
+from distal.render.camera import Ray
+from distal.render.march import MOST_STEPS, OUT_OF_STEPS, PASSED, Hit, March, march, march_between
+
+# The distance of the closest part before there is any.
+OPEN = 1e9
+# A ray goes on by at least this part of its length.
+NEARLY = 0.0003
+# The most parts that a list has; where more are near, the whole tree is searched.
+MOST_LISTED = 16
+
+
+@struct
+class Nearest:
+    """The part nearest to a point.
+
+    Attributes:
+        distance: Its distance.
+        part: The part; -1 if none is near enough.
+    """
+
+    distance: float
+    part: int
+
+
+@struct
+class PartList:
+    """The parts near a ray or a point.
+
+    Attributes:
+        count: How many there are; if more than ``MOST_LISTED``, not all are listed.
+        boxes: The numbers of their boxes in the tree.
+        bounds: The box around them.
+        hidden: Whether one part alone hides all of a cone.
+    """
+
+    count: int
+    boxes: array[int, 16]
+    bounds: Bounds
+    hidden: bool = False
+
+
+@func
+def beyond_box(p: vec3, low: vec4, high: vec4) -> float:
+    """Return the square of the distance of a point from a box; 0 inside."""
+    beyond = max(max(low.xyz - p, p - high.xyz), 0.0)
+    return dot(beyond, beyond)
+
+
+@func
+def squared(distance: float) -> float:
+    """Return the square of the distance that a search is limited to; 0 for a negative one."""
+    limit = max(distance, 0.0)
+    return limit * limit
+
+
+@func
+def inverse_of(direction: vec3) -> vec3:
+    """Return 1 / direction, with a large number in place of infinity."""
+    tiny = 1e-9
+    return 1.0 / select(abs(direction) < tiny, direction * 0.0 + tiny, direction)
+
+
+@func
+def span_in_box(origin: vec3, inverse: vec3, low: vec3, high: vec3) -> vec2:
+    """Return where a ray enters and leaves a box; x > y if it misses it.
+
+    Args:
+        origin: Where the ray starts.
+        inverse: 1 / direction.
+        low: The low corner.
+        high: The high corner.
+    """
+    near = (low - origin) * inverse
+    far = (high - origin) * inverse
+    first = min(near, far)
+    last = max(near, far)
+    return vec2(
+        max(first.x, max(first.y, first.z)),
+        min(last.x, min(last.y, last.z)),
+    )
+
+
+@func
+def box_count(boxes: Buffer[vec4]) -> int:
+    """Return the number of boxes of a tree."""
+    return size(boxes) // 2
+
+
+@func
+def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
+    """Return a part whose box is near a point: at each box, the child whose box is nearer."""
+    box = 0
+    part = int(boxes[1].w)
+    for _ in range(box_count(boxes)):
+        if part >= 0:
+            break
+        first = box + 1
+        second = int(boxes[2 * first].w)
+        to_first = beyond_box(p, boxes[2 * first], boxes[2 * first + 1])
+        to_second = beyond_box(p, boxes[2 * second], boxes[2 * second + 1])
+        box = second
+        if anywhere(to_first < to_second):
+            box = first
+        part = int(boxes[2 * box + 1].w)
+    return part
+
+
+@func
+def nearest_part(
+    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3, known: Nearest
+) -> Nearest:
+    """Return the part nearest to a point.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+        known: A part that is near; its distance limits the search.
+    """
+    best = known.distance
+    part = known.part
+    box = 0
+    for _ in range(box_count(boxes)):
+        if box >= box_count(boxes):
+            break
+        low = boxes[2 * box]
+        high = boxes[2 * box + 1]
+        following = int(low.w)
+        if anywhere(beyond_box(p, low, high) <= squared(best)):
+            of = int(high.w)
+            if of < 0:
+                following = box + 1
+            else:
+                d = distance(p, of)
+                part = select(d < best, of, part)
+                best = min(d, best)
+        box = following
+    return Nearest(best, part)
+
+
+@func
+def nearest_of_all(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> Nearest:
+    """Return the part nearest to a point, at any distance.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+    """
+    first = near_leaf(boxes, p)
+    return nearest_part(boxes, distance, p, Nearest(distance(p, first), first))
+
+
+@func
+def part_at(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> int:
+    """Return the number of the part nearest to a point.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+    """
+    return nearest_of_all(boxes, distance, p).part
+
+
+@func
+def distance_to_parts(
+    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3
+) -> float:
+    """Return the signed distance of a point to the nearest part.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+    """
+    return distance(p, part_at(boxes, distance, p))
+
+
+@func
+def contains(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> bool:
+    """Return whether a point is inside of a part.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+    """
+    return nearest_part(boxes, distance, p, Nearest(0.0, -1)).part >= 0
+
+
+@func
+def trace_parts(
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    ray: Ray,
+    numbers: March,
+    steps: int,
+) -> Hit:
+    """March to the first part along a ray that starts outside of all parts.
+
+    Each part is marched alone, inside of its box, and only up to the nearest hit so far.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        ray: Ray.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps in one part.
+    """
+    inverse = inverse_of(ray.direction)
+    found = False
+    t = numbers.far
+    taken = 0
+    lost = PASSED
+    box = 0
+    for _ in range(box_count(boxes)):
+        if box >= box_count(boxes):
+            break
+        low = boxes[2 * box]
+        high = boxes[2 * box + 1]
+        following = int(low.w)
+        span = span_in_box(ray.origin, inverse, low.xyz, high.xyz)
+        meets = span.x <= span.y and span.x < t and span.y >= numbers.near
+        if anywhere(meets):
+            of = int(high.w)
+            if of < 0:
+                following = box + 1
+            elif meets:
+                part = of
+
+                def to_part(p: vec3) -> float:
+                    return distance(p, part)
+
+                limited = March(
+                    numbers.divisor, numbers.near, t, numbers.threshold, numbers.steepest
+                )
+                hit = march_between(to_part, ray, span, limited, steps)
+                taken += hit.steps
+                lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
+                if hit.found and hit.t < t:
+                    found = True
+                    t = hit.t
+        box = following
+    return Hit(t, found, taken, 1.0, select(found, PASSED, lost))
+
+
+@func
+def share_beside(
+    distance: Callable[[vec3, int], float],
+    part: int,
+    ray: Ray,
+    width: float,
+    span: vec2,
+    steps: int,
+) -> float:
+    """Return how close a part comes to a ray, in radii of a cone around it.
+
+    If it is 2 or more, no point of the part is in the cone: the value is at least half as large
+    between two points of the march as at the first. If it is -1 or less, the part hides the whole
+    cone.
+
+    Args:
+        distance: The signed distance of a point to a part.
+        part: The part.
+        ray: The axis of the cone.
+        width: Radius of the cone at distance 1.
+        span: Where the box around the part begins and ends, along the ray.
+        steps: Maximum number of steps.
+    """
+    t = span.x
+    share = OPEN
+    for _ in range(min(steps, MOST_STEPS)):
+        if t > span.y or share <= -1.0:
+            break
+        d = distance(ray.origin + t * ray.direction, part)
+        share = min(share, d / (width * max(t, 1e-6)))
+        t += max(abs(d), max(width, NEARLY) * t)
+    return share
+
+
+@func
+def parts_along(
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    ray: Ray,
+    width: float,
+    start: float,
+    end: float,
+    steps: int,
+) -> PartList:
+    """Return the parts that may hide a part of a cone.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        ray: The axis of the cone.
+        width: Radius of the cone at distance 1.
+        start: Distance along the ray where it begins.
+        end: Distance along the ray where it ends.
+        steps: Maximum number of steps in one part.
+    """
+    inverse = inverse_of(ray.direction)
+    listed = [0] * MOST_LISTED
+    count = 0
+    hidden = False
+    around_low = vec3(UNBOUNDED)
+    around_high = vec3(-UNBOUNDED)
+    box = 0
+    for _ in range(box_count(boxes)):
+        if box >= box_count(boxes):
+            break
+        low = boxes[2 * box]
+        high = boxes[2 * box + 1]
+        following = int(low.w)
+        farthest = max(abs(low.xyz - ray.origin), abs(high.xyz - ray.origin))
+        margin = 2.0 * width * min(length(farthest), end)
+        span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
+        span = vec2(max(span.x, start), min(span.y, end))
+        meets = span.x <= span.y and not hidden
+        if anywhere(meets):
+            part = int(high.w)
+            if part < 0:
+                following = box + 1
+            else:
+                share = OPEN
+                if meets:
+                    share = share_beside(distance, part, ray, width, span, steps)
+                    hidden = share <= -1.0
+                beside = share < 2.0 and not hidden
+                if anywhere(beside):
+                    around_low = select(beside, min(around_low, low.xyz), around_low)
+                    around_high = select(beside, max(around_high, high.xyz), around_high)
+                    if count < MOST_LISTED:
+                        listed[count] = box
+                    count += 1
+        box = following
+    return PartList(count, listed, Bounds(around_low, around_high), hidden)
+
+
+@func
+def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
+    """Return the parts whose boxes are near a point.
+
+    Args:
+        boxes: The tree.
+        p: The point.
+        reach: The largest distance.
+    """
+    listed = [0] * MOST_LISTED
+    count = 0
+    around_low = vec3(UNBOUNDED)
+    around_high = vec3(-UNBOUNDED)
+    box = 0
+    for _ in range(box_count(boxes)):
+        if box >= box_count(boxes):
+            break
+        low = boxes[2 * box]
+        high = boxes[2 * box + 1]
+        following = int(low.w)
+        if anywhere(beyond_box(p, low, high) <= squared(reach)):
+            if int(high.w) < 0:
+                following = box + 1
+            else:
+                around_low = min(around_low, low.xyz)
+                around_high = max(around_high, high.xyz)
+                if count < MOST_LISTED:
+                    listed[count] = box
+                count += 1
+        box = following
+    return PartList(count, listed, Bounds(around_low, around_high))
+
+
+@func
+def distance_to_listed(
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    near: PartList,
+    p: vec3,
+    most: float,
+) -> float:
+    """Return the signed distance of a point to the nearest part of a list, at most ``most``.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        near: The list; if it is not complete, all parts count.
+        p: The point.
+        most: The largest distance that is of interest.
+    """
+    best = most
+    if near.count > MOST_LISTED:
+        return min(best, distance_to_parts(boxes, distance, p))
+    for i in range(near.count):
+        box = near.boxes[i]
+        high = boxes[2 * box + 1]
+        if anywhere(beyond_box(p, boxes[2 * box], high) <= squared(best)):
+            best = min(best, distance(p, int(high.w)))
+    return best
+
+
+@func
+def first_of_parts(
+    others: Callable[[Ray], Hit],
+    field: Callable[[vec3], float],
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    ray: Ray,
+    numbers: March,
+    steps: int,
+) -> Hit:
+    """March to the first surface of the parts and of what is beside them.
+
+    A ray that starts inside a solid is marched through the field of all, because a way out of one
+    part may lead into another.
+
+    Args:
+        others: The first surface of what is beside the parts.
+        field: Signed distance of all.
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        ray: Ray.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps in one part.
+    """
+    other = others(ray)
+    if other.side < 0.0 or contains(boxes, distance, ray.origin):
+        return march(field, ray, everywhere(), numbers, steps)
+    far = select(other.found, other.t, numbers.far)
+    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
+    hit = trace_parts(boxes, distance, ray, limited, steps)
+    taken = other.steps + hit.steps
+    lost = select(hit.found, PASSED, max(hit.lost, other.lost))
+    if hit.found or not other.found:
+        return Hit(hit.t, hit.found, taken, 1.0, lost)
+    return Hit(other.t, True, taken, 1.0, PASSED)
+
+
+@func
+def nothing_else(ray: Ray, numbers: March) -> Hit:
+    """Return that a ray meets nothing beside the parts."""
+    return Hit(numbers.far, False, 0, 1.0)

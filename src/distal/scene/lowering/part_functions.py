@@ -1,0 +1,114 @@
+"""Functions of the parts of a table: distances, hits, shadows, materials.
+
+Input: a table. Output: functions of the IR. A function of a part takes the number of the part's row
+and calls the function of its kind; the walks through the tree of boxes are scene code
+(``render.part_tree``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from distal.ir.build import add, cast, compare, index, integer, swizzle
+from distal.ir.build import number as constant_number
+from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Param, Read, Return
+from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Kind, Type, Vector
+from distal.render import part_tree
+from distal.scene.parts.kinds import Kind as KindOfPart
+from distal.scene.parts.kinds import numbers_in
+from distal.scene.parts.table import Table
+from distal.scene.tree.calls import COLUMN
+from distal.scene.tree.conversion import Number
+from distal.scene.tree.values import StatementList
+
+if TYPE_CHECKING:
+    from distal.scene.lowering.shapes import ShapeComposer
+
+# The parameter of functions of a part: the number of the first vec4 of its row.
+ZERO_CELL: Final = constant_number(0.0, VEC3)  # parts are outside of any repetition
+PART: Final = Read("part", INT)
+POINT: Final = Read("p", VEC3)
+
+# Adds the statements of one kind, and returns its value.
+OfKind: TypeAlias = "Callable[[StatementList, int, KindOfPart], Expr]"
+
+
+class PartFunctions:
+    """Makes the functions of the parts of one table."""
+
+    def __init__(self, composer: ShapeComposer, table: Table) -> None:
+        self._composer = composer
+        self._table = table
+        assembly = composer.assembly
+        self._rows = assembly.resource(table.rows, "part_rows")
+        self.given: dict[str, Expr] = {"boxes": assembly.resource(table.boxes, "part_boxes")}
+        for kind in table.kinds:
+            numbers = {id(n): n for n in _columns(kind)}
+            for number, column in kind.columns.items():
+                assembly.made[COLUMN, number] = self._read(numbers[number], column)
+        params = (("p", VEC3), ("part", INT))
+        self.given["distance"] = self.of_part("part_distance", params, FLOAT, self._distance)
+
+    def _read(self, number: Number, column: int) -> Expr:
+        """Return the numbers of a column, in the row of ``PART``."""
+        size = number.type.size if isinstance(number.type, Vector) else 1
+        row = add(PART, integer(column // 4)) if column >= 4 else PART
+        return swizzle(index(self._rows, row), "xyzw"[column % 4 : column % 4 + size])
+
+    def _head(self, lane: str) -> Expr:
+        return swizzle(index(self._rows, PART), lane)
+
+    @property
+    def ordinal(self) -> Expr:
+        """The number of ``PART`` among the parts of its kind, as a float."""
+        return self._head("y")
+
+    def _distance(self, body: StatementList, number: int, kind: KindOfPart) -> Expr:
+        composer = self._composer
+        return composer.distance(body, kind.node, POINT, ZERO_CELL, composer.values.all(kind.node))
+
+    def distance(self, p: Expr) -> Expr:
+        """Return the distance of a point to the nearest part."""
+        return self._composer.call(part_tree.distance_to_parts, {**self.given, "p": p})
+
+    def nearest(self, body: StatementList, p: Expr) -> Expr:
+        """Return the part nearest to a point."""
+        return body.let("part", self._composer.call(part_tree.part_at, {**self.given, "p": p}))
+
+    def of_part(
+        self, name: str, params: Sequence[tuple[str, Type]], result: Type, make: OfKind
+    ) -> FunctionRef:
+        """Return a function of a part, which calls that of the part's kind.
+
+        Args:
+            name: The preferred name.
+            params: Name and type of each parameter; one is ``PART``.
+            result: The type of the result.
+            make: Adds the statements of one kind.
+        """
+        assembly = self._composer.assembly
+        declared = tuple(Param(n, t) for n, t in params)
+        arguments = tuple(Read(n, t) for n, t in params)
+        body = StatementList(taken={n for n, _ in params})
+        kinds = self._table.kinds
+        known = cast(self._head("x"), Kind.INT)
+        known = known if len(kinds) == 1 else body.let("kind", known)
+        for k, kind in enumerate(kinds):
+            inner = StatementList(taken={n for n, _ in params})
+            inner.statements.append(Return(make(inner, k, kind)))
+            stem = f"{name}_{k}"
+            own = assembly.define(stem, declared, result, inner.statements, kind.node.place)
+            call = Return(Call(own, arguments, result))
+            if k == len(kinds) - 1:
+                body.statements.append(call)
+            else:
+                is_kind = compare(CompareOp.EQ, known, integer(k))
+                body.statements.append(If(is_kind, (call,), ()))
+        defined = assembly.define(name, declared, result, body.statements)
+        return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result))
+
+
+def _columns(kind: KindOfPart) -> list[Number]:
+    """Return the numbers of a kind's tree that are columns."""
+    return [n for n in numbers_in(kind.node) if id(n) in kind.columns]

@@ -1,0 +1,93 @@
+"""The parts of a union: its members, with what is above them moved into them.
+
+Input: a tree. Output: trees whose union is the same shape with the same materials, in the author's
+order. Moves, rotations and uniform scales of a union become those of each member, and a union's
+material that of each member.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final
+
+from distal.fields.combine.joins import UNION
+from distal.fields.deform.offsets import OFFSET, ROUND
+from distal.fields.guarantees import Guarantee, Operator
+from distal.fields.place.flat import SCALE_FLAT
+from distal.fields.place.solid import SCALE
+from distal.scene.tree.node import Node
+
+# Operators that change the values of a shape by a function that never decreases.
+RISING: Final = frozenset((SCALE, SCALE_FLAT, ROUND, OFFSET))
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A member of the unions at the root of a tree.
+
+    Attributes:
+        part: The member with what is above it.
+        source: The member itself, a node of the author's tree.
+    """
+
+    part: Node
+    source: Node
+
+
+def members_of(root: Node) -> list[Member]:
+    """Return the members of the unions at the root of a tree."""
+    found: list[Member] = []
+    stack: list[tuple[Node, Callable[[Node], Node]]] = [(root, _unchanged)]
+    while stack:
+        node, above = stack.pop()
+        if node.rule is UNION:
+            inner = _painted(node, above)
+            stack.extend((child, inner) for child in reversed(node.children))
+        elif _passes(node) and _unites(node):
+            stack.append((node.children[0], _wrapped(node, above)))
+        else:
+            found.append(Member(above(node), node))
+    return found
+
+
+def _unchanged(node: Node) -> Node:
+    return node
+
+
+def _painted(union: Node, above: Callable[[Node], Node]) -> Callable[[Node], Node]:
+    """Return how a member of a union becomes a part: with the union's material, if it has one."""
+    if union.material is None and union.cut_material is None:
+        return above
+
+    def place(node: Node) -> Node:
+        return above(
+            replace(
+                node,
+                material=union.material or node.material,
+                cut_material=union.cut_material or node.cut_material,
+            )
+        )
+
+    return place
+
+
+def _wrapped(operator: Node, above: Callable[[Node], Node]) -> Callable[[Node], Node]:
+    return lambda node: above(replace(operator, children=(node,)))
+
+
+def _passes(node: Node) -> bool:
+    """Return whether an operator on a union is the union of the operator on its members."""
+    rule = node.rule
+    if not isinstance(rule, Operator) or len(node.children) != 1 or rule.around is not None:
+        return False
+    moves_only = rule.slope is None and rule.finish is None and not rule.repeats
+    return rule in RISING or (moves_only and Guarantee.LOWER_BOUND in rule.keeps)
+
+
+def _unites(node: Node) -> bool:
+    """Return whether there is a union below operators that pass it on."""
+    inner = node.children[0]
+    while _passes(inner):
+        inner = inner.children[0]
+    return inner.rule is UNION

@@ -1,0 +1,219 @@
+"""Kinds of parts: parts of equal structure, which differ in numbers only.
+
+Input: the parts of a union. Output: kinds, each with one tree for all its parts; the numbers that
+differ from part to part are columns of a table. Numbers that are the same in all parts stay
+numbers of the scene, so that a parameter can change them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from distal.fields.guarantees import Operator, Primitive
+from distal.ir.types import Vector
+from distal.lang.expressions import Expression
+from distal.scene.objects.materials import Material
+from distal.scene.parts.flatten import Member
+from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.conversion import Number
+from distal.scene.tree.node import Node
+
+# A row begins with the number of its kind and that of the part among those of the kind.
+HEAD: Final = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """Parts of equal structure.
+
+    Attributes:
+        node: A tree like those of the parts. Its numbers that are columns are its own objects.
+        members: The parts.
+        columns: The first component of each number that differs, by the number's id.
+        width: The number of components of a row, with its head.
+        numbers: The numbers of each part that are columns, in the order of ``columns``.
+    """
+
+    node: Node
+    members: Sequence[Member]
+    columns: Mapping[int, int]
+    width: int
+    numbers: Sequence[Sequence[Number]]
+
+    @property
+    def stride(self) -> int:
+        """The number of vec4 of a row."""
+        return -(-self.width // 4)
+
+
+def kinds_of(members: Sequence[Member]) -> list[Kind]:
+    """Return the kinds of parts, in the order of the first part of each."""
+    structures = _Structures()
+    grouped: dict[int, list[Member]] = {}
+    for member in members:
+        grouped.setdefault(structures.key(member.part), []).append(member)
+    return [_kind(group) for group in grouped.values()]
+
+
+class _Structures:
+    """Numbers that are equal for trees which differ only in plain numbers."""
+
+    def __init__(self) -> None:
+        self._known: dict[Hashable, int] = {}
+        self._of_object: dict[int, int] = {}
+
+    def key(self, value: Any) -> int:
+        """Return the number of the structure of a node, a material or one of its values."""
+        found = self._of_object.get(id(value))
+        if found is None:
+            found = self._known.setdefault(self._structure(value), len(self._known))
+            self._of_object[id(value)] = found
+        return found
+
+    def _structure(self, value: Any) -> Hashable:
+        match value:
+            case Node():
+                numbers = tuple((n, self._number(v)) for n, v in value.numbers.items())
+                constants = tuple((n, _constant(v)) for n, v in value.constants.items())
+                paints = tuple(
+                    None if m is None else self.key(m) for m in (value.material, value.cut_material)
+                )
+                children = tuple(map(self.key, value.children))
+                return (_rule(value.rule), numbers, constants, paints, children)
+            case Material():
+                return (Material, self.key(value.call))
+            case FunctionCall():
+                values = tuple((n, self._value(v)) for n, v in value.values.items())
+                return (type(value), id(value.func), values)
+            case _:
+                return (type(value), id(value))
+
+    def _value(self, value: Any) -> Hashable:
+        if isinstance(value, Number):
+            return self._number(value)
+        return _constant(value) if isinstance(value, bool | int) else self.key(value)
+
+    def _number(self, number: Number) -> Hashable:
+        """Return the type of a plain number; an expression is of its own kind."""
+        if isinstance(number.value, Expression):
+            return (number.type, number.value.node)
+        return number.type
+
+
+def _rule(rule: Primitive | Operator) -> Hashable:
+    """Return what distinguishes a rule; each shape of an author's function has a rule of its own."""
+    if isinstance(rule, Operator):
+        return id(rule)
+    declared = (rule.distance, rule.slope, rule.bounds, rule.growth, rule.normalize)
+    return (*(d if isinstance(d, float) else id(d) for d in declared), rule.claims)
+
+
+def _constant(value: Any) -> Hashable:
+    if isinstance(value, bool | int):
+        return (type(value), value)
+    plain = getattr(value, "value", None)
+    return (getattr(value, "type", None), plain) if plain is not None else id(value)
+
+
+def _kind(members: Sequence[Member]) -> Kind:
+    every = [list(numbers_in(member.part)) for member in members]
+    first = every[0]
+    differs = [
+        any(row[i] is not one and row[i].value != one.value for row in every)
+        for i, one in enumerate(first)
+    ]
+    columns: dict[int, int] = {}
+    width = HEAD
+    copies: dict[int, Number] = {}
+    taken: list[int] = []
+    for i, number in enumerate(first):
+        if differs[i]:
+            size = number.type.size if isinstance(number.type, Vector) else 1
+            # A vector lies within one vec4.
+            width += -width % 4 if width % 4 + size > 4 else 0
+            copies[i] = Number(number.type, number.value)
+            columns[id(copies[i])] = width
+            width += size
+            taken.append(i)
+    node = _Copying(copies).node(members[0].part) if copies else members[0].part
+    numbers = [[row[i] for i in taken] for row in every]
+    return Kind(node, members, columns, width, numbers)
+
+
+def numbers_in(value: Any) -> Iterator[Number]:
+    """Yield the numbers of a tree and of its materials, in an order that its structure decides."""
+    match value:
+        case Number():
+            yield value
+        case Node():
+            yield from value.numbers.values()
+            for material in (value.material, value.cut_material):
+                yield from numbers_in(material)
+            for child in value.children:
+                yield from numbers_in(child)
+        case Material():
+            yield from numbers_in(value.call)
+        case FunctionCall():
+            for inner in value.values.values():
+                yield from numbers_in(inner)
+
+
+class _Copying:
+    """Copies a tree, with some of its numbers replaced."""
+
+    def __init__(self, numbers: Mapping[int, Number]) -> None:
+        self._numbers = numbers
+        self._at = 0
+
+    def _number(self, number: Number) -> Number:
+        found = self._numbers.get(self._at, number)
+        self._at += 1
+        return found
+
+    def node(self, node: Node) -> Node:
+        """Return the copy of a node; visits numbers in the order of ``numbers_in``."""
+        numbers = {name: self._number(value) for name, value in node.numbers.items()}
+        material, cut = self._value(node.material), self._value(node.cut_material)
+        children = tuple(map(self.node, node.children))
+        return replace(
+            node, numbers=numbers, material=material, cut_material=cut, children=children
+        )
+
+    def _value(self, value: Any) -> Any:
+        match value:
+            case Number():
+                return self._number(value)
+            case Material():
+                call = self._value(value.call)
+                return Material.of(call, reflects=value.reflects, refracts=value.refracts)
+            case FunctionCall():
+                inner = {name: self._value(v) for name, v in value.values.items()}
+                return replace(value, values=inner)
+            case _:
+                return value
+
+
+def leaves_of(node: Node) -> Iterator[Node]:
+    """Yield the primitives of a tree, each occurrence, in the order of the tree."""
+    if isinstance(node.rule, Primitive):
+        yield node
+    for child in node.children:
+        yield from leaves_of(child)
+
+
+def materials_in(node: Node) -> Iterator[Any]:
+    """Yield the materials of a tree, each occurrence, in the order of the tree."""
+    yield from (m for m in (node.material, node.cut_material) if m is not None)
+    for child in node.children:
+        yield from materials_in(child)
+
+
+def is_moving(node: Node) -> bool:
+    """Return whether the shape of a tree depends on parameters or time."""
+    return any(
+        isinstance(number.value, Expression)
+        for inner in node.walk()
+        for number in inner.numbers.values()
+    )

@@ -1,0 +1,158 @@
+"""The table of a union's parts: kinds, rows of numbers, a tree of boxes.
+
+Input: a tree of shapes. Output: the same tree, in which a node with a table takes the place of many
+members of the union at its root; and what stays beside the table, with the reason. A part with an
+infinite box, or one that moves, stays a member of the union.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakKeyDictionary
+
+from distal.fields.combine.joins import UNION
+from distal.fields.guarantees import EXACT_OUTSIDE, Operator
+from distal.frontend import Assembly
+from distal.lang.lazy_module import LazyModule
+from distal.lang.resources import Buffer
+from distal.packages import PackageError
+from distal.scene.lowering.safe_parts import SafeParts
+from distal.scene.parts.flatten import Member, members_of
+from distal.scene.parts.kinds import Kind, is_moving, kinds_of
+from distal.scene.tree.node import Node
+
+if TYPE_CHECKING:
+    from distal.scene.parts import rows
+else:
+    rows = LazyModule("distal.scene.parts.rows")  # needs NumPy
+
+# Fewer parts are not worth a table; more kinds would be too much code.
+LEAST_PARTS: Final = 16
+MOST_KINDS: Final = 64
+
+INFINITE: Final = "it has no finite box"
+MOVING: Final = "its shape depends on parameters or time"
+UNSAFE: Final = "its values need a divisor"
+RARE: Final = f"there are more than {MOST_KINDS} kinds of parts"
+
+# The rule of a node that stands for all parts of a table; its children are one tree of each kind.
+PARTS: Final = Operator("parts", keeps=EXACT_OUTSIDE)
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """The parts of a union.
+
+    Attributes:
+        kinds: The kinds of parts.
+        boxes: The tree of boxes, a buffer of vec4 (``render.part_tree``).
+        rows: The numbers of the parts, a buffer of vec4.
+        low: The low corner of the box around all parts.
+        high: The high corner.
+        slope: Lipschitz bound (slope) of all parts.
+    """
+
+    kinds: Sequence[Kind]
+    boxes: Buffer
+    rows: Buffer
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    slope: float
+
+    @property
+    def count(self) -> int:
+        """The number of parts."""
+        return sum(len(kind.members) for kind in self.kinds)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TableNode(Node):
+    """A node that stands for all parts of a table."""
+
+    table: Table = None  # type: ignore[assignment]  # always given; the base class has defaults
+
+    @property
+    def has_rows(self) -> bool:
+        """Whether the numbers of its children are rows of a table."""
+        return True
+
+
+@dataclass(frozen=True, slots=True)
+class Rolled:
+    """A tree with a table.
+
+    Attributes:
+        node: The tree; the given one if it has no table.
+        table: The table, or None.
+        beside: The members of the union that are not in the table, and why.
+    """
+
+    node: Node
+    table: Table | None
+    beside: Sequence[tuple[Node, str]]
+
+
+_rolled: WeakKeyDictionary[Node, Rolled] = WeakKeyDictionary()
+
+
+def rolled(root: Node) -> Rolled:
+    """Return a tree with a table of the parts that its root unites, if there are many."""
+    found = _rolled.get(root)
+    if found is None:
+        found = _rolled[root] = _roll(root)
+    return found
+
+
+def rolled_for(assembly: Assembly, root: Node) -> Node:
+    """Return the tree with a table, if a program can have one; else the tree itself."""
+    return rolled(root).node if assembly.has_buffers else root
+
+
+def _roll(root: Node) -> Rolled:
+    nothing = Rolled(root, None, ())
+    if root.flat or root.parts < LEAST_PARTS:
+        return nothing
+    members = members_of(root)
+    if len(members) < LEAST_PARTS:
+        return nothing
+    beside: list[tuple[Member, str]] = []
+    fit = _fit(members, beside)
+    kinds = sorted(kinds_of(fit), key=lambda kind: -len(kind.members))
+    beside += [(m, RARE) for kind in kinds[MOST_KINDS:] for m in kind.members]
+    try:
+        found = rows.rows_of(kinds[:MOST_KINDS])
+    except PackageError:
+        return nothing  # texts are compiled without NumPy too
+    beside += [(m, INFINITE) for m in found.infinite]
+    if found.count < LEAST_PARTS:
+        return nothing
+    table = found.table()
+    made: dict[str, Any] = {"children": tuple(k.node for k in table.kinds), "table": table}
+    parts = TableNode(PARTS, root.flat, place=root.place, **made)
+    node: Node = parts
+    if beside:
+        others = _in_order(members, [m for m, _ in beside])
+        node = replace(root, rule=UNION, children=(parts, *others), numbers={}, constants={},
+                       material=None, cut_material=None)  # fmt: skip
+    return Rolled(node, table, [(m.source, why) for m, why in beside])
+
+
+def _fit(members: Sequence[Member], beside: list[tuple[Member, str]]) -> list[Member]:
+    """Return the members that a table can hold; add the others to ``beside``."""
+    safe = SafeParts()
+    fit: list[Member] = []
+    for member in members:
+        if is_moving(member.part):
+            beside.append((member, MOVING))
+        elif not safe.has_safe_values(member.part):
+            beside.append((member, UNSAFE))
+        else:
+            fit.append(member)
+    return fit
+
+
+def _in_order(members: Sequence[Member], chosen: Sequence[Member]) -> list[Node]:
+    wanted = {id(member) for member in chosen}
+    return [member.part for member in members if id(member) in wanted]
