@@ -31,8 +31,8 @@ DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display ar
 def seen_plain(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
-    field: Field3,
-    surface: Callable[[vec3, Footprint], Surface],
+    field_of: Callable[[vec3, int], float],
+    surface: Callable[[vec3, Footprint, int], Surface],
     occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
@@ -53,8 +53,8 @@ def seen_plain(
     Args:
         ray: Ray.
         first_hit: The first surface along a ray.
-        field: Signed distance.
-        surface: The material at a point, averaged over a footprint.
+        field_of: Signed distance near a surface of a part (``Hit.part``).
+        surface: The material at a point of a part, averaged over a footprint.
         occlusion: The fraction of ambient light that reaches a point, by its normal and |gradient|.
         lights: The light with a given index, from 0, at a point.
         ambient: Light from all directions on a white surface, by its normal.
@@ -79,7 +79,7 @@ def seen_plain(
     if not hit.found:
         alpha = ALL_INSIDE if hit.side < 0.0 else 0.0
         return vec4(background(ray.direction), marked(alpha, lost, counted))
-    point = surface_point(ray, hit, field, surface, cone, numbers, normals, normal_step)
+    point = surface_point(ray, hit, field_of, surface, cone, numbers, normals, normal_step)
     light = direct_light(
         ray, point, occlusion, lights, ambient, shadow, numbers, look, light_count, hybrid,
         cone.sample, cone.samples,
@@ -93,8 +93,8 @@ def seen_plain(
 def seen_mirrored(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
-    field: Field3,
-    surface: Callable[[vec3, Footprint], Surface],
+    field_of: Callable[[vec3, int], float],
+    surface: Callable[[vec3, Footprint, int], Surface],
     occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
@@ -132,7 +132,7 @@ def seen_mirrored(
                 alpha = ALL_INSIDE
             break
         alpha = 1.0
-        point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
+        point = surface_point(here, hit, field_of, surface, width, numbers, normals, normal_step)
         light = direct_light(
             here, point, occlusion, lights, ambient, shadow, numbers, look, light_count, hybrid,
             cone.sample, cone.samples,
@@ -157,7 +157,8 @@ def seen_refracted(
     first_hit: Callable[[Ray], Hit],
     next_hit: Callable[[Ray], Hit],
     field: Field3,
-    surface: Callable[[vec3, Footprint], Surface],
+    field_of: Callable[[vec3, int], float],
+    surface: Callable[[vec3, Footprint, int], Surface],
     occlusion: Callable[[vec3, vec3, float], float],
     lights: Callable[[int, vec3], LightSample],
     ambient: Callable[[vec3], vec3],
@@ -177,7 +178,7 @@ def seen_refracted(
 
     Both start on the surface itself and know their side of it, so that a pane may be as thin as a
     few rounding errors of its distance. ``next_hit`` is the first surface along a ray that starts
-    on a surface; the other arguments are those of ``seen_mirrored``.
+    on a surface, and ``field`` the signed distance; the other arguments are those of ``seen_mirrored``.
     """
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
@@ -209,7 +210,7 @@ def seen_refracted(
                 alpha = ALL_INSIDE
             continue
         alpha = 1.0
-        point = surface_point(here, hit, field, surface, width, numbers, normals, normal_step)
+        point = surface_point(here, hit, field_of, surface, width, numbers, normals, normal_step)
         continues = brightest(throughput * (point.shares.mirrored + point.shares.transmitted))
         exact = hit.t
         if point.inside or continues >= DIMMEST:

@@ -59,6 +59,7 @@ class Hit:
         steps: Number of evaluations of the field.
         side: -1 if the ray began inside a solid, else 1.
         lost: PASSED, OUT_OF_STEPS or TOO_FAR; PASSED if a surface was found.
+        part: The part of a table (``part_tree``) that has the surface; -1 for other surfaces.
     """
 
     t: float
@@ -66,6 +67,7 @@ class Hit:
     steps: int
     side: float
     lost: int = PASSED
+    part: int = -1
 
 
 @func

@@ -243,7 +243,7 @@ def trace_parts(
         steps: Maximum number of steps in one part.
     """
     inverse = inverse_of(ray.direction)
-    found = False
+    found = -1
     t = numbers.far
     taken = 0
     lost = PASSED
@@ -273,10 +273,10 @@ def trace_parts(
                 taken += hit.steps
                 lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
                 if hit.found and hit.t < t:
-                    found = True
+                    found = of
                     t = hit.t
         box = following
-    return Hit(t, found, taken, 1.0, select(found, PASSED, lost))
+    return Hit(t, found >= 0, taken, 1.0, select(found >= 0, PASSED, lost), found)
 
 
 @func
@@ -436,7 +436,7 @@ def distance_to_listed(
 @func
 def first_of_parts(
     others: Callable[[Ray], Hit],
-    field: Callable[[vec3], float],
+    others_field: Callable[[vec3], float],
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
     ray: Ray,
@@ -450,7 +450,7 @@ def first_of_parts(
 
     Args:
         others: The first surface of what is beside the parts.
-        field: Signed distance of all.
+        others_field: Signed distance of what is beside the parts.
         boxes: The tree.
         distance: The signed distance of a point to a part.
         ray: Ray.
@@ -459,14 +459,22 @@ def first_of_parts(
     """
     other = others(ray)
     if other.side < 0.0 or contains(boxes, distance, ray.origin):
-        return march(field, ray, everywhere(), numbers, steps)
+
+        def field(p: vec3) -> float:
+            return min(distance_to_parts(boxes, distance, p), others_field(p))
+
+        way = march(field, ray, everywhere(), numbers, steps)
+        end = ray.origin + way.t * ray.direction
+        nearest = nearest_of_all(boxes, distance, end)
+        part = select(nearest.distance <= others_field(end), nearest.part, -1)
+        return Hit(way.t, way.found, way.steps, way.side, way.lost, part)
     far = select(other.found, other.t, numbers.far)
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
     hit = trace_parts(boxes, distance, ray, limited, steps)
     taken = other.steps + hit.steps
     lost = select(hit.found, PASSED, max(hit.lost, other.lost))
     if hit.found or not other.found:
-        return Hit(hit.t, hit.found, taken, 1.0, lost)
+        return Hit(hit.t, hit.found, taken, 1.0, lost, hit.part)
     return Hit(other.t, True, taken, 1.0, PASSED)
 
 

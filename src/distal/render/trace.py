@@ -258,8 +258,8 @@ def way_off(field: Field3, start: Ray, side: float, slope: float, t: float) -> f
 def surface_point(
     ray: Ray,
     hit: Hit,
-    field: Field3,
-    surface: Callable[[vec3, Footprint], Surface],
+    field_of: Callable[[vec3, int], float],
+    surface: Callable[[vec3, Footprint, int], Surface],
     cone: Cone,
     numbers: March,
     normals: int,
@@ -272,13 +272,17 @@ def surface_point(
     Args:
         ray: Ray.
         hit: Where it ended, at a surface.
-        field: Signed distance.
-        surface: The material at a point, averaged over a footprint.
+        field_of: Signed distance near a surface of a part (``Hit.part``).
+        surface: The material at a point of a part, averaged over a footprint.
         cone: The cone of the ray.
         numbers: The parameters of the march.
         normals: The method for normals; a constant of ``normals``.
         normal_step: As for ``facing_normal``.
     """
+
+    def field(q: vec3) -> float:
+        return field_of(q, hit.part)
+
     inside = hit.side < 0.0
     p = hit_point(ray, hit)
     step = normal_step * max(hit.t, 1.0)
@@ -291,7 +295,7 @@ def surface_point(
     else:
         n = facing_normal(field, ray, hit, numbers, normals, normal_step)
         slope = abs(field(p + step * n) - field(p - step * n)) / (2.0 * step)
-    material = surface(p, footprint_at(cone, ray.direction, hit.t, n))
+    material = surface(p, footprint_at(cone, ray.direction, hit.t, n), hit.part)
     return SurfacePoint(
         hit.t, inside, p, n, material, shares(material, -dot(n, ray.direction), inside), slope
     )

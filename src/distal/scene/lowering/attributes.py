@@ -152,11 +152,26 @@ def _visit(
     return d, result
 
 
-def _of_table(body: StatementList, kind: Attribute, node: TableNode, site: AttributePoint) -> Expr:
+def _of_table(
+    body: StatementList, kind: Attribute, node: TableNode, site: AttributePoint
+) -> Expr:
     """Return the attribute of the part of a table that is nearest to a point."""
+    part = kind.composer.table(node).nearest(body, site.p)
+    return of_part(kind, node, site, part)
+
+
+def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) -> Expr:
+    """Return the attribute of a part of a table.
+
+    Args:
+        kind: The attribute.
+        node: The node of the table.
+        site: The place at which the attribute is evaluated.
+        part: The part.
+    """
     composer = kind.composer
     functions = composer.table(node)
-    given: dict[str, Expr] = {"p": site.p, "part": functions.nearest(body, site.p)}
+    given: dict[str, Expr] = {"p": site.p, "part": part}
     if site.footprint is not None:
         given["footprint"] = site.footprint
 

@@ -48,7 +48,8 @@ class PartFunctions:
             for number, column in kind.columns.items():
                 assembly.made[COLUMN, number] = self._read(numbers[number], column)
         params = (("p", VEC3), ("part", INT))
-        self.given["distance"] = self.of_part("part_distance", params, FLOAT, self._distance)
+        self.distance_of = self.of_part("part_distance", params, FLOAT, self._distance)
+        self.given["distance"] = self.distance_of
 
     def _read(self, number: Number, column: int) -> Expr:
         """Return the numbers of a column, in the row of ``PART``."""

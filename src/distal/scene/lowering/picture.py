@@ -49,11 +49,13 @@ from distal.scene.lowering.attributes import (
     MaterialNumber,
     SurfaceAttribute,
     attribute,
+    of_part,
 )
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.parts.table import rolled_for
+from distal.scene.parts.table import rolled_for, split_table
 from distal.scene.tree.calls import expression_of
+from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
@@ -86,6 +88,7 @@ class SceneLowering:
         self._scene = scene
         self._node = scene.shape.node if self._hybrid else rolled_for(assembly, scene.shape.node)
         self.composer = ShapeComposer(assembly, [self._node])
+        self._rays = RayFunctions(self.composer, self._node, self._function)
         self._view_numbers: dict[str, Expr] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
@@ -235,7 +238,7 @@ class SceneLowering:
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))
-        rays = RayFunctions(composer, node, self._function)
+        rays = self._rays
         given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
         given["occlusion"] = rays.occlusion(body, given, hybrid=self._hybrid)
         given["shadow"] = rays.shadow(body, given, casts=scene.shadows, hybrid=self._hybrid)
@@ -304,7 +307,8 @@ class SceneLowering:
             asked = {**self.given(body, given["resolution"], steered=steered), **given}
             asked["counted"] = counted
             if shown in RENDERERS.values():
-                asked["surface"] = self.surface(averaged=True)
+                asked["surface"] = self._surface_of_hit()
+                asked["field_of"] = self._rays.field_of(hybrid=self._hybrid)
             if shown in RENDERERS.values() and not self._hybrid:
                 values = self.composer.values.all(self._node)
                 asked["field"] = self.composer.safe_field(self._node, values, ZERO_CELL)
@@ -368,33 +372,46 @@ class SceneLowering:
         params = (("uv", VEC2), ("size", FLOAT), ("resolution", VEC2))
         return self._function("cone", params, make, (resolution,))
 
-    def surface(self, *, averaged: bool = False) -> FunctionRef:
-        """Return the function of the material at a place.
-
-        Args:
-            averaged: Whether it is ``(p, footprint) -> Surface``; otherwise ``(p) -> Surface``.
-        """
+    def surface(self) -> FunctionRef:
+        """Return the function of the material at a place, ``(p) -> Surface``."""
         kind = SurfaceAttribute(self.composer, self._scene.material)
-        return self.known_of_place("surface", kind, averaged=averaged)
+        return self.known_of_place("surface", kind)
 
-    def known_of_place(self, name: str, kind: Attribute, *, averaged: bool = False) -> FunctionRef:
+    def known_of_place(self, name: str, kind: Attribute) -> FunctionRef:
         """Return an attribute of the place nearest to a point, as a function.
 
         Args:
             name: The preferred name of the function.
             kind: The attribute.
-            averaged: Whether the function takes a footprint after the point.
         """
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            values = self.composer.values.all(self._node)
-            site = AttributePoint(given["p"], ZERO_CELL, values, given.get("footprint"))
-            return attribute(body, kind, self._node, site)
+            return attribute(body, kind, self._node, self._site(self._node, given))
 
-        params: tuple[tuple[str, Type], ...] = (("p", VEC3),)
-        if averaged:
-            params = (*params, ("footprint", self._assembly.struct(Footprint)))
-        return self._function(name, params, make)
+        return self._function(name, (("p", VEC3),), make)
+
+    def _site(self, node: Node, given: Mapping[str, Expr]) -> AttributePoint:
+        values = self.composer.values.all(node)
+        return AttributePoint(given["p"], ZERO_CELL, values, given.get("footprint"))
+
+    def _surface_of_hit(self) -> FunctionRef:
+        """Return the function ``(p, footprint, part) -> Surface``."""
+        kind = SurfaceAttribute(self.composer, self._scene.material)
+        parts, beside = split_table(self._node)
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            if parts is None:
+                return attribute(body, kind, self._node, self._site(self._node, given))
+            of = of_part(kind, parts, self._site(parts, given), given["part"])
+            if beside is None:
+                return of
+            is_part = compare(CompareOp.GE, given["part"], integer(0))
+            body.statements.append(If(is_part, (Return(of),), ()))
+            return attribute(body, kind, beside, self._site(beside, given))
+
+        footprint = self._assembly.struct(Footprint)
+        params = (("p", VEC3), ("footprint", footprint), ("part", INT))
+        return self._function("surface_of_hit", params, make)
 
     def _material_number(self, kind: MaterialNumber) -> FunctionRef:
         """Return the function ``(p) -> float``: the number of the material at a place."""

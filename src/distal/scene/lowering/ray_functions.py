@@ -15,9 +15,9 @@ from typing import Final, TypeAlias
 
 from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
-from distal.ir.build import boolean, builtin, cast, integer, multiply
+from distal.ir.build import boolean, builtin, cast, compare, integer, multiply
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Const, Expr, FunctionRef
+from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Return
 from distal.ir.types import FLOAT, INT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
@@ -111,6 +111,7 @@ class RayFunctions:
         self._define = define
         self._planes, others = split_planes(root)
         self._others = [node for node in others if not isinstance(node, TableNode)]
+        self._beside = [*self._planes, *self._others]
         tables = [node for node in others if isinstance(node, TableNode)]
         self._table = composer.table(tables[0]) if tables else None
 
@@ -130,7 +131,7 @@ class RayFunctions:
         others = self._bound(part_tree.nothing_else, params, given, {})
         if self._planes or self._others:
             others = self._first_of_others(body, params, given, hybrid=hybrid)
-        functions = {"others": others, "field": self._safe_field(self._root)}
+        functions = {"others": others, "others_field": self._beside_field()}
         return self._bound(part_tree.first_of_parts, params, given, functions)
 
     def _first_of_others(
@@ -195,11 +196,35 @@ class RayFunctions:
             field = self._field(self._root) if hybrid else self._safe_field(self._root)
             return self._bound(shade.occlusion_in, params, given, {"field": field})
         values = {**given, **self._beside_table(body)}
-        beside = [*self._planes, *self._others]
-        others = self._safe_field(united(self._root, beside)) if beside else self._nothing()
-        values["has_others"] = boolean(bool(beside))
-        functions = {"others": others}
+        values["has_others"] = boolean(bool(self._beside))
+        functions = {"others": self._beside_field()}
         return self._bound(part_shading.occlusion_of_parts, params, values, functions)
+
+    def field_of(self, *, hybrid: bool) -> FunctionRef:
+        """Return the function ``(p, part) -> float``: the field near a surface of a part.
+
+        ``hybrid`` says whether the march for terrain and water is used.
+        """
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            of_others = Call(others.name, (given["p"], *others.captures), FLOAT)
+            if self._table is None:
+                return of_others
+            distance = Call(self._table.distance_of.name, (given["p"], given["part"]), FLOAT)
+            is_part = compare(CompareOp.GE, given["part"], integer(0))
+            body.statements.append(If(is_part, (Return(distance),), ()))
+            return of_others
+
+        others = self._beside_field()
+        if self._table is None:
+            others = self._field(self._root) if hybrid else self._safe_field(self._root)
+        return self._define("field_of_hit", [("p", VEC3), ("part", INT)], make, [])
+
+    def _beside_field(self) -> FunctionRef:
+        """Return the distance to all shapes besides the table."""
+        if not self._beside:
+            return self._nothing()
+        return self._safe_field(united(self._root, self._beside))
 
     def _beside_table(self, body: StatementList) -> dict[str, Expr]:
         """Return whether shapes are beside the table and the planes, and their box."""

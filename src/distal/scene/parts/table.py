@@ -110,6 +110,17 @@ def rolled_for(assembly: Assembly, root: Node) -> Node:
     return rolled(root).node if assembly.has_buffers else root
 
 
+def split_table(root: Node) -> tuple[TableNode | None, Node | None]:
+    """Return the table at the root of a tree, and the union of what is beside it; None if none."""
+    if isinstance(root, TableNode):
+        return root, None
+    if root.rule is not UNION or not isinstance(root.children[0], TableNode):
+        return None, root
+    others = root.children[1:]
+    beside = others[0] if len(others) == 1 else replace(root, children=others)
+    return root.children[0], beside
+
+
 def _roll(root: Node) -> Rolled:
     nothing = Rolled(root, None, ())
     if root.flat or root.parts < LEAST_PARTS:
