@@ -10,16 +10,78 @@ from collections.abc import Callable
 
 from distal.fields.boxes import hull
 from distal.fields.guarantees import UNBOUNDED, Bounds
-from distal.lang import Buffer, func, max, min, vec3, vec4
+from distal.lang import Buffer, func, length, max, min, vec3, vec4
+from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
-from distal.render.part_tree import distance_to_listed, parts_along, parts_around
+from distal.render.part_tree import (
+    MOST_LISTED,
+    distance_to_listed,
+    near_leaf,
+    parts_along,
+    parts_around,
+)
 from distal.render.shade import Shading, occlusion_in
-from distal.render.shadows import SHARPEST, Opening, above_planes, soft_shadow
+from distal.render.shadow_ray import OPEN, Edge, find_edge
+from distal.render.shadows import Opening, above_planes, opening
 
-# Rays to the points of a light's disc look so far beside its middle, in radii.
-WIDEST = 1.25
+
+@func
+def edge_of_parts(
+    others: Callable[[vec3], float],
+    others_bounds: Bounds,
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    ray: Ray,
+    width: float,
+    end: float,
+    numbers: March,
+    steps: int,
+    has_others: bool,
+    steep: bool,
+    needs_offset: bool,
+) -> Edge:
+    """Return where the edge of a shadow is, as one ray among parts finds it.
+
+    A part that alone hides the disc decides. Otherwise the ray is marched through the parts that
+    may hide some of it, if there are any.
+
+    Args:
+        others: Signed distance of what is beside the parts.
+        others_bounds: The box around that.
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        ray: The ray to the middle of the disc.
+        width: Radius of the disc at distance 1.
+        end: Distance along the ray where it ends.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps.
+        has_others: Whether anything is beside the parts; a constant.
+        steep: Whether values may be less than distances; a constant.
+        needs_offset: Whether the offset must be known where it is not sure what is visible.
+    """
+    near = parts_along(boxes, distance, ray, width, numbers.threshold, end, steps)
+    if near.hidden:
+        return Edge(-OPEN, True, False)
+    if near.count == 0 and not has_others:
+        return Edge(OPEN, True, False)
+    if near.count > 0 and not needs_offset:
+        return Edge(0.0, False, False)
+
+    def nearest(p: vec3) -> float:
+        most = UNBOUNDED
+        if anywhere(near.own_count > MOST_LISTED):
+            most = distance(p, near_leaf(boxes, p))
+        d = distance_to_listed(boxes, distance, near, p, most)
+        if has_others:
+            d = min(d, others(p))
+        return d
+
+    bounds = near.bounds
+    if has_others:
+        bounds = hull(bounds, others_bounds)
+    return find_edge(nearest, ray, width, end, bounds, numbers, steps, steep, needs_offset)
 
 
 @func
@@ -37,7 +99,7 @@ def shadow_of_parts(
     sample: int,
     samples: int,
 ) -> Opening:
-    """Return the visible fraction of a light: only the parts in its cone count.
+    """Return the visible fraction of a light among parts; see ``soft_shadow``.
 
     Args:
         others: Signed distance of what is beside the parts.
@@ -53,25 +115,14 @@ def shadow_of_parts(
         sample: The number of the pixel's sample, from 0.
         samples: How many samples the pixel has.
     """
-    axis = Ray(origin, light.direction)
-    end = min(light.distance, numbers.far)
-    width = WIDEST * max(light.radius, SHARPEST)
-    near = parts_along(boxes, distance, axis, width, numbers.threshold, end, steps)
-    if near.hidden:
-        return Opening(0.0)
-    if near.count == 0 and not has_others:
-        return Opening(1.0)
 
-    def nearest(p: vec3) -> float:
-        d = distance_to_listed(boxes, distance, near, p, UNBOUNDED)
-        if has_others:
-            d = min(d, others(p))
-        return d
+    def edge(ray: Ray, width: float, end: float, needs_offset: bool) -> Edge:
+        return edge_of_parts(
+            others, others_bounds, boxes, distance, ray, width, end, numbers, steps, has_others,
+            steep, needs_offset,
+        )  # fmt: skip
 
-    bounds = near.bounds
-    if has_others:
-        bounds = hull(bounds, others_bounds)
-    return soft_shadow(nearest, origin, light, bounds, numbers, steps, steep, sample, samples)
+    return opening(edge, origin, light, numbers.far, sample, samples)
 
 
 @func
@@ -132,7 +183,9 @@ def occlusion_of_parts(
     near = parts_around(boxes, p, reach)
 
     def nearest(q: vec3) -> float:
-        d = distance_to_listed(boxes, distance, near, q, reach)
+        # The surface at p is not farther away.
+        most = max(slope, 1.0) * length(q - p)
+        d = distance_to_listed(boxes, distance, near, q, most)
         if has_others:
             d = min(d, others(q))
         return d

@@ -60,15 +60,25 @@ class Nearest:
 class PartList:
     """The parts near a ray or a point.
 
+    There are two lists, because the CPU computes many pixels together: the parts that are near any
+    of their rays, which all pixels read at once, and those near this ray. The second one is used
+    where the first has no room.
+
     Attributes:
-        count: How many there are; if more than ``MOST_LISTED``, not all are listed.
-        boxes: The numbers of their boxes in the tree.
+        count: How many parts are near any ray.
+        boxes: The numbers of their boxes in the tree, of ``MOST_LISTED`` at most.
+        own: The bits of those that are near this ray.
+        own_count: How many are near this ray.
+        own_parts: The parts near this ray, ``MOST_LISTED`` at most.
         bounds: The box around them.
         hidden: Whether one part alone hides all of a cone.
     """
 
     count: int
     boxes: array[int, 16]
+    own: int
+    own_count: int
+    own_parts: array[int, 16]
     bounds: Bounds
     hidden: bool = False
 
@@ -243,6 +253,9 @@ def trace_parts(
         steps: Maximum number of steps in one part.
     """
     inverse = inverse_of(ray.direction)
+    # A ray that passes a surface within the threshold has hit it.
+    farthest = max(abs(boxes[0].xyz - ray.origin), abs(boxes[1].xyz - ray.origin))
+    margin = numbers.threshold * min(length(farthest), numbers.far)
     found = -1
     t = numbers.far
     taken = 0
@@ -254,7 +267,7 @@ def trace_parts(
         low = boxes[2 * box]
         high = boxes[2 * box + 1]
         following = int(low.w)
-        span = span_in_box(ray.origin, inverse, low.xyz, high.xyz)
+        span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
         meets = span.x <= span.y and span.x < t and span.y >= numbers.near
         if anywhere(meets):
             of = int(high.w)
@@ -336,7 +349,10 @@ def parts_along(
     """
     inverse = inverse_of(ray.direction)
     listed = [0] * MOST_LISTED
+    own_parts = [0] * MOST_LISTED
     count = 0
+    own = 0
+    own_count = 0
     hidden = False
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
@@ -367,9 +383,16 @@ def parts_along(
                     around_high = select(beside, max(around_high, high.xyz), around_high)
                     if count < MOST_LISTED:
                         listed[count] = box
+                        own = select(beside, own | (1 << count), own)
+                    if beside:
+                        if own_count < MOST_LISTED:
+                            own_parts[own_count] = part
+                        own_count += 1
                     count += 1
         box = following
-    return PartList(count, listed, Bounds(around_low, around_high), hidden)
+    return PartList(
+        count, listed, own, own_count, own_parts, Bounds(around_low, around_high), hidden
+    )
 
 
 @func
@@ -382,7 +405,10 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
         reach: The largest distance.
     """
     listed = [0] * MOST_LISTED
+    own_parts = [0] * MOST_LISTED
     count = 0
+    own = 0
+    own_count = 0
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
     box = 0
@@ -392,7 +418,8 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
         low = boxes[2 * box]
         high = boxes[2 * box + 1]
         following = int(low.w)
-        if anywhere(beyond_box(p, low, high) <= squared(reach)):
+        meets = beyond_box(p, low, high) <= squared(reach)
+        if anywhere(meets):
             if int(high.w) < 0:
                 following = box + 1
             else:
@@ -400,9 +427,14 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
                 around_high = max(around_high, high.xyz)
                 if count < MOST_LISTED:
                     listed[count] = box
+                    own = select(meets, own | (1 << count), own)
+                if meets:
+                    if own_count < MOST_LISTED:
+                        own_parts[own_count] = int(high.w)
+                    own_count += 1
                 count += 1
         box = following
-    return PartList(count, listed, Bounds(around_low, around_high))
+    return PartList(count, listed, own, own_count, own_parts, Bounds(around_low, around_high))
 
 
 @func
@@ -423,13 +455,21 @@ def distance_to_listed(
         most: The largest distance that is of interest.
     """
     best = most
-    if near.count > MOST_LISTED:
-        return min(best, distance_to_parts(boxes, distance, p))
-    for i in range(near.count):
-        box = near.boxes[i]
-        high = boxes[2 * box + 1]
-        if anywhere(beyond_box(p, boxes[2 * box], high) <= squared(best)):
-            best = min(best, distance(p, int(high.w)))
+    if near.count <= MOST_LISTED:
+        for i in range(near.count):
+            box = near.boxes[i]
+            high = boxes[2 * box + 1]
+            is_own = (near.own >> i & 1) == 1
+            if anywhere(is_own and beyond_box(p, boxes[2 * box], high) <= squared(best)):
+                best = select(is_own, min(best, distance(p, int(high.w))), best)
+    elif anywhere(near.own_count > MOST_LISTED):
+        best = nearest_part(boxes, distance, p, Nearest(best, -1)).distance
+    else:
+        for i in range(MOST_LISTED):
+            if not anywhere(i < near.own_count):
+                break
+            if i < near.own_count:
+                best = min(best, distance(p, near.own_parts[i]))
     return best
 
 

@@ -6,6 +6,8 @@ has the same shadow on every target and in every frame. Decision 21 has the meas
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from distal.fields.guarantees import Bounds
 from distal.lang import (
     Field3,
@@ -25,7 +27,7 @@ from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
 from distal.render.normals import tangent
-from distal.render.shadow_ray import find_edge, share_of_disc
+from distal.render.shadow_ray import Edge, find_edge, share_of_disc
 
 SHARPEST = 0.003  # smallest tangent of a light's half angle: sharper shadows would be noisy
 NARROW = 0.01  # below this tangent, one ray to the middle of the light is enough
@@ -113,7 +115,35 @@ def soft_shadow(
         sample: The number of the pixel's sample, from 0.
         samples: How many samples the pixel has.
     """
-    end = min(light.distance, numbers.far)
+
+    def edge(ray: Ray, width: float, end: float, needs_offset: bool) -> Edge:
+        return find_edge(field, ray, width, end, bounds, numbers, steps, steep, needs_offset)
+
+    return opening(edge, origin, light, numbers.far, sample, samples)
+
+
+@func
+def opening(
+    edge: Callable[[Ray, float, float, bool], Edge],
+    origin: vec3,
+    light: LightSample,
+    far: float,
+    sample: int,
+    samples: int,
+) -> Opening:
+    """Return the visible fraction of a light, from what single rays find; see ``soft_shadow``.
+
+    Args:
+        edge: Where the edge of the shadow is, as one ray finds it; takes the ray to the middle of a
+            disc, the disc's radius at distance 1, where the ray ends, and whether the edge's
+            offset must be known if it is not sure that all or nothing of the disc is visible.
+        origin: Start of the shadow ray.
+        light: The light at the point.
+        far: The distance at which rays end.
+        sample: The number of the pixel's sample, from 0.
+        samples: How many samples the pixel has.
+    """
+    end = min(light.distance, far)
     whole = max(light.radius, SHARPEST)
     is_narrow = light.radius < NARROW
     by_sample = samples >= ENOUGH_SAMPLES and not is_narrow
@@ -130,7 +160,7 @@ def soft_shadow(
             ray = Ray(origin, toward_light(light, sample if by_sample else k - 1, parts))
             width = whole * part
         needs_offset = is_alone or k > 0
-        found = find_edge(field, ray, width, end, bounds, numbers, steps, steep, needs_offset)
+        found = edge(ray, width, end, needs_offset)
         lost = lost or found.lost
         share = share_of_disc(found.offset)
         if is_alone or (k == 0 and found.is_sure):

@@ -90,6 +90,8 @@ class Scene(Composed, Presentable):
             to step.
         steps: The maximum number of steps of a ray. None: 160, and more where the Lipschitz bound
             (slope) of a field is above 1.
+        acceleration: Whether many parts (16 or more members of a union) are drawn through a tree of
+            boxes. False evaluates every part at every step, which shows the same picture.
         near: The distance at which rays begin, in scene units.
         far: The distance at which rays end, in scene units. None: rays end beyond the last surface;
             in an infinite scene at 40 times the distance to the camera's target, at least 200.
@@ -128,6 +130,7 @@ class Scene(Composed, Presentable):
         stride: Number = 0.03,
         stride_growth: Number = 1.05,
         steps: int | None = None,
+        acceleration: bool = True,
         near: Number | None = None,
         far: Number | None = None,
         name: str = "scene",
@@ -159,6 +162,7 @@ class Scene(Composed, Presentable):
         self.glow = checked_glow(glow, place)
         self.shadows = bool(shadows)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
+        self.acceleration = bool(acceleration)
         self.steps = None if steps is None else whole("steps", steps, Limit.POSITIVE, place)
         self.numbers = checked_numbers(
             place, **made.numbers, stride=stride, stride_growth=stride_growth
@@ -185,6 +189,7 @@ class Scene(Composed, Presentable):
             "stride": stride,
             "stride_growth": stride_growth,
             "steps": steps,
+            "acceleration": acceleration,
             "name": name,
         }
         self._whole = True

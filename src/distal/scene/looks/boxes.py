@@ -80,9 +80,11 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
     """
-    root = rolled(root).node
-    parts = list(parts_of(root))
-    known = list(zip(parts, _boxes(parts, params, time), strict=True))
+    table = rolled(root)
+    parts, sources = list(parts_of(table.node)), list(parts_of(root))
+    if table.table is not None:
+        sources = [table.node, *(member.source for member, _ in table.beside)]
+    known = list(zip(sources, _boxes(parts, params, time), strict=True))
     finite = [box for _, box in known if box is not None and _is_finite(*box)]
     endless = tuple(part for part, box in known if box is not None and not _is_finite(*box))
     if finite:

@@ -86,7 +86,8 @@ class SceneLowering:
     def __init__(self, assembly: Assembly, scene: Scene) -> None:
         self._assembly = assembly
         self._scene = scene
-        self._node = scene.shape.node if self._hybrid else rolled_for(assembly, scene.shape.node)
+        rolls = scene.acceleration and not self._hybrid
+        self._node = rolled_for(assembly, scene.shape.node) if rolls else scene.shape.node
         self.composer = ShapeComposer(assembly, [self._node])
         self._rays = RayFunctions(self.composer, self._node, self._function)
         self._view_numbers: dict[str, Expr] = {}

@@ -86,12 +86,12 @@ class Rolled:
     Attributes:
         node: The tree; the given one if it has no table.
         table: The table, or None.
-        beside: The members of the union that are not in the table, and why.
+        beside: The members of the union that are not in the table, and why, in the author's order.
     """
 
     node: Node
     table: Table | None
-    beside: Sequence[tuple[Node, str]]
+    beside: Sequence[tuple[Member, str]]
 
 
 _rolled: WeakKeyDictionary[Node, Rolled] = WeakKeyDictionary()
@@ -128,42 +128,32 @@ def _roll(root: Node) -> Rolled:
     members = members_of(root)
     if len(members) < LEAST_PARTS:
         return nothing
-    beside: list[tuple[Member, str]] = []
-    fit = _fit(members, beside)
+    reasons: dict[int, str] = {}
+    fit = _fit(members, reasons)
     kinds = sorted(kinds_of(fit), key=lambda kind: -len(kind.members))
-    beside += [(m, RARE) for kind in kinds[MOST_KINDS:] for m in kind.members]
+    reasons |= {id(m): RARE for kind in kinds[MOST_KINDS:] for m in kind.members}
     try:
         found = rows.rows_of(kinds[:MOST_KINDS])
     except PackageError:
         return nothing  # texts are compiled without NumPy too
-    beside += [(m, INFINITE) for m in found.infinite]
+    reasons |= dict.fromkeys(map(id, found.infinite), INFINITE)
     if found.count < LEAST_PARTS:
         return nothing
     table = found.table()
+    beside = [(m, reasons[id(m)]) for m in members if id(m) in reasons]
     made: dict[str, Any] = {"children": tuple(k.node for k in table.kinds), "table": table}
-    parts = TableNode(PARTS, root.flat, place=root.place, **made)
-    node: Node = parts
+    node: Node = TableNode(PARTS, root.flat, place=root.place, **made)
     if beside:
-        others = _in_order(members, [m for m, _ in beside])
-        node = replace(root, rule=UNION, children=(parts, *others), numbers={}, constants={},
-                       material=None, cut_material=None)  # fmt: skip
-    return Rolled(node, table, [(m.source, why) for m, why in beside])
+        node = Node(UNION, root.flat, (node, *(m.part for m, _ in beside)), place=root.place)
+    return Rolled(node, table, beside)
 
 
-def _fit(members: Sequence[Member], beside: list[tuple[Member, str]]) -> list[Member]:
-    """Return the members that a table can hold; add the others to ``beside``."""
+def _fit(members: Sequence[Member], reasons: dict[int, str]) -> list[Member]:
+    """Return the members that a table can hold; add why it cannot hold the others."""
     safe = SafeParts()
-    fit: list[Member] = []
     for member in members:
         if is_moving(member.part):
-            beside.append((member, MOVING))
+            reasons[id(member)] = MOVING
         elif not safe.has_safe_values(member.part):
-            beside.append((member, UNSAFE))
-        else:
-            fit.append(member)
-    return fit
-
-
-def _in_order(members: Sequence[Member], chosen: Sequence[Member]) -> list[Node]:
-    wanted = {id(member) for member in chosen}
-    return [member.part for member in members if id(member) in wanted]
+            reasons[id(member)] = UNSAFE
+    return [member for member in members if id(member) not in reasons]
