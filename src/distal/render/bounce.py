@@ -178,7 +178,7 @@ def seen_refracted(
 
     Both start on the surface itself and know their side of it, so that a pane may be as thin as a
     few rounding errors of its distance. ``next_hit`` is the first surface along a ray that starts
-    on a surface, and ``field`` the signed distance; the other arguments are those of ``seen_mirrored``.
+    on a surface, ``field`` the signed distance; the other arguments are those of ``seen_mirrored``.
     """
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK

@@ -1,7 +1,7 @@
 """Shadows and occlusion among many parts: only those that are near count.
 
-Input: a tree of boxes around parts, and a field of what is beside them. Output: the visible share of
-a light, the share of ambient light.
+Input: a tree of boxes around parts, and a field of what is beside them. Output: the visible share
+of a light, the share of ambient light.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
-from distal.render.part_tree import (
+from distal.render.part_lists import (
     MOST_LISTED,
     distance_to_listed,
-    near_leaf,
     parts_along,
     parts_around,
 )
+from distal.render.part_tree import near_leaf
 from distal.render.shade import Shading, occlusion_in
 from distal.render.shadow_ray import OPEN, Edge, find_edge
 from distal.render.shadows import Opening, above_planes, opening

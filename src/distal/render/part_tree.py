@@ -14,11 +14,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.boxes import everywhere
-from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import (
     Buffer,
     abs,
-    array,
     dot,
     func,
     length,
@@ -33,14 +31,7 @@ from distal.lang import (
 )
 from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
-from distal.render.march import MOST_STEPS, OUT_OF_STEPS, PASSED, Hit, March, march, march_between
-
-# The distance of the closest part before there is any.
-OPEN = 1e9
-# A ray goes on by at least this part of its length.
-NEARLY = 0.0003
-# The most parts that a list has; where more are near, the whole tree is searched.
-MOST_LISTED = 16
+from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March, march, march_between
 
 
 @struct
@@ -54,33 +45,6 @@ class Nearest:
 
     distance: float
     part: int
-
-
-@struct
-class PartList:
-    """The parts near a ray or a point.
-
-    There are two lists, because the CPU computes many pixels together: the parts that are near any
-    of their rays, which all pixels read at once, and those near this ray. The second one is used
-    where the first has no room.
-
-    Attributes:
-        count: How many parts are near any ray.
-        boxes: The numbers of their boxes in the tree, of ``MOST_LISTED`` at most.
-        own: The bits of those that are near this ray.
-        own_count: How many are near this ray.
-        own_parts: The parts near this ray, ``MOST_LISTED`` at most.
-        bounds: The box around them.
-        hidden: Whether one part alone hides all of a cone.
-    """
-
-    count: int
-    boxes: array[int, 16]
-    own: int
-    own_count: int
-    own_parts: array[int, 16]
-    bounds: Bounds
-    hidden: bool = False
 
 
 @func
@@ -234,6 +198,35 @@ def contains(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec
 
 
 @func
+def march_part(
+    distance: Callable[[vec3, int], float],
+    part: int,
+    ray: Ray,
+    span: vec2,
+    far: float,
+    numbers: March,
+    steps: int,
+) -> Hit:
+    """March to the surface of one part.
+
+    Args:
+        distance: The signed distance of a point to a part.
+        part: The part.
+        ray: Ray.
+        span: Where the box around the part begins and ends, along the ray.
+        far: The distance along the ray where it ends.
+        numbers: The other parameters of the march.
+        steps: Maximum number of steps.
+    """
+
+    def field(p: vec3) -> float:
+        return distance(p, part)
+
+    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
+    return march_between(field, ray, span, limited, steps)
+
+
+@func
 def trace_parts(
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
@@ -274,15 +267,7 @@ def trace_parts(
             if of < 0:
                 following = box + 1
             elif meets:
-                part = of
-
-                def to_part(p: vec3) -> float:
-                    return distance(p, part)
-
-                limited = March(
-                    numbers.divisor, numbers.near, t, numbers.threshold, numbers.steepest
-                )
-                hit = march_between(to_part, ray, span, limited, steps)
+                hit = march_part(distance, of, ray, span, t, numbers, steps)
                 taken += hit.steps
                 lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
                 if hit.found and hit.t < t:
@@ -290,187 +275,6 @@ def trace_parts(
                     t = hit.t
         box = following
     return Hit(t, found >= 0, taken, 1.0, select(found >= 0, PASSED, lost), found)
-
-
-@func
-def share_beside(
-    distance: Callable[[vec3, int], float],
-    part: int,
-    ray: Ray,
-    width: float,
-    span: vec2,
-    steps: int,
-) -> float:
-    """Return how close a part comes to a ray, in radii of a cone around it.
-
-    If it is 2 or more, no point of the part is in the cone: the value is at least half as large
-    between two points of the march as at the first. If it is -1 or less, the part hides the whole
-    cone.
-
-    Args:
-        distance: The signed distance of a point to a part.
-        part: The part.
-        ray: The axis of the cone.
-        width: Radius of the cone at distance 1.
-        span: Where the box around the part begins and ends, along the ray.
-        steps: Maximum number of steps.
-    """
-    t = span.x
-    share = OPEN
-    for _ in range(min(steps, MOST_STEPS)):
-        if t > span.y or share <= -1.0:
-            break
-        d = distance(ray.origin + t * ray.direction, part)
-        share = min(share, d / (width * max(t, 1e-6)))
-        t += max(abs(d), max(width, NEARLY) * t)
-    return share
-
-
-@func
-def parts_along(
-    boxes: Buffer[vec4],
-    distance: Callable[[vec3, int], float],
-    ray: Ray,
-    width: float,
-    start: float,
-    end: float,
-    steps: int,
-) -> PartList:
-    """Return the parts that may hide a part of a cone.
-
-    Args:
-        boxes: The tree.
-        distance: The signed distance of a point to a part.
-        ray: The axis of the cone.
-        width: Radius of the cone at distance 1.
-        start: Distance along the ray where it begins.
-        end: Distance along the ray where it ends.
-        steps: Maximum number of steps in one part.
-    """
-    inverse = inverse_of(ray.direction)
-    listed = [0] * MOST_LISTED
-    own_parts = [0] * MOST_LISTED
-    count = 0
-    own = 0
-    own_count = 0
-    hidden = False
-    around_low = vec3(UNBOUNDED)
-    around_high = vec3(-UNBOUNDED)
-    box = 0
-    for _ in range(box_count(boxes)):
-        if box >= box_count(boxes):
-            break
-        low = boxes[2 * box]
-        high = boxes[2 * box + 1]
-        following = int(low.w)
-        farthest = max(abs(low.xyz - ray.origin), abs(high.xyz - ray.origin))
-        margin = 2.0 * width * min(length(farthest), end)
-        span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
-        span = vec2(max(span.x, start), min(span.y, end))
-        meets = span.x <= span.y and not hidden
-        if anywhere(meets):
-            part = int(high.w)
-            if part < 0:
-                following = box + 1
-            else:
-                share = OPEN
-                if meets:
-                    share = share_beside(distance, part, ray, width, span, steps)
-                    hidden = share <= -1.0
-                beside = share < 2.0 and not hidden
-                if anywhere(beside):
-                    around_low = select(beside, min(around_low, low.xyz), around_low)
-                    around_high = select(beside, max(around_high, high.xyz), around_high)
-                    if count < MOST_LISTED:
-                        listed[count] = box
-                        own = select(beside, own | (1 << count), own)
-                    if beside:
-                        if own_count < MOST_LISTED:
-                            own_parts[own_count] = part
-                        own_count += 1
-                    count += 1
-        box = following
-    return PartList(
-        count, listed, own, own_count, own_parts, Bounds(around_low, around_high), hidden
-    )
-
-
-@func
-def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
-    """Return the parts whose boxes are near a point.
-
-    Args:
-        boxes: The tree.
-        p: The point.
-        reach: The largest distance.
-    """
-    listed = [0] * MOST_LISTED
-    own_parts = [0] * MOST_LISTED
-    count = 0
-    own = 0
-    own_count = 0
-    around_low = vec3(UNBOUNDED)
-    around_high = vec3(-UNBOUNDED)
-    box = 0
-    for _ in range(box_count(boxes)):
-        if box >= box_count(boxes):
-            break
-        low = boxes[2 * box]
-        high = boxes[2 * box + 1]
-        following = int(low.w)
-        meets = beyond_box(p, low, high) <= squared(reach)
-        if anywhere(meets):
-            if int(high.w) < 0:
-                following = box + 1
-            else:
-                around_low = min(around_low, low.xyz)
-                around_high = max(around_high, high.xyz)
-                if count < MOST_LISTED:
-                    listed[count] = box
-                    own = select(meets, own | (1 << count), own)
-                if meets:
-                    if own_count < MOST_LISTED:
-                        own_parts[own_count] = int(high.w)
-                    own_count += 1
-                count += 1
-        box = following
-    return PartList(count, listed, own, own_count, own_parts, Bounds(around_low, around_high))
-
-
-@func
-def distance_to_listed(
-    boxes: Buffer[vec4],
-    distance: Callable[[vec3, int], float],
-    near: PartList,
-    p: vec3,
-    most: float,
-) -> float:
-    """Return the signed distance of a point to the nearest part of a list, at most ``most``.
-
-    Args:
-        boxes: The tree.
-        distance: The signed distance of a point to a part.
-        near: The list; if it is not complete, all parts count.
-        p: The point.
-        most: The largest distance that is of interest.
-    """
-    best = most
-    if near.count <= MOST_LISTED:
-        for i in range(near.count):
-            box = near.boxes[i]
-            high = boxes[2 * box + 1]
-            is_own = (near.own >> i & 1) == 1
-            if anywhere(is_own and beyond_box(p, boxes[2 * box], high) <= squared(best)):
-                best = select(is_own, min(best, distance(p, int(high.w))), best)
-    elif anywhere(near.own_count > MOST_LISTED):
-        best = nearest_part(boxes, distance, p, Nearest(best, -1)).distance
-    else:
-        for i in range(MOST_LISTED):
-            if not anywhere(i < near.own_count):
-                break
-            if i < near.own_count:
-                best = min(best, distance(p, near.own_parts[i]))
-    return best
 
 
 @func

@@ -7,7 +7,7 @@ expression. Each attribute is computed once per hit, so subtrees do not share fu
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
 from distal.fields.guarantees import Operator, Primitive
@@ -75,18 +75,15 @@ class Attribute(ABC):
         """The type of the attribute."""
         return FLOAT
 
-    def begin(self, kind: KindOfPart) -> None:
-        """Prepare for the attribute of a kind of parts."""
-
-    def in_row(self, kind: KindOfPart, found: Expr, ordinal: Expr) -> Expr:
+    def in_row(self, kind: KindOfPart, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the attribute of one part of a kind.
 
         Args:
             kind: The kind.
-            found: The attribute as the kind's tree gives it.
             ordinal: The number of the part among those of the kind, as a float.
+            make: Returns the attribute as the kind's tree gives it.
         """
-        return found
+        return make()
 
 
 class AttributePoint:
@@ -152,9 +149,7 @@ def _visit(
     return d, result
 
 
-def _of_table(
-    body: StatementList, kind: Attribute, node: TableNode, site: AttributePoint
-) -> Expr:
+def _of_table(body: StatementList, kind: Attribute, node: TableNode, site: AttributePoint) -> Expr:
     """Return the attribute of the part of a table that is nearest to a point."""
     part = kind.composer.table(node).nearest(body, site.p)
     return of_part(kind, node, site, part)
@@ -178,9 +173,7 @@ def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) 
     def make(inner: StatementList, _: int, of: KindOfPart) -> Expr:
         footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
         here = AttributePoint(POINT, site.cell, composer.values.all(of.node), footprint)
-        kind.begin(of)
-        found = attribute(inner, kind, of.node, here)
-        return kind.in_row(of, found, functions.ordinal)
+        return kind.in_row(of, functions.ordinal, lambda: attribute(inner, kind, of.node, here))
 
     params = [(name, value.type) for name, value in given.items()]
     made = functions.of_part(kind.name, params, kind.result, make)
@@ -358,7 +351,6 @@ class ListedMaterial(SurfaceAttribute):
     def __init__(self, composer: ShapeComposer, default: Any) -> None:
         super().__init__(composer, default)
         self.materials: list[Any] = []
-        self._first = 0
 
     @property
     def result(self) -> Type:
@@ -373,14 +365,12 @@ class ListedMaterial(SurfaceAttribute):
         self.materials.append(material)
         return number(float(len(self.materials) - 1))
 
-    def begin(self, kind: KindOfPart) -> None:
-        """Prepare for the materials of a kind of parts."""
-        self._first = len(self.materials)
-
-    def in_row(self, kind: KindOfPart, found: Expr, ordinal: Expr) -> Expr:
+    def in_row(self, kind: KindOfPart, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own material."""
-        shown = self.materials[self._first :]
-        del self.materials[self._first :]
+        first = len(self.materials)
+        found = make()
+        shown = self.materials[first:]
+        del self.materials[first:]
         places = {id(m): i for i, m in enumerate(materials_in(kind.node))}
         for member in kind.members:
             own = list(materials_in(member.part))
@@ -411,7 +401,6 @@ class Part(Attribute):
     def __init__(self, composer: ShapeComposer) -> None:
         super().__init__(composer)
         self.nodes: list[Node] = []
-        self._first = 0
 
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the next number for a library shape."""
@@ -428,14 +417,12 @@ class Part(Attribute):
         """Return the cutter's own part: it made the face."""
         return attribute(body, self, node, site)
 
-    def begin(self, kind: KindOfPart) -> None:
-        """Prepare for the leaves of a kind of parts."""
-        self._first = len(self.nodes)
-
-    def in_row(self, kind: KindOfPart, found: Expr, ordinal: Expr) -> Expr:
+    def in_row(self, kind: KindOfPart, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own leaf."""
-        shown = self.nodes[self._first :]
-        del self.nodes[self._first :]
+        first = len(self.nodes)
+        found = make()
+        shown = self.nodes[first:]
+        del self.nodes[first:]
         places = {id(leaf): i for i, leaf in enumerate(leaves_of(kind.node))}
         for member in kind.members:
             own = list(leaves_of(member.source))

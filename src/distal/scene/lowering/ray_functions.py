@@ -191,7 +191,7 @@ class RayFunctions:
             given: The values of the march, by name.
             hybrid: Whether the march for terrain and water is used.
         """
-        params = [("p", VEC3), ("n", VEC3), ("slope", FLOAT)]
+        params: Params = [("p", VEC3), ("n", VEC3), ("slope", FLOAT)]
         if self._table is None:
             field = self._field(self._root) if hybrid else self._safe_field(self._root)
             return self._bound(shade.occlusion_in, params, given, {"field": field})

@@ -103,7 +103,7 @@ class _Structures:
 
 
 def _rule(rule: Primitive | Operator) -> Hashable:
-    """Return what distinguishes a rule; each shape of an author's function has a rule of its own."""
+    """Return what distinguishes a rule; shapes of one author's function have rules of their own."""
     if isinstance(rule, Operator):
         return id(rule)
     declared = (rule.distance, rule.slope, rule.bounds, rule.growth, rule.normalize)

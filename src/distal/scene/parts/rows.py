@@ -1,7 +1,7 @@
 """The rows of a table of parts, and the tree of their boxes, as arrays.
 
-Input: kinds of parts. Output: buffers. A row is a few vec4: the number of the kind, that of the part
-among those of its kind, then the columns.
+Input: kinds of parts. Output: buffers. A row is a few vec4: the number of the kind, that of the
+part among those of its kind, then the columns.
 """
 
 from __future__ import annotations
@@ -61,7 +61,8 @@ def rows_of(kinds: Sequence[Kind]) -> Rows:
     lows, highs = [np.zeros((0, 3))], [np.zeros((0, 3))]
     for kind in kinds:
         low, high, slope = boxes_of(kind)
-        is_finite = (np.abs(low) < ENDLESS).all(axis=1) & (np.abs(high) < ENDLESS).all(axis=1)
+        farthest = np.maximum(np.abs(low), np.abs(high)).max(axis=1)
+        is_finite = np.asarray(farthest < ENDLESS)  # False for NaN
         infinite += [m for m, found in zip(kind.members, is_finite, strict=True) if not found]
         if is_finite.any():
             finite.append(_chosen(kind, is_finite))
