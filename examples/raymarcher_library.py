@@ -36,7 +36,7 @@ from distal.render.lights import LightSample, distant_light
 from distal.render.material import Surface, matte
 from distal.render.patterns import checker, linear_gradient
 from distal.render.settings import hit_threshold, march_numbers
-from distal.render.shade import Shading
+from distal.render.shade import Shading, ambient_occlusion
 from distal.render.shadows import shadow_beside_planes
 from distal.render.tonemap import ACES, decode_srgb, display
 from distal.render.trace import first_surface_or_plane, plane_crossing
@@ -61,6 +61,11 @@ def blob(p: vec3, time: float) -> float:
 @func
 def floor(p: vec3) -> float:
     return plane(p, -0.5)
+
+
+@func
+def scene(p: vec3, time: float) -> float:
+    return min(blob(p, time), floor(p))
 
 
 @func
@@ -121,8 +126,9 @@ def picture(frame: Frame) -> vec4:
             60.0,
             160,
         ),
-        lambda p: min(blob(p, time), floor(p)),
-        lambda p, sides: material(p, sides, time),
+        lambda p, part: scene(p, time),
+        lambda p, sides, part: material(p, sides, time),
+        lambda p, n, slope: ambient_occlusion(lambda q: scene(q, time), p, n, 0.4, slope),
         lambda i, p: sun(p),
         lambda n: hemisphere_light(n, vec3(0.5), vec3(0.25), 1.0),
         sky,

@@ -38,7 +38,12 @@ def field(p: vec3) -> float:
 
 
 @func
-def surface(p: vec3, sides: Footprint) -> material.Surface:
+def field_of(p: vec3, part: int) -> float:
+    return field(p)
+
+
+@func
+def surface(p: vec3, sides: Footprint, part: int) -> material.Surface:
     if p.y + 0.8 < balls(p):
         white = material.matte(vec3(0.8, 0.8, 0.75))
         return material.mix_surfaces(
@@ -97,11 +102,16 @@ def shadow(origin: vec3, light: LightSample, sample: int, samples: int) -> shado
     return shadows.soft_shadow(field, origin, light, everywhere(), numbers(), 48)
 
 
+@func
+def occlusion(p: vec3, n: vec3, slope: float) -> float:
+    return shade.ambient_occlusion(field, p, n, 0.4, slope)
+
+
 @image
 def plain(frame: Frame) -> vec4:
     seen = bounce.seen_plain(
-        ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
-        shadow, numbers(), shade.Shading(0.4, 0.02), 2,
+        ray_of(frame), first_hit, field_of, surface, occlusion, lights, ambient, background,
+        haze, shadow, numbers(), shade.Shading(0.4, 0.02), 2,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.AGX)
 
@@ -109,8 +119,8 @@ def plain(frame: Frame) -> vec4:
 @image
 def mirrored(frame: Frame) -> vec4:
     seen = bounce.seen_mirrored(
-        ray_of(frame), first_hit, field, surface, lights, ambient, background, haze,
-        shadow, numbers(), shade.Shading(0.0, 0.0), 2, 4,
+        ray_of(frame), first_hit, field_of, surface, occlusion, lights, ambient, background,
+        haze, shadow, numbers(), shade.Shading(0.0, 0.0), 2, 4,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.NEUTRAL)
 
@@ -118,8 +128,8 @@ def mirrored(frame: Frame) -> vec4:
 @image
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
-        ray_of(frame), first_hit, first_hit, field, surface, lights, ambient, background, haze,
-        shadow, numbers(), shade.Shading(0.0, 0.0), 2, 6,
+        ray_of(frame), first_hit, first_hit, field, field_of, surface, occlusion, lights, ambient,
+        background, haze, shadow, numbers(), shade.Shading(0.0, 0.0), 2, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 

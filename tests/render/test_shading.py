@@ -328,7 +328,9 @@ def lit(weights: vec3, occlusion: float) -> vec3:
     found = shade.direct_light(
         Ray(vec3(3.0, 3.6, 0.0), vec3(-0.6, -0.8, 0.0)),
         hit,
-        lambda p: min(p.y, p.x),
+        lambda p, n, slope: shade.ambient_occlusion(
+            lambda q: min(q.y, q.x), p, n, occlusion, slope
+        ),
         lambda i, p: lights.distant_light(
             p, vec3(3.0, 4.0, 0.0) if i == 0 else vec3(0.0, -1.0, 0.0), 2.0, vec3(1.0, 0.5, 0.25)
         ),

@@ -302,9 +302,18 @@ class RayFunctions:
         captured = {n: values[n] for n in _TAKEN if n in values and n not in constants}
         if self._table is not None:
             constants |= self._table.given
+        for name, passed in functions.items():
+            captured |= {f"{name}_{i}": value for i, value in enumerate(passed.captures)}
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            return self._composer.call(function, {**constants, **functions, **given})
+            here = {name: _with_captures(f, name, given) for name, f in functions.items()}
+            return self._composer.call(function, {**constants, **here, **given})
 
         every = [*params, *((name, value.type) for name, value in captured.items())]
         return self._define(function.name, every, make, list(captured.values()))
+
+
+def _with_captures(function: FunctionRef, name: str, given: Mapping[str, Expr]) -> FunctionRef:
+    """Return a function that captures values of its caller, which are parameters here."""
+    captures = tuple(given[f"{name}_{i}"] for i in range(len(function.captures)))
+    return FunctionRef(function.name, captures, function.type)

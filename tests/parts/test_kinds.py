@@ -1,0 +1,140 @@
+"""Parts of equal structure are one kind; the numbers that differ are its columns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from distal import Box, Material, Plane, Shape, Sphere, Torus, stripes, time
+from distal.lang import func, length, slider, vec3
+from distal.scene.parts.flatten import members_of
+from distal.scene.parts.kind_boxes import boxes_of, columns_of
+from distal.scene.parts.kinds import HEAD, kinds_of
+from distal.scene.parts.table import INFINITE, LEAST_PARTS, MOVING, RARE, UNSAFE, rolled
+
+
+def kinds(*shapes):
+    return kinds_of(members_of(shapes[0].union(shapes[1:]).node))
+
+
+def test_shapes_that_differ_in_numbers_are_one_kind():
+    (kind,) = kinds(*(Sphere(0.1 + 0.1 * i).translate(float(i), 0, 0) for i in range(5)))
+    assert len(kind.members) == 5
+    offset, radius = columns_of(kind)
+    assert offset.tolist() == [[i, 0, 0] for i in range(5)]
+    assert radius == pytest.approx([0.1 + 0.1 * i for i in range(5)])
+
+
+def test_a_number_that_all_parts_share_is_no_column():
+    (kind,) = kinds(*(Torus(0.5, 0.1).translate(float(i), 0, 0) for i in range(4)))
+    assert kind.width == HEAD + 2 + 3  # the vector of the offset begins at a new vec4
+    assert len(columns_of(kind)) == 1
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        (Sphere(1.0), Box(1.0, 1.0, 1.0)),
+        (Sphere(1.0), Sphere(1.0).translate(1, 0, 0)),
+        (Sphere(1.0).paint("red"), Sphere(1.0)),
+        (Sphere(1.0).paint("red"), Sphere(1.0).paint(stripes("red", "blue"))),
+        (Sphere(1.0).rotate(x=0.5), Sphere(1.0).rotate(y=0.5)),
+        (Sphere(1.0).repeat(3.0, count=(2, 1, 1)), Sphere(1.0).repeat(3.0, count=(3, 1, 1))),
+        (Sphere(slider("r", 1.0, low=0.1)), Sphere(slider("s", 1.0, low=0.1))),
+    ],
+)
+def test_other_structures_are_other_kinds(a, b):
+    assert len(kinds(a, b, a)) == 2
+
+
+def test_materials_that_differ_in_numbers_are_one_kind():
+    (kind,) = kinds(
+        Sphere(1.0).paint("red"), Sphere(1.0).paint("#123456"), Sphere(1.0).paint((0.1, 0.2, 0.3))
+    )
+    (colors,) = columns_of(kind)
+    assert colors[0].tolist() == [1.0, 0.0, 0.0] and colors[2].tolist() == [0.1, 0.2, 0.3]
+
+
+def test_own_functions_are_one_kind():
+    @func
+    def ball(p: vec3, radius: float) -> float:
+        return length(p) - radius
+
+    box = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+    (kind,) = kinds(
+        *(Shape.from_function(ball, bounds=box, radius=0.1 * i + 0.1) for i in range(3))
+    )
+    assert len(kind.members) == 3
+
+
+def test_moves_and_materials_of_a_union_are_those_of_its_members():
+    pair = Sphere(1.0).paint("red") | Box(1.0, 1.0, 1.0)
+    whole = (pair.translate(1, 2, 3).paint("blue") | Torus(1.0, 0.1)).scale(2.0).rotate(y=0.3)
+    members = members_of(whole.node)
+    assert [m.source.rule.name for m in members] == ["Sphere", "Box", "Torus"]
+    assert [m.part.rule.name for m in members] == ["rotate y"] * 3
+    moved = members[0].part.children[0].children[0]
+    assert moved.rule.name == "translate" and moved.material is not None
+    points = np.random.default_rng(1).uniform(-6, 6, (50, 3))
+    alone = [type(whole)._of(m.part)(points) for m in members]
+    assert np.min(alone, axis=0) == pytest.approx(whole(points), abs=1e-5)
+
+
+def row(count=LEAST_PARTS):
+    return [Sphere(0.1).translate(0.3 * i, 0, 0) for i in range(count)]
+
+
+def test_fewer_parts_have_no_table():
+    assert rolled(row()[0].union(row()[1:]).node).table is not None
+    found = rolled(row()[0].union(row()[2:]).node)
+    assert found.table is None and found.beside == ()
+
+
+def test_what_cannot_be_in_a_table_stays_beside_it_in_order():
+    wave = Shape.from_function(ripples, slope=2.0, bounds=((-1, -1, -1), (1, 1, 1)))
+    others = [Plane(y=-1), Sphere(0.2 + 0.1 * time), wave]
+    found = rolled(row()[0].union([*row()[1:8], *others, *row()[8:]]).node)
+    assert found.table is not None and found.table.count == LEAST_PARTS
+    names = [(m.source.rule.name, why) for m, why in found.beside]
+    assert names == [("Plane", INFINITE), ("Sphere", MOVING), ("ripples", UNSAFE)]
+    assert [c.rule.name for c in found.node.children] == ["parts", "Plane", "Sphere", "ripples"]
+
+
+@func
+def ripples(p: vec3) -> float:
+    return 2.0 * (length(p) - 0.5)
+
+
+def test_of_many_kinds_the_most_frequent_are_in_the_table():
+    # A chain of n rotations is a kind of its own.
+    def turned(n):
+        shape = Box(0.1, 0.1, 0.1)
+        for _ in range(n):
+            shape = shape.rotate(x=0.1)
+        return shape
+
+    found = rolled(row()[0].union([*row()[1:], *(turned(n) for n in range(70))]).node)
+    assert found.table is not None and len(found.table.kinds) == 64
+    assert found.table.count == LEAST_PARTS + 63
+    assert {why for _, why in found.beside} == {RARE} and len(found.beside) == 7
+
+
+def test_boxes_hold_their_parts():
+    rng = np.random.default_rng(3)
+    shapes = [
+        Box(*rng.uniform(0.1, 1.0, 3)).rotate(x=float(a), z=float(b)).translate(*rng.normal(size=3))
+        for a, b in rng.uniform(-3, 3, (20, 2))
+    ]
+    (kind,) = kinds(*shapes)
+    low, high, slope = boxes_of(kind)
+    assert slope == 1.0
+    points = rng.uniform(-3, 3, (20000, 3))
+    for shape, a, b in zip(shapes, low, high, strict=True):
+        inside = points[shape(points) <= 0.0]
+        assert len(inside) > 0 and (inside >= a).all() and (inside <= b).all()
+
+
+def test_a_material_is_not_shared_with_another_kind():
+    red = Material((1.0, 0.0, 0.0))
+    found = kinds(Sphere(1.0).paint(red), Sphere(2.0).paint(red), Box(1.0, 1.0, 1.0).paint(red))
+    assert [len(k.columns) for k in found] == [1, 0]
