@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from distal.scene.parts.box_tree import box_tree
+from distal.scene.lowering.parts.box_tree import box_tree
 
 
 def boxes(count, seed):

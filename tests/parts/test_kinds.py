@@ -7,10 +7,10 @@ import pytest
 
 from distal import Box, Material, Plane, Shape, Sphere, Torus, stripes, time
 from distal.lang import func, length, slider, vec3
-from distal.scene.parts.flatten import members_of
-from distal.scene.parts.kind_boxes import boxes_of, columns_of
-from distal.scene.parts.kinds import HEAD, kinds_of
-from distal.scene.parts.table import INFINITE, LEAST_PARTS, MOVING, RARE, UNSAFE, rolled
+from distal.scene.lowering.parts.flatten import members_of
+from distal.scene.lowering.parts.kind_boxes import boxes_of, columns_of
+from distal.scene.lowering.parts.kinds import HEAD, kinds_of
+from distal.scene.lowering.parts.table import INFINITE, LEAST_PARTS, MOVING, RARE, UNSAFE, rolled
 
 
 def kinds(*shapes):

@@ -27,7 +27,7 @@ from distal import (
 )
 from distal.lang import slider
 from distal.scene.checks.probe import probe
-from distal.scene.parts.table import rolled
+from distal.scene.lowering.parts.table import rolled
 
 SIZE = (48, 36)
 EYE = Camera((3.0, 2.5, 5.0), target=(0.0, 0.0, 0.0))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,6 +28,7 @@ from distal.cli.base import (
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
+    from distal.diagnostics import Span
     from distal.scene.checks.validation import CheckFinding, ShapeReport, ValidationReport
 
 # The tree is cut at this depth; a shared shape is expanded only once.
@@ -70,6 +72,7 @@ def check(
 def report_lines(report: ValidationReport) -> Iterator[str]:
     """Yield the lines of the report."""
     yield from _tree(report)
+    yield from _table(report)
     yield ""
     yield from _slope(report)
     yield from _measurements(report)
@@ -91,6 +94,27 @@ def _tree(report: ValidationReport) -> Iterator[str]:
         yield "  ".join((*cells, row[3])).rstrip()
     if len(rows) > MOST_ROWS:
         yield f"… and {len(rows) - MOST_ROWS} more; --json lists all"
+
+
+def _table(report: ValidationReport) -> Iterator[str]:
+    """Yield what is known of the table of parts."""
+    table = report.table
+    if table is None:
+        return
+    yield ""
+    kinds = "one kind" if len(table.kinds) == 1 else f"{len(table.kinds)} kinds"
+    yield f"{table.count:,} parts of {kinds} are drawn through a tree of boxes, one of each is shown"
+    for kind in table.kinds[:MOST_ROWS]:
+        numbers = f"{kind.columns} numbers each{_place(kind.place)}"
+        yield f"  {kind.count:,} {kind.name}, {numbers}"
+    gathered = Counter((b.name, b.reason, _place(b.place)) for b in table.beside)
+    for (name, reason, line), count in list(gathered.items())[:MOST_ROWS]:
+        times = f" ({count} times)" if count > 1 else ""
+        yield f"  beside it: {name}{times}: {reason}{line}"
+
+
+def _place(place: Span | None) -> str:
+    return "" if place is None else f"  {place.file}:{place.line}"
 
 
 def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:

@@ -1,7 +1,7 @@
 """Many parts in one field: a tree of boxes around them, and what is found through it.
 
 Input: the tree, and the distance to each part. Output: distances, hits, lists of the parts near a
-ray or a point. A part is the number of its row in a table (``scene.parts``).
+ray or a point. A part is the number of its row in a table (``scene.lowering.parts``).
 
 The tree is a buffer with two vec4 for each box, parents first: (low corner, number of the box that
 follows if this one is skipped), (high corner, part), where the part is -1 for a box around others.

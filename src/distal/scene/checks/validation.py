@@ -17,6 +17,7 @@ from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, Region, measure
+from distal.scene.checks.table_report import TableReport, table_of
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
 
@@ -77,11 +78,14 @@ class ValidationReport:
 
     Attributes:
         slope_from: Indices of the shapes that increase the slope of the whole, outermost first.
+        table: The table of parts, or None. Then the shapes are one of each kind of parts, and those
+            beside the table.
     """
 
     shapes: tuple[ShapeReport, ...]
     slope_from: tuple[int, ...]
     findings: tuple[CheckFinding, ...]
+    table: TableReport | None = None
 
     @property
     def holds(self) -> bool:
@@ -94,6 +98,7 @@ class ValidationReport:
             "version": 1,
             "holds": self.holds,
             "slope_from": list(self.slope_from),
+            "table": None if self.table is None else self.table.as_json(),
             "shapes": [_shape_json(i, row) for i, row in enumerate(self.shapes)],
             "findings": [
                 {
@@ -121,9 +126,10 @@ def check(
         seed: Seed of the random points.
     """
     given = dict(params or {})
-    nodes = list(shape.node.walk())
+    table, root = table_of(shape.node)
+    nodes = list(root.walk())
     numbers = {id(node): i for i, node in enumerate(nodes)}
-    promised = bounds_of_nodes(shape.node, given, time)
+    promised = bounds_of_nodes(root, given, time)
     chosen = {id(n) for n in _worth_measuring(nodes, promised)}
     regions = _regions(nodes, promised)
     rows = []
@@ -137,7 +143,7 @@ def check(
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
-    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found))
+    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table)
 
 
 def _regions(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> dict[int, Region | None]:

@@ -25,8 +25,8 @@ from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError
 from distal.scene.lowering.bounds import BoundsComposer
+from distal.scene.lowering.parts.table import rolled
 from distal.scene.lowering.union_parts import parts_of
-from distal.scene.parts.table import rolled
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values

@@ -19,10 +19,10 @@ from distal.lang.resources import Buffer
 from distal.render.footprint import moved_footprint, point_footprint, step_along
 from distal.render.material import Surface, mix_surfaces
 from distal.scene.lowering.part_functions import POINT
+from distal.scene.lowering.parts.kinds import Kind as KindOfPart
+from distal.scene.lowering.parts.kinds import leaves_of, materials_in
+from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ShapeComposer
-from distal.scene.parts.kinds import Kind as KindOfPart
-from distal.scene.parts.kinds import leaves_of, materials_in
-from distal.scene.parts.table import TableNode
 from distal.scene.tree.calls import FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList

@@ -28,7 +28,7 @@ from distal.ir.build import number as constant_number
 from distal.ir.nodes import Const, Construct, Expr
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
-from distal.scene.parts.table import Table, TableNode
+from distal.scene.lowering.parts.table import Table, TableNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
 

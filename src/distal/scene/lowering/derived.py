@@ -10,8 +10,8 @@ from distal.ir.nodes import Gradient, Param, Read, Return
 from distal.ir.types import VEC2, VEC3, tuple_type
 from distal.lang.composed import Composed
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
+from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.parts.table import rolled_for
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 

@@ -15,9 +15,9 @@ from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Kind, Type, Vector
 from distal.render import part_tree
-from distal.scene.parts.kinds import Kind as KindOfPart
-from distal.scene.parts.kinds import numbers_in
-from distal.scene.parts.table import Table
+from distal.scene.lowering.parts.kinds import Kind as KindOfPart
+from distal.scene.lowering.parts.kinds import numbers_in
+from distal.scene.lowering.parts.table import Table
 from distal.scene.tree.calls import COLUMN
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.values import StatementList

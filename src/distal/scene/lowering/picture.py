@@ -51,9 +51,9 @@ from distal.scene.lowering.attributes import (
     attribute,
     of_part,
 )
+from distal.scene.lowering.parts.table import rolled_for, split_table
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.parts.table import rolled_for, split_table
 from distal.scene.tree.calls import expression_of
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList

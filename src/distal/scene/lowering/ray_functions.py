@@ -24,9 +24,9 @@ from distal.passes.fold.fold import fold_expression
 from distal.render import part_shading, part_tree, settings, shade, shadows, trace
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
+from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.union_parts import parts_of
-from distal.scene.parts.table import TableNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 

@@ -27,8 +27,8 @@ from distal.lang.functions import Func
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.part_functions import PartFunctions
+from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.safe_parts import SafeParts
-from distal.scene.parts.table import TableNode
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name

@@ -22,12 +22,12 @@ from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.derived import BoundsOf, GradientOf
+from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_gradient, check_slope
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
-from distal.scene.parts.table import rolled_for
 from distal.scene.tree.arguments import RESERVED, slots_of
 from distal.scene.tree.conversion import Asked, Number, number
 from distal.scene.tree.errors import refuse, refuse_kind

@@ -122,6 +122,10 @@ class Material(CalledObject):
         made._keep(call=call, reflects=reflects, refracts=refracts)
         return made
 
+    def with_call(self, call: FunctionCall) -> Material:
+        """Return the material with other values of the same function."""
+        return Material.of(call, reflects=self.reflects, refracts=self.refracts)
+
     @property
     def uses(self) -> frozenset[str]:
         """Which of ``declarations.PLACE_NAMES`` the material depends on."""

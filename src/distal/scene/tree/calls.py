@@ -125,8 +125,8 @@ def result_of(func: Func) -> Type | None:
 def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, stem: str) -> Expr:
     """Return a value as an expression of a program.
 
-    A constant number becomes a uniform, a column of a table (``scene.parts``) a read of the row, an
-    expression of the author stays one, and a texture or buffer becomes a resource.
+    A constant number becomes a uniform, a column of a table (``scene.lowering.parts``) a read of
+    the row, an expression of the author stays one, and a texture or buffer becomes a resource.
 
     Args:
         assembly: The program.

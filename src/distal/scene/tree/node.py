@@ -54,7 +54,7 @@ class Node:
 
     @property
     def has_rows(self) -> bool:
-        """Whether the numbers of its children are rows of a table (``scene.parts``)."""
+        """Whether the numbers of its children are rows of a table (``scene.lowering.parts``)."""
         return False
 
     @property

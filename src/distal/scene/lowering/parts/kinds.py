@@ -14,8 +14,7 @@ from typing import Any, Final
 from distal.fields.guarantees import Operator, Primitive
 from distal.ir.types import Vector
 from distal.lang.expressions import Expression
-from distal.scene.objects.materials import Material
-from distal.scene.parts.flatten import Member
+from distal.scene.lowering.parts.flatten import Member
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
@@ -41,6 +40,12 @@ class Kind:
     columns: Mapping[int, int]
     width: int
     numbers: Sequence[Sequence[Number]]
+
+    @property
+    def floats(self) -> int:
+        """The number of floats that differ from part to part."""
+        sizes = (n.type.size if isinstance(n.type, Vector) else 1 for n in self.numbers[0])
+        return sum(sizes)
 
     @property
     def stride(self) -> int:
@@ -82,11 +87,11 @@ class _Structures:
                 )
                 children = tuple(map(self.key, value.children))
                 return (_rule(value.rule), numbers, constants, paints, children)
-            case Material():
-                return (Material, self.key(value.call))
             case FunctionCall():
                 values = tuple((n, self._value(v)) for n, v in value.values.items())
                 return (type(value), id(value.func), values)
+            case _ if (call := _call_of(value)) is not None:
+                return (type(value), self.key(call))
             case _:
                 return (type(value), id(value))
 
@@ -100,6 +105,12 @@ class _Structures:
         if isinstance(number.value, Expression):
             return (number.type, number.value.node)
         return number.type
+
+
+def _call_of(value: Any) -> FunctionCall | None:
+    """Return the call that an object of the author, such as a material, consists of."""
+    call = getattr(value, "call", None)
+    return call if isinstance(call, FunctionCall) else None
 
 
 def _rule(rule: Primitive | Operator) -> Hashable:
@@ -153,11 +164,11 @@ def numbers_in(value: Any) -> Iterator[Number]:
                 yield from numbers_in(material)
             for child in value.children:
                 yield from numbers_in(child)
-        case Material():
-            yield from numbers_in(value.call)
         case FunctionCall():
             for inner in value.values.values():
                 yield from numbers_in(inner)
+        case _ if (call := _call_of(value)) is not None:
+            yield from numbers_in(call)
 
 
 class _Copying:
@@ -185,12 +196,11 @@ class _Copying:
         match value:
             case Number():
                 return self._number(value)
-            case Material():
-                call = self._value(value.call)
-                return Material.of(call, reflects=value.reflects, refracts=value.refracts)
             case FunctionCall():
                 inner = {name: self._value(v) for name, v in value.values.items()}
                 return replace(value, values=inner)
+            case _ if (call := _call_of(value)) is not None:
+                return value.with_call(self._value(call))
             case _:
                 return value
 

@@ -18,15 +18,15 @@ from distal.frontend import Assembly
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
 from distal.packages import PackageError
+from distal.scene.lowering.parts.flatten import Member, members_of
+from distal.scene.lowering.parts.kinds import Kind, is_moving, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
-from distal.scene.parts.flatten import Member, members_of
-from distal.scene.parts.kinds import Kind, is_moving, kinds_of
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
-    from distal.scene.parts import rows
+    from distal.scene.lowering.parts import rows
 else:
-    rows = LazyModule("distal.scene.parts.rows")  # needs NumPy
+    rows = LazyModule("distal.scene.lowering.parts.rows")  # needs NumPy
 
 # Fewer parts are not worth a table; more kinds would be too much code.
 LEAST_PARTS: Final = 16

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from distal.fields.guarantees import ENDLESS
 from distal.lang.resources import Buffer
-from distal.scene.parts.box_tree import box_tree
-from distal.scene.parts.flatten import Member
-from distal.scene.parts.kind_boxes import boxes_of, columns_of
-from distal.scene.parts.kinds import Kind
-from distal.scene.parts.table import Table
+from distal.scene.lowering.parts.box_tree import box_tree
+from distal.scene.lowering.parts.flatten import Member
+from distal.scene.lowering.parts.kind_boxes import boxes_of, columns_of
+from distal.scene.lowering.parts.kinds import Kind
+from distal.scene.lowering.parts.table import Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from distal.ir.types import FLOAT, VEC3, Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import BoundsComposer
-from distal.scene.parts.kinds import Kind
+from distal.scene.lowering.parts.kinds import Kind
 from distal.scene.tree.calls import COLUMN
 from distal.scene.tree.values import StatementList, Values
 
