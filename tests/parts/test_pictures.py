@@ -86,7 +86,10 @@ def test_random_parts_have_the_same_picture(seed):
     "given",
     [
         {"look": "studio", "lights": None, "background": None},
-        {"camera": Camera((-0.3, 1.3, 0.4), target=(1.0, 0.2, 0.0)), "normals": "six_taps"},
+        {
+            "camera": Camera((-0.3, 1.3, 0.4), target=(1.0, 0.2, 0.0)),
+            "lights": [SUN, AmbientLight()],
+        },
     ],
     ids=["studio", "among"],
 )

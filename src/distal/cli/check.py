@@ -103,7 +103,8 @@ def _table(report: ValidationReport) -> Iterator[str]:
         return
     yield ""
     kinds = "one kind" if len(table.kinds) == 1 else f"{len(table.kinds)} kinds"
-    yield f"{table.count:,} parts of {kinds} are drawn through a tree of boxes, one of each is shown"
+    parts = f"{table.count:,} parts of {kinds}"
+    yield f"{parts} are drawn through a tree of boxes; one of each is shown"
     for kind in table.kinds[:MOST_ROWS]:
         numbers = f"{kind.columns} numbers each{_place(kind.place)}"
         yield f"  {kind.count:,} {kind.name}, {numbers}"

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
+from distal.diagnostics import CompileError
 from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import EXACT_OUTSIDE, Operator
 from distal.frontend import Assembly
@@ -31,6 +32,8 @@ else:
 # Fewer parts are not worth a table; more kinds would be too much code.
 LEAST_PARTS: Final = 16
 MOST_KINDS: Final = 64
+# The most parts of a program without a table: with more, compilation takes minutes.
+MOST_WITHOUT: Final = 2048
 
 INFINITE: Final = "it has no finite box"
 MOVING: Final = "its shape depends on parameters or time"
@@ -106,8 +109,20 @@ def rolled(root: Node) -> Rolled:
 
 
 def rolled_for(assembly: Assembly, root: Node) -> Node:
-    """Return the tree with a table, if a program can have one; else the tree itself."""
-    return rolled(root).node if assembly.has_buffers else root
+    """Return the tree with a table, if a program can have one; else the tree itself.
+
+    Raises:
+        CompileError: The target has no buffers for a table, and the parts are too many without one.
+    """
+    if assembly.has_buffers:
+        return rolled(root).node
+    if root.parts > MOST_WITHOUT:
+        raise CompileError.at(
+            f"{root.parts:,} parts of '{root.name}' need a table, and this target has no buffers",
+            root.place,
+            f"glsl-es300, glsl-330 and wgsl have; {MOST_WITHOUT:,} parts are possible without",
+        )
+    return root
 
 
 def split_table(root: Node) -> tuple[TableNode | None, Node | None]:
@@ -135,6 +150,8 @@ def _roll(root: Node) -> Rolled:
     try:
         found = rows.rows_of(kinds[:MOST_KINDS])
     except PackageError:
+        if root.parts > MOST_WITHOUT:
+            raise
         return nothing  # texts are compiled without NumPy too
     reasons |= dict.fromkeys(map(id, found.infinite), INFINITE)
     if found.count < LEAST_PARTS:

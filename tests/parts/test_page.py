@@ -1,0 +1,51 @@
+"""A page carries the table of a scene as data, and shows the picture of the CPU."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import distal
+from distal import Box, Camera, CompileError, DistantLight, Plane, Scene, Sphere
+from distal.scene.viewing.viewable import viewable
+from tests.page.looking import looked_at
+
+
+def pebbles(count):
+    rng = np.random.default_rng(4)
+    made = []
+    for i, p in enumerate(rng.uniform(-1, 1, (count, 3)) * (2.0, 0.3, 2.0)):
+        a = float(rng.uniform(0.2, 0.6)) * count ** (-1 / 3)
+        pebble = Sphere(a) if i % 2 else Box(a, a, a).rotate(y=float(rng.uniform(0, 6)))
+        made.append(pebble.translate(*p).paint(tuple(rng.uniform(0.2, 0.9, 3))))
+    return made[0].union(made[1:]) | Plane(y=-0.4)
+
+
+def scene_of(count):
+    light = DistantLight((1.0, 2.0, 1.5), angle=0.05)
+    camera = Camera((3.0, 2.0, 4.0), target=(0.0, -0.2, 0.0), fov_deg=30.0)
+    return Scene(pebbles(count), camera=camera, lights=light, ambient_occlusion=0.1)
+
+
+def test_a_page_of_many_parts(tmp_path):
+    file = tmp_path / "pebbles.html"
+    scene = scene_of(2000)
+    scene.export(file)
+    assert file.stat().st_size < 300_000  # 2,000 rows of 9 numbers are 72 kB, the player is 60
+    with looked_at(file) as looked:
+        assert looked.beside(viewable(scene)).is_agreement
+
+
+def test_targets_without_buffers_draw_a_few_parts_without_a_table():
+    text = distal.compile(scene_of(20), target="glsl-es100").text
+    assert "part_boxes" not in text
+    assert "part_boxes" in distal.compile(scene_of(20), target="glsl-es300").text
+
+
+@pytest.mark.parametrize("target", ["glsl-es100", "shadertoy"])
+def test_targets_without_buffers_refuse_many(target):
+    with pytest.raises(CompileError) as caught:
+        distal.compile(scene_of(3000), target=target)
+    (found,) = caught.value.diagnostics
+    assert found.message == ("3,001 parts of 'union' need a table, and this target has no buffers")
+    assert found.hint == "glsl-es300, glsl-330 and wgsl have; 2,048 parts are possible without"
