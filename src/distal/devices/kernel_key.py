@@ -22,7 +22,7 @@ from distal.version import __version__
 # functions of the prelude, which the front end lowers.
 _COMPILER: Final = (
     *("ir", "passes", "backends/llvm", "devices", "frontend", "lang/prelude"),
-    *("backends/base.py", "compiler"),
+    *("backends/base.py", "compiler", "tape"),
 )
 _VERSION_FILE: Final = "_version.py"
 _LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")

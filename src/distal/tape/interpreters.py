@@ -1,0 +1,472 @@
+"""Write the interpreters of tapes, for floats and for intervals of 64 lanes.
+
+Input: the shape of the machine's vectors. Output: the text of three LLVM functions. They do not
+depend on any tape: they read its operations (``layout``) and jump to the code of each.
+
+Floats: a slot holds 64 floats. Intervals: a slot holds 64 lower ends and 64 upper ends. What an
+interval says about the float value of the same operation at any point of the lane's tile:
+
+- If both ends are finite, the value is not NaN and is between them, ends included. Sums, products,
+  quotients and roots are rounded correctly and so never decrease where the exact result increases:
+  the rounded result of the ends bounds all rounded results. Elementary functions are widened by
+  their known errors.
+- If an end is infinite or NaN, nothing is known; the value may be NaN. Every rule whose result
+  could be finite nevertheless adds a *doubt*, which is 0, or NaN if nothing is known of an operand.
+
+Source: T. Hickey, Q. Ju, M. H. van Emden, "Interval Arithmetic: from Principles to Implementation",
+Journal of the ACM 48 (2001).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from distal.backends.llvm.lanes import Lanes, Leaf
+from distal.backends.llvm.program import LaneProgram
+from distal.backends.llvm.writer import LlvmWriter
+from distal.ir.types import Kind
+from distal.tape.layout import (
+    FIELD,
+    FLOAT_SLOT,
+    INTERVAL_SLOT,
+    LANES,
+    OPERATION_BYTES,
+)
+from distal.tape.machine_code import POINTER, WORD, Code, Value
+from distal.tape.operations import ELEMENTARY, FIRST_ELEMENTARY, NUMBER, OPERATIONS, Bound
+
+_UPPER: Final = FLOAT_SLOT  # bytes from the lower ends of a slot to its upper ends
+# Twice the largest error of an elementary function on the CPU, with a margin: the values at the
+# ends of an interval and those inside may be off in opposite directions. The errors are in
+# ``lang.prelude.elementary``; ``tests/tape/test_intervals.py`` measures them against these.
+RELATIVE_ERROR: Final = 4e-6
+ABSOLUTE_ERROR: Final = 4e-6
+LARGEST_ANGLE: Final = 1e4  # beyond it, sines are less accurate: their interval is -1 to 1
+_ROUNDINGS: Final = {"floor": "floor", "ceil": "ceil", "round": "rint", "trunc": "trunc"}
+
+Write = Callable[[], None]
+
+
+def vector_type(lanes: Lanes) -> str:
+    """Return LLVM's type of one register of floats."""
+    return lanes.vector(Kind.FLOAT)
+
+
+class Reader:
+    """The operation that an interpreter's loop has reached."""
+
+    def __init__(self, code: Code, operation: Value) -> None:
+        self.code = code
+        self._operation = operation
+
+    def field(self, name: str) -> Value:
+        """Return a field of the operation: its number, a slot, or a constant's number."""
+        return self.code.load(self._operation.at(FIELD[name]), "i16")
+
+
+class _Interpreter:
+    """What both interpreters share: the loop over the operations, and access to chunks."""
+
+    def __init__(self, lanes: Lanes, declarations: set[str], slot: int) -> None:
+        self.code = Code(lanes, declarations)
+        self.lanes = lanes
+        self.vector = vector_type(lanes)
+        self._slot = slot
+        self.operations = self.code.parameter("operations", POINTER)
+        self.length = self.code.parameter("length")
+        self.constants = self.code.parameter("constants", POINTER)
+        self.slots = self.code.parameter("slots", POINTER)
+        self.inputs = self.code.parameter("inputs", POINTER)
+
+    @property
+    def offsets(self) -> range:
+        """The byte offset of each chunk in 64 floats."""
+        return range(0, FLOAT_SLOT, 4 * self.lanes.width)
+
+    def slot(self, reader: Reader, field: str) -> Value:
+        """Return the address of an operand's slot, or of the result's."""
+        return self.slots.at(reader.field(field) * self._slot)
+
+    def load(self, address: Value, offset: int) -> Value:
+        """Load a chunk."""
+        return self.code.load(address.at(offset), self.vector, align=64)
+
+    def store(self, value: Value, address: Value, offset: int) -> None:
+        """Store a chunk."""
+        self.code.store(value, address.at(offset), align=64)
+
+    def constant(self, reader: Reader) -> Value:
+        """Return a constant, broadcast to a chunk."""
+        number = self.code.load(self.constants.at(reader.field("a") * 4), "float")
+        first = f"insertelement {self.vector} poison, float {number.name}, i64 0"
+        spread = self.code.value(self.vector, first).name
+        zeros = f"<{self.lanes.width} x i32> zeroinitializer"
+        both = f"{self.vector} {spread}, {self.vector} poison"
+        return self.code.value(self.vector, f"shufflevector {both}, {zeros}")
+
+    def least(self, a: Value, b: Value) -> Value:
+        """Return ``b if b < a else a``."""
+        return self.code.select(b < a, b, a)
+
+    def most(self, a: Value, b: Value) -> Value:
+        """Return ``b if a < b else a``."""
+        return self.code.select(a < b, b, a)
+
+    def call(self, name: str, *operands: Value) -> Value:
+        """Call an LLVM intrinsic for a chunk."""
+        suffix = f"v{self.lanes.width}f32"
+        return self.code.intrinsic(f"{name}.{suffix}", self.vector, *operands)
+
+    def positive(self, a: Value) -> Value:
+        """Return ``max(a, 0)``, 0 for NaN."""
+        return self.code.select(a > 0.0, a, self.code.literal(0.0, self.vector))
+
+    def loop(self, case: Callable[[str, Reader, Value], None]) -> None:
+        """Write the loop; ``case`` writes the code of one operation at a place of the tape."""
+        code = self.code
+        with code.count(self.length) as index:
+            reader = Reader(code, self.operations.at(index * OPERATION_BYTES))
+            labels = {i: f"op_{row.name}" for i, row in enumerate(OPERATIONS)}
+            with code.switch(reader.field("operation"), labels) as after:
+                for number, row in enumerate(OPERATIONS):
+                    code.writer.begin(labels[number])
+                    case(row.name, reader, index)
+                    code.writer.jump(after)
+
+
+def float_code(lanes: Lanes, declarations: set[str]) -> str:
+    """Return the function that evaluates a tape at 64 points.
+
+    Args:
+        lanes: The shape of the machine's vectors.
+        declarations: Receives the declarations of LLVM intrinsics.
+    """
+    self = _Interpreter(lanes, declarations, FLOAT_SLOT)
+    code = self.code
+
+    def value(name: str, a: Value, b: Value) -> Value:
+        match name:
+            case "add":
+                return a + b
+            case "sub":
+                return a - b
+            case "mul":
+                return a * b
+            case "div":
+                return a / b
+            case "min":
+                return self.least(a, b)
+            case "max":
+                return self.most(a, b)
+            case "neg":
+                return -a
+            case "abs":
+                return self.call("fabs", a)
+            case "square":
+                return a * a
+            case "sqrt":
+                return self.call("sqrt", self.positive(a))
+            case "less" | "less_equal" | "equal":
+                holds = {"less": a < b, "less_equal": a <= b, "equal": a.same(b)}[name]
+                return code.select(holds, 1.0, code.literal(0.0, self.vector))
+            case _:
+                return self.call(_ROUNDINGS[name], a)
+
+    def case(name: str, reader: Reader, _: Value) -> None:
+        row = OPERATIONS[NUMBER[name]]
+        target = self.slot(reader, "result")
+        if name == "const":
+            constant = self.constant(reader)
+            for offset in self.offsets:
+                self.store(constant, target, offset)
+        elif name in ("x", "y", "z"):
+            source = self.inputs.at("xyz".index(name) * FLOAT_SLOT)
+            for offset in self.offsets:
+                self.store(self.load(source, offset), target, offset)
+        elif name in ELEMENTARY:
+            operands = [self.slot(reader, f) for f in "ab"[: row.operands]]
+            number = code.literal(NUMBER[name] - FIRST_ELEMENTARY)
+            code.call("elementary", target, operands[0], operands[-1], number)
+        elif name == "select":
+            a, b, c = (self.slot(reader, f) for f in "abc")
+            for offset in self.offsets:
+                chosen = self.load(a, offset) > 0.5
+                both = self.load(b, offset), self.load(c, offset)
+                self.store(code.select(chosen, *both), target, offset)
+        else:
+            addresses = [self.slot(reader, f) for f in "ab"[: row.operands]]
+            for offset in self.offsets:
+                chunks = [self.load(address, offset) for address in addresses]
+                self.store(value(name, chunks[0], chunks[-1]), target, offset)
+
+    self.loop(case)
+    params = "ptr %operations, i64 %length, ptr %constants, ptr noalias %slots, ptr %inputs"
+    return code.function("floats", params)
+
+
+class _Intervals(_Interpreter):
+    """The interval interpreter, which also records the choices of each lane."""
+
+    def __init__(self, lanes: Lanes, declarations: set[str]) -> None:
+        super().__init__(lanes, declarations, INTERVAL_SLOT)
+        self.first = self.code.parameter("first", POINTER)
+        self.second = self.code.parameter("second", POINTER)
+        self._ends = self.code.stack(2 * FLOAT_SLOT)
+
+    def ends(self, address: Value, offset: int) -> tuple[Value, Value]:
+        """Load a chunk of lower ends and one of upper ends."""
+        return self.load(address, offset), self.load(address, _UPPER + offset)
+
+    def keep(self, ends: tuple[Value, Value], address: Value, offset: int) -> None:
+        """Store a chunk of lower and one of upper ends."""
+        self.store(ends[0], address, offset)
+        self.store(ends[1], address, _UPPER + offset)
+
+    def doubt(self, *ends: Value) -> Value:
+        """Return 0 where all ends are finite, else NaN (or NaN where their sum overflows)."""
+        total = ends[0] - ends[1]
+        for low, high in zip(ends[2::2], ends[3::2], strict=True):
+            total = total + (low - high)
+        return total * 0.0
+
+    def corners(self, values: list[Value]) -> tuple[Value, Value]:
+        """Return the least and the most of four values; NaN is only kept by ``doubt``."""
+        p, q, r, s = values
+        low = self.least(self.least(p, q), self.least(r, s))
+        return low, self.most(self.most(p, q), self.most(r, s))
+
+    def record(self, masks: list[list[Value]], index: Value) -> None:
+        """Store which lanes take the first operand for certain, and which the second.
+
+        Args:
+            masks: For both, one vector of bools for each chunk.
+            index: The operation's place on the tape.
+        """
+        code, width = self.code, self.lanes.width
+        for chunks, target in zip(masks, (self.first, self.second), strict=True):
+            joined = code.literal(0)
+            for number, chunk in enumerate(chunks):
+                whole = code.value(f"i{width}", f"bitcast {chunk.type} {chunk.name} to i{width}")
+                word = code.value(WORD, f"zext i{width} {whole.name} to i64")
+                joined = joined | (word << (number * width) if number else word)
+            code.store(joined, target.at(index * 8))
+
+    def case(self, name: str, reader: Reader, index: Value) -> None:
+        """Write the code of one operation."""
+        row = OPERATIONS[NUMBER[name]]
+        target = self.slot(reader, "result")
+        if name == "const":
+            constant = self.constant(reader)
+            for offset in self.offsets:
+                self.keep((constant, constant), target, offset)
+        elif name in ("x", "y", "z"):
+            source = self.inputs.at("xyz".index(name) * INTERVAL_SLOT)
+            for offset in self.offsets:
+                self.keep(self.ends(source, offset), target, offset)
+        elif row.chooses:
+            choose = self._select if name == "select" else self._extremum
+            choose(name, reader, target, index)
+        elif row.bound is not None:
+            operands = [self.slot(reader, f) for f in "ab"[: row.operands]]
+            self._elementary(name, row.bound, operands[0], target)
+        else:
+            addresses = [self.slot(reader, f) for f in "ab"[: row.operands]]
+            for offset in self.offsets:
+                operands = [end for address in addresses for end in self.ends(address, offset)]
+                self.keep(self._plain(name, operands), target, offset)
+
+    def _extremum(self, name: str, reader: Reader, target: Value, index: Value) -> None:
+        """``min`` and ``max``: an operand is taken only if both are known."""
+        a, b = self.slot(reader, "a"), self.slot(reader, "b")
+        first, second = [], []
+        for offset in self.offsets:
+            (al, ah), (bl, bh) = self.ends(a, offset), self.ends(b, offset)
+            doubt = self.doubt(al, ah, bl, bh)
+            if name == "min":
+                low, high = self.least(al, bl), self.least(ah, bh)
+                first.append((ah + doubt) < bl)
+                second.append((bh + doubt) < al)
+            else:
+                low, high = self.most(al, bl), self.most(ah, bh)
+                first.append((bh + doubt) < al)
+                second.append((ah + doubt) < bl)
+            self.keep((low, high + doubt), target, offset)
+        self.record([first, second], index)
+
+    def _select(self, _: str, reader: Reader, target: Value, index: Value) -> None:
+        a, b, c = (self.slot(reader, f) for f in "abc")
+        first, second = [], []
+        for offset in self.offsets:
+            low, high = self.ends(a, offset)
+            (bl, bh), (cl, ch) = self.ends(b, offset), self.ends(c, offset)
+            yes, no = low > 0.5, high < 0.5
+            doubt = self.doubt(bl, bh, cl, ch)
+            either = self.least(bl, cl), self.most(bh, ch) + doubt
+            pairs = zip((bl, bh), (cl, ch), either, strict=True)
+            chosen = [
+                self.code.select(yes, y, self.code.select(no, n, both)) for y, n, both in pairs
+            ]
+            self.keep((chosen[0], chosen[1]), target, offset)
+            first.append(yes)
+            second.append(no)
+        self.record([first, second], index)
+
+    def _plain(self, name: str, ends: list[Value]) -> tuple[Value, Value]:
+        """Return the interval of an operation that has no choice."""
+        low, high = ends[0], ends[1]
+        match name:
+            case "add":
+                return low + ends[2], high + ends[3]
+            case "sub":
+                return low - ends[3], high - ends[2]
+            case "mul":
+                products = [x * y for x in ends[:2] for y in ends[2:]]
+                least, most = self.corners(products)
+                # A product is infinite or NaN if a factor is.
+                p, q, r, s = products
+                return least, most + self.doubt(p, q, r, s)
+            case "div":
+                return self._quotient(ends)
+            case "neg":
+                return -high, -low
+            case "abs":
+                least = self.positive(self.most(low, -high))
+                return least, self.most(-low, high) + self.doubt(low, high)
+            case "square":
+                near = self.positive(self.most(low, -high))
+                far = self.most(low * low, high * high)
+                return near * near, far + self.doubt(low, high)
+            case "sqrt":
+                roots = [self.call("sqrt", self.positive(end)) for end in (low, high)]
+                return roots[0], roots[1] + self.doubt(low, high)
+            case "less" | "less_equal" | "equal":
+                return self._comparison(name, ends)
+            case _:
+                return self.call(_ROUNDINGS[name], low), self.call(_ROUNDINGS[name], high)
+
+    def _quotient(self, ends: list[Value]) -> tuple[Value, Value]:
+        low, high, least, most = ends
+        nothing = self.code.literal(float("nan"), self.vector)
+        quotients = [x / y for x in (low, high) for y in (least, most)]
+        bottom, top = self.corners(quotients)
+        doubt = self.doubt(*ends)
+        crosses = (least <= 0.0) & (most >= 0.0)
+        return bottom, self.code.select(crosses, nothing, top + doubt)
+
+    def _comparison(self, name: str, ends: list[Value]) -> tuple[Value, Value]:
+        """Return 1 to 1 if it always holds, 0 to 0 if it never does, else 0 to 1.
+
+        Comparisons with NaN do not hold, so "never" needs no doubt.
+        """
+        low, high, least, most = ends
+        doubt = self.doubt(*ends)
+        zero = self.code.literal(0.0, self.vector)
+        one = self.code.literal(1.0, self.vector)
+        if name == "equal":
+            apart = ((high + doubt) < least) | ((most + doubt) < low)
+            return zero, self.code.select(apart, 0.0, one)
+        if name == "less":
+            always, never = (high + doubt) < least, (low + doubt) >= most
+        else:
+            always, never = (high + doubt) <= least, (low + doubt) > most
+        return self.code.select(always, 1.0, zero), self.code.select(never, 0.0, one)
+
+    def _elementary(self, name: str, bound: Bound, a: Value, target: Value) -> None:
+        code = self.code
+        if bound is Bound.NONE:
+            nothing = code.literal(float("nan"), self.vector)
+            for offset in self.offsets:
+                self.keep((nothing, nothing), target, offset)
+            return
+        number = code.literal(NUMBER[name] - FIRST_ELEMENTARY)
+        if bound is Bound.WAVE:
+            self._wave(a, target, number)
+            return
+        code.call("elementary", self._ends, a, a, number)
+        code.call("elementary", self._ends.at(_UPPER), a.at(_UPPER), a.at(_UPPER), number)
+        for offset in self.offsets:
+            doubt = self.doubt(*self.ends(a, offset))
+            low, high = self.ends(self._ends, offset)
+            if bound is Bound.FALLING:
+                low, high = high, low
+            low = low - (self.call("fabs", low) * RELATIVE_ERROR + ABSOLUTE_ERROR)
+            high = high + (self.call("fabs", high) * RELATIVE_ERROR + ABSOLUTE_ERROR)
+            self.keep((low, high + doubt), target, offset)
+
+    def _wave(self, a: Value, target: Value, number: Value) -> None:
+        """A function with slope at most 1: the value in the middle, plus and minus the radius."""
+        code = self.code
+        for offset in self.offsets:
+            low, high = self.ends(a, offset)
+            self.store(low + (high - low) * 0.5, self._ends, offset)
+        middles = self._ends.at(_UPPER)
+        code.call("elementary", middles, self._ends, self._ends, number)
+        for offset in self.offsets:
+            low, high = self.ends(a, offset)
+            middle, value = self.load(self._ends, offset), self.load(middles, offset)
+            radius = self.most(high - middle, middle - low) * 1.000001 + ABSOLUTE_ERROR
+            far = self.most(-low, high) > LARGEST_ANGLE
+            least = code.select(
+                far, -1.0, self.most(value - radius, code.literal(-1.0, self.vector))
+            )
+            most = code.select(far, 1.0, self.least(value + radius, code.literal(1.0, self.vector)))
+            self.keep((least, most + self.doubt(low, high)), target, offset)
+
+
+def interval_code(lanes: Lanes, declarations: set[str]) -> str:
+    """Return the function that evaluates a tape with intervals in 64 tiles.
+
+    Args:
+        lanes: The shape of the machine's vectors.
+        declarations: Receives the declarations of LLVM intrinsics.
+    """
+    self = _Intervals(lanes, declarations)
+    self.loop(self.case)
+    params = (
+        "ptr %operations, i64 %length, ptr %constants, ptr noalias %slots, ptr %inputs, "
+        "ptr %first, ptr %second"
+    )
+    return self.code.function("intervals", params)
+
+
+def elementary_code(program: LaneProgram) -> str:
+    """Return the function that applies an elementary function to 64 floats in memory.
+
+    Args:
+        program: The module of ``elementary.elementary`` after the passes of the CPU.
+    """
+    lanes, arithmetic = program.lanes, program.arithmetic()
+    writer = arithmetic.writer
+    entry = program.module.function(program.module.entry)
+    # The function uses no uniforms, resources or loops, so the job is never read.
+    writer.line("%job = getelementptr i8, ptr %x, i64 0")
+    number = writer.value("trunc i64 %number to i32")
+    chunk = 4 * lanes.width
+    for start in range(0, LANES, lanes.count):
+        arithmetic.enter()
+        loaded = [
+            tuple(
+                writer.value(f"load {lanes.vector(Kind.FLOAT)}, ptr {at}, align 64")
+                for at in _chunks(writer, source, start, lanes)
+            )
+            for source in ("%x", "%y")
+        ]
+        args = [
+            (Leaf(Kind.INT, (number,), True),),
+            *((Leaf(Kind.FLOAT, names, False),) for names in loaded),
+        ]
+        result = program.run(arithmetic, entry, list(args), (False, True, True), None)
+        (leaf,) = arithmetic.spread_all(result)
+        for name, at in zip(leaf.names, _chunks(writer, "%target", start, lanes), strict=True):
+            writer.line(
+                f"store {lanes.vector(Kind.FLOAT)} {name}, ptr {at}, align {min(64, chunk)}"
+            )
+        arithmetic.leave()
+    params = "ptr %target, ptr %x, ptr %y, i64 %number"
+    return f"define internal void @elementary({params}) #0 {{\n{writer.text()}\n  ret void\n}}"
+
+
+def _chunks(writer: LlvmWriter, base: str, start: int, lanes: Lanes) -> list[str]:
+    offsets = range(start, start + lanes.count, lanes.width)
+    return [writer.value(f"getelementptr i8, ptr {base}, i64 {4 * at}") for at in offsets]

@@ -1,0 +1,90 @@
+"""The memory layout of tapes and of the runtime's work.
+
+Read by the writers of machine code and by the host. An operation is six numbers of 16 bits.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+LANES: Final = 64  # tiles, or pixels, that one pass over a tape evaluates
+OPERATION_FIELDS: Final = ("operation", "result", "a", "b", "c", "spare")
+FIELD: Final = {name: 2 * i for i, name in enumerate(OPERATION_FIELDS)}
+OPERATION_BYTES: Final = 2 * len(OPERATION_FIELDS)
+MOST_OPERATIONS: Final = 65_535  # results and slots are numbers of 16 bits
+FLOAT_SLOT: Final = 4 * LANES
+INTERVAL_SLOT: Final = 2 * FLOAT_SLOT
+TILE: Final = 64  # pixels: sides of the first tiles
+SMALL_TILE: Final = 8  # pixels: sides of the tiles in a tile; its pixels are one pass
+
+# A tape of at most this many operations keeps each value in a slot of its own; giving them slots
+# that are reused costs more than it saves.
+UNALLOCATED: Final = 64
+
+# The fields of a job: eight bytes each, in this order. Pointers are to memory of the host.
+JOB_FIELDS: Final = (
+    "counter",  # pointer: the next group of 64 tiles
+    "stop",  # pointer: not 0 stops the work
+    "workers",  # pointer: the number of threads that have begun
+    "output",  # pointer: four floats for each pixel
+    "width",  # pixels
+    "height",  # pixels
+    "samples",  # in each direction of a pixel
+    "view",  # pointer to floats: ``VIEW_FIELDS``
+    "colors",  # pointer to floats: four inside, four outside
+    "constants",  # pointer to the tape's constants
+    "operations",  # pointer: operation i writes value i
+    "allocated",  # pointer: the same operations with slots
+    "length",  # operations of the tape
+    "workspace",  # pointer to the memory of the first thread
+    "workspace_bytes",  # of each thread
+    "offsets",  # pointer to the offset of each part of a thread's memory
+)
+VIEW_FIELDS: Final = ("x", "step_x", "y", "step_y", "z")  # position of the upper left corner
+
+# The memory of a thread, in this order: bytes for each operation of the tape, for each slot, and a
+# fixed number of bytes. Level 0 are tiles, level 1 are small tiles.
+WORKSPACE: Final = {
+    "tile_inputs": (0, 0, 3 * INTERVAL_SLOT),
+    "pixel_inputs": (0, 0, 3 * FLOAT_SLOT),
+    "coverage": (0, 0, FLOAT_SLOT),
+    "lengths_0": (0, 0, 8 * LANES),
+    "lengths_1": (0, 0, 8 * LANES),
+    "intervals": (0, INTERVAL_SLOT, 0),
+    "floats": (0, FLOAT_SLOT, UNALLOCATED * FLOAT_SLOT),
+    "first_0": (8, 0, 0),
+    "second_0": (8, 0, 0),
+    "live_0": (8, 0, 0),
+    "first_1": (8, 0, 0),
+    "second_1": (8, 0, 0),
+    "live_1": (8, 0, 0),
+    "allocated_1": (OPERATION_BYTES, 0, 0),
+    "allocated_2": (OPERATION_BYTES, 0, 0),
+    "last": (2, 0, 0),
+    "slot_of": (2, 0, 0),
+    "free": (2, 0, 0),
+    "names_0": (2 * LANES, 0, 0),
+    "names_1": (2 * LANES, 0, 0),
+    "tapes_0": (OPERATION_BYTES * LANES, 0, 0),
+    "tapes_1": (OPERATION_BYTES * LANES, 0, 0),
+}
+FILL: Final = "distal_tape_fill"
+ALLOCATE: Final = "distal_tape_allocate"
+FLOATS: Final = "distal_tape_floats"
+INTERVALS: Final = "distal_tape_intervals"
+PRUNE: Final = "distal_tape_prune"
+
+
+def workspace(length: int, slots: int) -> tuple[dict[str, int], int]:
+    """Return the offset of each part of a thread's memory, and its size, in bytes.
+
+    Args:
+        length: The number of operations of the tape.
+        slots: The number of slots of the tape.
+    """
+    offsets, at = {}, 0
+    for name, (operation, slot, fixed) in WORKSPACE.items():
+        offsets[name] = at
+        at += -(-(operation * length + slot * slots + fixed) // 64) * 64
+    # An odd number of cache lines, so that the threads' memory does not share sets of the cache.
+    return offsets, at + 64 * (1 - at // 64 % 2)
