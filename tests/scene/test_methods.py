@@ -35,6 +35,8 @@ NO_OPERATOR = {
     "paint": "scene/test_surfaces",
     "cut_material": "scene/test_surfaces",
     "from_function": "below: all children here",
+    "from_vm": "tape/test_vm_files",
+    "fill": "tape/test_filled_shapes",
     "parameters": "asks",
     "text": "shows",
     "show": "shows",

@@ -38,7 +38,7 @@ def tapes(draw: st.DrawFn, most: int = 40, elementary: bool = True) -> Tape:
     numbers = draw(st.lists(st.sampled_from(NUMBERS), min_size=1, max_size=4))
     values += [builder.constant(number) for number in numbers]
     bools: list[int] = []
-    rows = [row for row in _INNER if elementary or row.bound is None]
+    rows = [row for row in _INNER if elementary or row.trend is None]
     for _ in range(draw(st.integers(1, most))):
         row = draw(st.sampled_from(_CHOICES if draw(st.booleans()) else rows))
         back = st.integers(1, min(len(values), 12))

@@ -9,7 +9,8 @@ import pytest
 
 from distal.devices.base import Cancelled
 from distal.devices.features import host_levels
-from distal.tape.runtime import TapeProgram, View
+from distal.tape import runtime
+from distal.tape.runtime import PlaneView, TapeProgram
 from distal.tape.tape import Tape, TapeBuilder
 
 WHITE, BLACK = (1.0, 1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 1.0)
@@ -35,12 +36,18 @@ def rings(count: int = 12) -> Tape:
     return builder.tape(union)
 
 
-def centered(width: int, height: int, span: float = 2.0) -> View:
+def centered(width: int, height: int, span: float = 2.0) -> PlaneView:
     step = span / height
-    return View(-0.5 * width * step, step, 0.5 * height * step, -step)
+    return PlaneView(-0.5 * width * step, step, 0.5 * height * step, -step)
 
 
-def pixel_centers(width: int, height: int, view: View) -> np.ndarray:
+def shades(samples: int) -> np.ndarray:
+    """Black to white, for each number of samples inside."""
+    shares = np.linspace(0.0, 1.0, samples + 1)[:, None]
+    return shares * np.array(WHITE) + (1.0 - shares) * np.array(BLACK)
+
+
+def pixel_centers(width: int, height: int, view: PlaneView) -> np.ndarray:
     """The coordinates, computed as the runtime computes them: product, then sum, in 32 bits."""
     f = np.float32
     x = f(view.x) + (np.arange(width, dtype=f) + f(0.5)) * f(view.step_x)
@@ -82,26 +89,60 @@ def test_samples_give_the_covered_area():
     program = TapeProgram(builder.tape(disk))
     area = 0.7**2 * math.pi
     found = [
-        float(program.fill(100, 100, centered(100, 100), samples=n)[..., 0].mean()) * 4.0
-        for n in (1, 4)
+        float(program.fill(100, 100, centered(100, 100), colors=shades(n))[..., 0].mean()) * 4.0
+        for n in (1, 16)
     ]
     assert abs(found[1] - area) < 1e-3
     assert abs(found[1] - area) < abs(found[0] - area) + 1e-4
-    edges = program.fill(100, 100, centered(100, 100), samples=4)[..., 0]
+    edges = program.fill(100, 100, centered(100, 100), colors=shades(16))[..., 0]
     assert set((edges * 16).ravel().tolist()) <= set(range(17))
     assert ((edges > 0) & (edges < 1)).any()
 
 
-def test_colors_are_kept_exactly_and_mixed_by_coverage():
+def test_each_number_of_samples_has_its_color():
     program = TapeProgram(rings())
-    inside, outside = (0.1, 0.2, 0.3, 0.4), (0.9, 0.8, 0.7, 0.6)
     view = centered(90, 60)
-    mask = program.fill(90, 60, view, samples=2)[..., :1]
-    picture = program.fill(90, 60, view, samples=2, colors=(inside, outside))
-    assert np.allclose(picture, mask * inside + (1 - mask) * outside, atol=1e-6)
-    whole = mask[..., 0] == 1
-    assert (picture[whole] == np.float32(inside)).all()
-    assert (picture[mask[..., 0] == 0] == np.float32(outside)).all()
+    colors = np.random.default_rng(1).uniform(size=(5, 4)).astype(np.float32)
+    numbers = (program.fill(90, 60, view, colors=shades(4))[..., 0] * 4).astype(int)
+    assert set(numbers.ravel().tolist()) == set(range(5))
+    assert (program.fill(90, 60, view, colors=colors) == colors[numbers]).all()
+
+
+@pytest.fixture
+def dirty_memory(monkeypatch):
+    """The runtime's memory begins with ones, not with the zeros of new pages."""
+    aligned = runtime._aligned
+
+    def filled_memory(size: int) -> np.ndarray:
+        memory = aligned(size)
+        memory[:] = 255
+        return memory
+
+    monkeypatch.setattr(runtime, "_aligned", filled_memory)
+
+
+def test_nothing_is_read_before_it_is_written(dirty_memory):
+    view = centered(300, 300)
+    program = TapeProgram(rings())
+    inside = program.values(pixel_centers(300, 300, view)).reshape(300, 300) < 0
+    assert (program.fill(300, 300, view)[..., 0] == inside).all()
+
+
+def test_pruned_tapes_refer_to_their_own_values(dirty_memory):
+    """Also in fields that are not used: the next level looks them up."""
+    builder = TapeBuilder()
+    dropped = builder.operation("add", builder.operation("x"), builder.constant(9.0))
+    far = builder.operation("abs", builder.operation("y"))
+    near = builder.operation("sub", far, builder.constant(0.3))
+    program = TapeProgram(builder.tape(builder.operation("min", near, dropped)))
+    program.fill(64, 64, centered(64, 64), threads=1)
+    offsets = runtime.workspace(len(program.tape), program.slots)[0]
+    memory = program._memory
+    (length,) = memory[offsets["lengths_0"] :][:8].view(np.int64)
+    rows = memory[offsets["tapes_0"] :][: 12 * length].view(np.uint16).reshape(-1, 6)
+    assert length == 4
+    assert (rows[:, 1] == np.arange(4)).all()
+    assert (rows[1:, 2:5].max(axis=1) < rows[1:, 1]).all()
 
 
 def test_threads_do_not_change_the_picture():
@@ -116,7 +157,7 @@ def test_z_is_the_same_in_the_whole_picture():
     x, z = builder.operation("x"), builder.operation("z")
     program = TapeProgram(builder.tape(builder.operation("sub", x, z)))
     view = centered(100, 100)
-    moved = View(view.x, view.step_x, view.y, view.step_y, 0.5)
+    moved = PlaneView(view.x, view.step_x, view.y, view.step_y, 0.5)
     assert program.fill(100, 100, view)[0, :, 0].sum() == 50
     assert program.fill(100, 100, moved)[0, :, 0].sum() == 75
 
@@ -136,7 +177,7 @@ def test_what_is_nan_is_outside():
     squared = builder.operation("mul", builder.operation("square", big), builder.constant(0.0))
     tape = builder.tape(builder.operation("sub", squared, builder.constant(1.0)))
     program = TapeProgram(tape)
-    view = View(0.0, 0.02, 1.0, -0.02)
+    view = PlaneView(0.0, 0.02, 1.0, -0.02)
     values = program.values(pixel_centers(100, 100, view)).reshape(100, 100)
     assert np.isnan(values).any() and (values < 0).sum() == 0
     assert (program.fill(100, 100, view)[..., 0] == 0).all()
@@ -146,8 +187,8 @@ def test_sizes_and_samples_are_checked():
     program = TapeProgram(rings())
     with pytest.raises(ValueError, match="a picture is 1x1 to 32768x32768 pixels"):
         program.fill(0, 10, centered(10, 10))
-    with pytest.raises(ValueError, match="samples in each direction are 1 to 16, not 17"):
-        program.fill(10, 10, centered(10, 10), samples=17)
+    with pytest.raises(ValueError, match="samples of a pixel are a square number, not 3"):
+        program.fill(10, 10, centered(10, 10), colors=shades(3))
     with pytest.raises(ValueError, match="threads must be at least 1, not -2"):
         program.fill(10, 10, centered(10, 10), threads=-2)
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from distal.tape.operations import OPERATIONS, Bound
+from distal.ir.intrinsics import Trend
+from distal.tape.operations import OPERATIONS
 from distal.tape.runtime import TapeProgram
 from distal.tape.tape import Tape, TapeBuilder
 from tests.tape.random_tapes import LANES, Case, cases
 
-_ELEMENTARY = [r.name for r in OPERATIONS if r.bound not in (None, Bound.NONE)]
+_ELEMENTARY = [r.name for r in OPERATIONS if r.trend not in (None, Trend.UNKNOWN)]
 
 
 @settings(max_examples=80, deadline=None)

@@ -11,7 +11,7 @@ import time
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakKeyDictionary
 
@@ -28,6 +28,7 @@ from distal.ir.types import VEC4
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
+from distal.lang.lazy_module import LazyModule
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
 from distal.lang.render_options import Progress, RenderOptions, checked_time
@@ -44,6 +45,9 @@ from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 if TYPE_CHECKING:
     from distal.devices.gpu import GpuKernel
+    from distal.runtime import fills
+else:
+    fills = LazyModule("distal.runtime.fills")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +84,11 @@ class PythonExecutor:
         self._lock = threading.RLock()  # frames of a video are rendered by several threads
         self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
         self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
+
+    @cached_property
+    def tapes(self) -> fills.FunctionTapes:
+        """The tapes of filled shapes."""
+        return fills.FunctionTapes()
 
     def parameters(self, function: Func | Composed) -> list[Parameter]:
         """Return the parameters that a function and its callees read, in order of first use."""
@@ -257,6 +266,31 @@ class PythonExecutor:
             kernel = self.kernels.kernel(lowered, REFERENCE, 64)
         result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
+
+    def fill(
+        self,
+        shape: Composed,
+        view: Sequence[float],
+        colors: Sequence[Sequence[float]],
+        options: RenderOptions,
+        ready: fills.Ready | None = None,
+    ) -> Picture:
+        """Fill a flat shape with one color, and what is around it with another.
+
+        Args:
+            shape: The shape.
+            view: The left edge of the picture, the width of a pixel, the upper edge, and the height
+                of a pixel, which is negative.
+            colors: The display values of a pixel for each number of samples inside, 0 to all.
+            options: Size, time, parameters, threads, progress and cancel.
+            ready: Returns the shape's tape, if it has one without compilation.
+        """
+        shades = np.array(colors, np.float32)
+        return fills.fill(self, shape, view, shades, options, ready)
+
+    def lowered(self, function: Func | Composed) -> Lowered:
+        """Return the IR of a function that has the types of its own parameters."""
+        return self._lower(function, None)
 
     def at_pixel(
         self, function: Composed, place: tuple[float, float], options: RenderOptions

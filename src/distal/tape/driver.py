@@ -33,17 +33,17 @@ from distal.tape.layout import (
     VIEW_FIELDS,
     WORKSPACE,
 )
-from distal.tape.machine_code import POINTER, WORD, Code, Value
+from distal.tape.machine_code import POINTER, WORD, FunctionCode, Value
 
 _CHANNELS: Final = "<4 x float>"
 _PIXEL_BYTES: Final = 16
 _JOB: Final = "ptr noalias %job"
 
 
-class _Job:
+class _ThreadJob:
     """The fields of a job, and the memory of the thread that runs it."""
 
-    def __init__(self, code: Code, job: Value, workspace: Value) -> None:
+    def __init__(self, code: FunctionCode, job: Value, workspace: Value) -> None:
         self.code = code
         self.job = job
         self.workspace = workspace
@@ -66,38 +66,40 @@ class _Job:
         return self.code.load(self.pointer("view").at(4 * VIEW_FIELDS.index(name)), "float")
 
 
-def _as_float(code: Code, number: Value) -> Value:
+def _as_float(code: FunctionCode, number: Value) -> Value:
     return code.value("float", f"sitofp i64 {number.name} to float")
 
 
-def _coordinate(job: _Job, axis: str, pixels: Value) -> Value:
+def _coordinate(job: _ThreadJob, axis: str, pixels: Value) -> Value:
     """Return the coordinate of a place in pixels from the upper left corner."""
     return job.view(axis) + pixels * job.view(f"step_{axis}")
 
 
 def square_code(lanes: Lanes, declarations: set[str]) -> str:
     """Return the function that gives all pixels of a square one color."""
-    code = Code(lanes, declarations)
-    job = _Job(code, code.parameter("job", POINTER), code.parameter("job", POINTER))
+    code = FunctionCode(lanes, declarations)
+    job = _ThreadJob(code, code.parameter("job", POINTER), code.parameter("job", POINTER))
     x, y, size = (code.parameter(name) for name in ("x", "y", "size"))
     width, height = job.word("width"), job.word("height")
     right = code.select((x + size) < width, x + size, width)
     bottom = code.select((y + size) < height, y + size, height)
-    place = job.pointer("colors").at(code.parameter("which") * _PIXEL_BYTES)
+    samples = job.word("samples")
+    covered = code.parameter("inside") * samples * samples
+    place = job.pointer("colors").at(covered * _PIXEL_BYTES)
     color = code.load(place, _CHANNELS, align=4)
     output = job.pointer("output")
     with code.count(bottom, y) as row:
         line = output.at(row * width * _PIXEL_BYTES)
         with code.count(right, x) as column:
             code.store(color, line.at(column * _PIXEL_BYTES), align=16, streamed=True)
-    params = "ptr noalias %job, i64 %x, i64 %y, i64 %size, i64 %which"
+    params = "ptr noalias %job, i64 %x, i64 %y, i64 %size, i64 %inside"
     return code.function("square", params)
 
 
 def pixels_code(lanes: Lanes, declarations: set[str]) -> str:
     """Return the function that evaluates a tape at the pixels of a small tile and writes them."""
-    code = Code(lanes, declarations)
-    job = _Job(code, code.parameter("job", POINTER), code.parameter("memory", POINTER))
+    code = FunctionCode(lanes, declarations)
+    job = _ThreadJob(code, code.parameter("job", POINTER), code.parameter("memory", POINTER))
     tape, length = code.parameter("tape", POINTER), code.parameter("length")
     left, top = code.parameter("x"), code.parameter("y")
     source = code.variable(tape)
@@ -129,19 +131,17 @@ def pixels_code(lanes: Lanes, declarations: set[str]) -> str:
             added = code.select(inside, 1.0, code.literal(0.0, vector))
             total = code.load(coverage.at(offset), vector, align=64) + added
             code.store(total, coverage.at(offset), align=64)
-    _write_pixels(job, coverage, (left, top), _as_float(code, samples * samples))
+    _write_pixels(job, coverage, (left, top))
     params = "ptr noalias %job, ptr %memory, ptr %tape, i64 %length, i64 %x, i64 %y"
     return code.function("pixels", params)
 
 
-def _write_pixels(job: _Job, coverage: Value, corner: tuple[Value, Value], samples: Value) -> None:
-    """Write the colors of a small tile, mixed by the number of samples that are inside."""
+def _write_pixels(job: _ThreadJob, coverage: Value, corner: tuple[Value, Value]) -> None:
+    """Write the colors of a small tile; the number of samples that are inside selects each."""
     code = job.code
     left, top = corner
     width, height, output = job.word("width"), job.word("height"), job.pointer("output")
     colors = job.pointer("colors")
-    inside = code.load(colors, _CHANNELS, align=4)
-    outside = code.load(colors.at(_PIXEL_BYTES), _CHANNELS, align=4)
     rows, columns = (
         code.select((limit - at) < SMALL_TILE, limit - at, code.literal(SMALL_TILE))
         for limit, at in ((height, top), (width, left))
@@ -149,22 +149,13 @@ def _write_pixels(job: _Job, coverage: Value, corner: tuple[Value, Value], sampl
     with code.count(rows) as row:
         line = output.at(((top + row) * width + left) * _PIXEL_BYTES)
         with code.count(columns) as column:
-            place = coverage.at((row * SMALL_TILE + column) * 4)
-            part = code.load(place, "float") / samples
-            shares = [
-                _broadcast(code, share) for share in (part, code.literal(1.0, "float") - part)
-            ]
-            color = inside * shares[0] + outside * shares[1]
+            covered = code.load(coverage.at((row * SMALL_TILE + column) * 4), "float")
+            number = code.value(WORD, f"fptosi float {covered.name} to i64")
+            color = code.load(colors.at(number * _PIXEL_BYTES), _CHANNELS, align=4)
             code.store(color, line.at(column * _PIXEL_BYTES), align=16, streamed=True)
 
 
-def _broadcast(code: Code, number: Value) -> Value:
-    first = code.value(_CHANNELS, f"insertelement {_CHANNELS} poison, float {number.name}, i64 0")
-    both = f"{_CHANNELS} {first.name}, {_CHANNELS} poison"
-    return code.value(_CHANNELS, f"shufflevector {both}, <4 x i32> zeroinitializer")
-
-
-def _result(code: Code, operations: Value, length: Value, slots: Value, size: int) -> Value:
+def _result(code: FunctionCode, operations: Value, length: Value, slots: Value, size: int) -> Value:
     """Return the address of the slot of a tape's last operation."""
     last = operations.at((length - 1) * OPERATION_BYTES)
     return slots.at(code.load(last.at(FIELD["result"]), "i16") * size)
@@ -173,7 +164,7 @@ def _result(code: Code, operations: Value, length: Value, slots: Value, size: in
 class _Level:
     """One level of tiles: intervals, the decided tiles, and shorter tapes for the others."""
 
-    def __init__(self, job: _Job, lanes: Lanes, level: int, size: int) -> None:
+    def __init__(self, job: _ThreadJob, lanes: Lanes, level: int, size: int) -> None:
         self.job, self.code, self.lanes = job, job.code, lanes
         self.level, self.size = level, size
 
@@ -225,8 +216,7 @@ class _Level:
         with code.bits(tiles) as tile:
             x = corner[0] + tile % across * self.size
             y = corner[1] + tile // across * self.size
-            outside = code.literal(1) - ((inside >> tile) & 1)
-            code.call("square", self.job.job, x, y, code.literal(self.size), outside)
+            code.call("square", self.job.job, x, y, code.literal(self.size), (inside >> tile) & 1)
 
     def write(self, operations: Value, length: Value, tiles: Value, stride: Value) -> None:
         """Write a shorter tape for each of some tiles."""
@@ -244,7 +234,7 @@ class _Level:
         return self.memory("tapes").at(tile * stride), length
 
 
-def _signs(code: Code, lanes: Lanes, result: Value) -> tuple[Value, Value]:
+def _signs(code: FunctionCode, lanes: Lanes, result: Value) -> tuple[Value, Value]:
     """Return the lanes whose interval is negative, and those where it is nowhere negative.
 
     Both ends must be finite: else nothing is known of the value.
@@ -270,7 +260,7 @@ def fill_code(lanes: Lanes, declarations: set[str]) -> str:
         lanes: The shape of the machine's vectors.
         declarations: Receives the declarations of LLVM intrinsics.
     """
-    code = Code(lanes, declarations)
+    code = FunctionCode(lanes, declarations)
     job = _thread(code)
     _set_depth(job)
     length, operations = job.word("length"), job.pointer("operations")
@@ -298,9 +288,8 @@ def fill_code(lanes: Lanes, declarations: set[str]) -> str:
         decided = (inside | outside) & here
         with code.bits(decided) as lane:
             tile = begin + lane
-            which = code.literal(1) - ((inside >> lane) & 1)
             x, y = tile % across * TILE, tile // across * TILE
-            code.call("square", job.job, x, y, code.literal(TILE), which)
+            code.call("square", job.job, x, y, code.literal(TILE), (inside >> lane) & 1)
         open_tiles = here & ~decided
         level.write(operations, length, open_tiles, stride)
         with code.bits(open_tiles) as lane:
@@ -315,8 +304,8 @@ def fill_code(lanes: Lanes, declarations: set[str]) -> str:
 
 def tile_code(lanes: Lanes, declarations: set[str]) -> str:
     """Return the function that fills a tile that intervals did not decide."""
-    code = Code(lanes, declarations)
-    job = _Job(code, code.parameter("job", POINTER), code.parameter("memory", POINTER))
+    code = FunctionCode(lanes, declarations)
+    job = _ThreadJob(code, code.parameter("job", POINTER), code.parameter("memory", POINTER))
     tape, length = code.parameter("tape", POINTER), code.parameter("length")
     left, top = code.parameter("x"), code.parameter("y")
     level = _Level(job, lanes, 1, SMALL_TILE)
@@ -346,9 +335,9 @@ def tile_code(lanes: Lanes, declarations: set[str]) -> str:
     return code.function("tile", params)
 
 
-def _thread(code: Code) -> _Job:
+def _thread(code: FunctionCode) -> _ThreadJob:
     """Return the job with the memory of this thread, which is the next that no thread has taken."""
-    job = _Job(code, code.parameter("job", POINTER), code.parameter("job", POINTER))
+    job = _ThreadJob(code, code.parameter("job", POINTER), code.parameter("job", POINTER))
     workers = job.pointer("workers")
     number = code.value("i32", f"atomicrmw add ptr {workers.name}, i32 1 monotonic")
     index = code.value(WORD, f"zext i32 {number.name} to i64")
@@ -356,7 +345,7 @@ def _thread(code: Code) -> _Job:
     return job
 
 
-def _set_depth(job: _Job) -> None:
+def _set_depth(job: _ThreadJob) -> None:
     """Set z, which is the same in the whole picture."""
     code, z = job.code, job.view("z")
     tiles = job.memory("tile_inputs").at(2 * INTERVAL_SLOT)
@@ -374,8 +363,8 @@ def allocate_code(lanes: Lanes, declarations: set[str]) -> str:
         lanes: The shape of the machine's vectors.
         declarations: Receives the declarations of LLVM intrinsics.
     """
-    code = Code(lanes, declarations)
-    job = _Job(code, code.parameter("job", POINTER), code.parameter("job", POINTER))
+    code = FunctionCode(lanes, declarations)
+    job = _ThreadJob(code, code.parameter("job", POINTER), code.parameter("job", POINTER))
     # The workspace is the numbers of three arrays, one after the other.
     bytes_of_one, numbers = job.word("workspace_bytes"), job.pointer("workspace")
     arrays = [numbers.at(bytes_of_one * i) for i in range(3)]
@@ -397,7 +386,7 @@ def floats_code(lanes: Lanes, declarations: set[str]) -> str:
         lanes: The shape of the machine's vectors.
         declarations: Receives the declarations of LLVM intrinsics.
     """
-    code = Code(lanes, declarations)
+    code = FunctionCode(lanes, declarations)
     job = _thread(code)
     operations, length = job.pointer("allocated"), job.word("length")
     slots = job.memory("floats")
@@ -420,7 +409,7 @@ def intervals_code(lanes: Lanes, declarations: set[str]) -> str:
         lanes: The shape of the machine's vectors.
         declarations: Receives the declarations of LLVM intrinsics.
     """
-    code = Code(lanes, declarations)
+    code = FunctionCode(lanes, declarations)
     job = _thread(code)
     operations, length = job.pointer("allocated"), job.word("length")
     slots = job.memory("intervals")
@@ -446,7 +435,7 @@ def prune_code(lanes: Lanes, declarations: set[str]) -> str:
         lanes: The shape of the machine's vectors.
         declarations: Receives the declarations of LLVM intrinsics.
     """
-    code = Code(lanes, declarations)
+    code = FunctionCode(lanes, declarations)
     job = _thread(code)
     length, stride = job.word("length"), job.word("length") * OPERATION_BYTES
     level = _Level(job, lanes, 0, TILE)
@@ -470,7 +459,7 @@ def prune_code(lanes: Lanes, declarations: set[str]) -> str:
     return code.function(PRUNE, _JOB)
 
 
-def _copy(code: Code, lanes: Lanes, source: Value, target: Value, size: int) -> None:
+def _copy(code: FunctionCode, lanes: Lanes, source: Value, target: Value, size: int) -> None:
     vector = vector_type(lanes)
     for offset in range(0, size, 4 * lanes.width):
         chunk = code.load(source.at(offset), vector, align=64)

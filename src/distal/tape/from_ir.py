@@ -90,7 +90,7 @@ def tape_of(
         TapeError: The function cannot be a tape: it has loops whose length differs from point to
             point, textures, whole numbers that differ from point to point, or is too long.
     """
-    walker = _Walker(module, uniforms or {}, resources or {})
+    walker = _CallFollower(module, uniforms or {}, resources or {})
     entry = module.function(module.entry)
     size = component_count(entry.params[0].type)
     point = tuple(walker.scalars.operation(axis) for axis in "xyz"[:size])
@@ -98,7 +98,7 @@ def tape_of(
     return walker.scalars.builder.tape(walker.scalars.value(result))
 
 
-class _Walker:
+class _CallFollower:
     """Follows a function from its entry."""
 
     def __init__(
@@ -114,12 +114,12 @@ class _Walker:
         self._frame: Environment = {}
         self._steps = 0
         for name, value in module.frame:
-            self._frame[name] = _Body(self, {}).expression(value)
+            self._frame[name] = _BodyFollower(self, {}).expression(value)
 
     def function(self, function: Function, args: Sequence[Scalars_]) -> Scalars_:
         """Return the result of a call."""
         names = (p.name for p in function.params)
-        body = _Body(self, dict(zip(names, args, strict=True)))
+        body = _BodyFollower(self, dict(zip(names, args, strict=True)))
         result = body.block(function.body)
         assert result is not None, function.name
         return result
@@ -168,10 +168,10 @@ def _flat(value: Any, type: Type) -> Scalars_:
     return tuple(convert[k](n) for k, n in zip(leaf_kinds(type), numbers, strict=True))
 
 
-class _Body:
+class _BodyFollower:
     """Follows the statements of one function, with the values of its locals."""
 
-    def __init__(self, walker: _Walker, locals: Environment) -> None:
+    def __init__(self, walker: _CallFollower, locals: Environment) -> None:
         self._walker = walker
         self._scalars = walker.scalars
         self._locals = locals
@@ -226,8 +226,8 @@ class _Body:
         self._known.clear()
         return None
 
-    def _copy(self) -> _Body:
-        copy = _Body(self._walker, dict(self._locals))
+    def _copy(self) -> _BodyFollower:
+        copy = _BodyFollower(self._walker, dict(self._locals))
         copy._known = dict(self._known)
         return copy
 

@@ -25,6 +25,7 @@ from typing import Final
 from distal.backends.llvm.lanes import Lanes, Leaf
 from distal.backends.llvm.program import LaneProgram
 from distal.backends.llvm.writer import LlvmWriter
+from distal.ir.intrinsics import Trend
 from distal.ir.types import Kind
 from distal.tape.layout import (
     FIELD,
@@ -33,8 +34,8 @@ from distal.tape.layout import (
     LANES,
     OPERATION_BYTES,
 )
-from distal.tape.machine_code import POINTER, WORD, Code, Value
-from distal.tape.operations import ELEMENTARY, FIRST_ELEMENTARY, NUMBER, OPERATIONS, Bound
+from distal.tape.machine_code import POINTER, WORD, FunctionCode, Value
+from distal.tape.operations import ELEMENTARY, FIRST_ELEMENTARY, NUMBER, OPERATIONS
 
 _UPPER: Final = FLOAT_SLOT  # bytes from the lower ends of a slot to its upper ends
 # Twice the largest error of an elementary function on the CPU, with a margin: the values at the
@@ -56,7 +57,7 @@ def vector_type(lanes: Lanes) -> str:
 class Reader:
     """The operation that an interpreter's loop has reached."""
 
-    def __init__(self, code: Code, operation: Value) -> None:
+    def __init__(self, code: FunctionCode, operation: Value) -> None:
         self.code = code
         self._operation = operation
 
@@ -65,11 +66,11 @@ class Reader:
         return self.code.load(self._operation.at(FIELD[name]), "i16")
 
 
-class _Interpreter:
+class _TapeLoop:
     """What both interpreters share: the loop over the operations, and access to chunks."""
 
     def __init__(self, lanes: Lanes, declarations: set[str], slot: int) -> None:
-        self.code = Code(lanes, declarations)
+        self.code = FunctionCode(lanes, declarations)
         self.lanes = lanes
         self.vector = vector_type(lanes)
         self._slot = slot
@@ -142,7 +143,7 @@ def float_code(lanes: Lanes, declarations: set[str]) -> str:
         lanes: The shape of the machine's vectors.
         declarations: Receives the declarations of LLVM intrinsics.
     """
-    self = _Interpreter(lanes, declarations, FLOAT_SLOT)
+    self = _TapeLoop(lanes, declarations, FLOAT_SLOT)
     code = self.code
 
     def value(name: str, a: Value, b: Value) -> Value:
@@ -205,7 +206,7 @@ def float_code(lanes: Lanes, declarations: set[str]) -> str:
     return code.function("floats", params)
 
 
-class _Intervals(_Interpreter):
+class _Intervals(_TapeLoop):
     """The interval interpreter, which also records the choices of each lane."""
 
     def __init__(self, lanes: Lanes, declarations: set[str]) -> None:
@@ -267,9 +268,9 @@ class _Intervals(_Interpreter):
         elif row.chooses:
             choose = self._select if name == "select" else self._extremum
             choose(name, reader, target, index)
-        elif row.bound is not None:
+        elif row.trend is not None:
             operands = [self.slot(reader, f) for f in "ab"[: row.operands]]
-            self._elementary(name, row.bound, operands[0], target)
+            self._elementary(name, row.trend, operands[0], target)
         else:
             addresses = [self.slot(reader, f) for f in "ab"[: row.operands]]
             for offset in self.offsets:
@@ -372,15 +373,15 @@ class _Intervals(_Interpreter):
             always, never = (high + doubt) <= least, (low + doubt) > most
         return self.code.select(always, 1.0, zero), self.code.select(never, 0.0, one)
 
-    def _elementary(self, name: str, bound: Bound, a: Value, target: Value) -> None:
+    def _elementary(self, name: str, trend: Trend, a: Value, target: Value) -> None:
         code = self.code
-        if bound is Bound.NONE:
+        if trend is Trend.UNKNOWN:
             nothing = code.literal(float("nan"), self.vector)
             for offset in self.offsets:
                 self.keep((nothing, nothing), target, offset)
             return
         number = code.literal(NUMBER[name] - FIRST_ELEMENTARY)
-        if bound is Bound.WAVE:
+        if trend is Trend.WAVE:
             self._wave(a, target, number)
             return
         code.call("elementary", self._ends, a, a, number)
@@ -388,7 +389,7 @@ class _Intervals(_Interpreter):
         for offset in self.offsets:
             doubt = self.doubt(*self.ends(a, offset))
             low, high = self.ends(self._ends, offset)
-            if bound is Bound.FALLING:
+            if trend is Trend.FALLING:
                 low, high = high, low
             low = low - (self.call("fabs", low) * RELATIVE_ERROR + ABSOLUTE_ERROR)
             high = high + (self.call("fabs", high) * RELATIVE_ERROR + ABSOLUTE_ERROR)
@@ -434,7 +435,7 @@ def elementary_code(program: LaneProgram) -> str:
     """Return the function that applies an elementary function to 64 floats in memory.
 
     Args:
-        program: The module of ``elementary.elementary`` after the passes of the CPU.
+        program: The module of ``elementary.elementary()`` after the passes of the CPU.
     """
     lanes, arithmetic = program.lanes, program.arithmetic()
     writer = arithmetic.writer

@@ -31,7 +31,7 @@ JOB_FIELDS: Final = (
     "height",  # pixels
     "samples",  # in each direction of a pixel
     "view",  # pointer to floats: ``VIEW_FIELDS``
-    "colors",  # pointer to floats: four inside, four outside
+    "colors",  # pointer to four floats for each number of samples inside, from 0 to all
     "constants",  # pointer to the tape's constants
     "operations",  # pointer: operation i writes value i
     "allocated",  # pointer: the same operations with slots

@@ -32,7 +32,7 @@ class Value:
         name: LLVM's operand.
     """
 
-    code: Code
+    code: FunctionCode
     type: str
     name: str
 
@@ -106,10 +106,10 @@ class Value:
         return self.code.value(POINTER, f"getelementptr i8, ptr {self.name}, i64 {rhs}")
 
 
-class Variable:
+class StackVariable:
     """A value that changes: memory of the stack, which LLVM turns into registers."""
 
-    def __init__(self, code: Code, first: Value) -> None:
+    def __init__(self, code: FunctionCode, first: Value) -> None:
         self._code, self._type = code, first.type
         self._place = code.writer.allocate(first.type, 64 if "<" in first.type else 8)
         self.set(first)
@@ -123,7 +123,7 @@ class Variable:
         self._code.writer.line(f"store {self._type} {value.name}, ptr {self._place}")
 
 
-class Code:
+class FunctionCode:
     """The text of one LLVM function.
 
     Attributes:
@@ -160,9 +160,9 @@ class Code:
         """Return a parameter of the function."""
         return Value(self, type, f"%{name}")
 
-    def variable(self, first: Value | int) -> Variable:
+    def variable(self, first: Value | int) -> StackVariable:
         """Return a variable; a Python number makes one of ``i64``."""
-        return Variable(self, first if isinstance(first, Value) else self.literal(first))
+        return StackVariable(self, first if isinstance(first, Value) else self.literal(first))
 
     def load(self, pointer: Value, type: str = WORD, *, align: int = 0) -> Value:
         """Load a value; small integers are extended to ``i64``."""

@@ -13,7 +13,7 @@ from typing import Final
 
 from distal.backends.llvm.lanes import Lanes
 from distal.tape.layout import FIELD, LANES, OPERATION_BYTES
-from distal.tape.machine_code import POINTER, WORD, Code, Value
+from distal.tape.machine_code import POINTER, WORD, FunctionCode, Value
 from distal.tape.operations import NUMBER, OPERATIONS
 
 _SELECT: Final = NUMBER["select"]
@@ -35,7 +35,7 @@ class _Pruning:
     """What the functions share: access to operations, masks and numbers."""
 
     def __init__(self, lanes: Lanes, declarations: set[str]) -> None:
-        self.code = Code(lanes, declarations)
+        self.code = FunctionCode(lanes, declarations)
         self.operations = self.code.parameter("operations", POINTER)
         self.length = self.code.parameter("length")
 
@@ -140,11 +140,14 @@ def writer_code(lanes: Lanes, declarations: set[str]) -> str:
             shape = self.shape(number)
             first, second = self.choices(shape, index)
             a, b, c = (self.field(operation, f) for f in "abc")
-            is_leaf = (shape & _LEAF).same(_LEAF)
+            is_leaf, count = (shape & _LEAF).same(_LEAF), shape & 3
             own = names_of(index)
-            # A leaf's first field is no value; its row is read, but not used.
+            # Fields beyond the operands are no values: for them row 0 is read, and 0 is written.
             zero = code.literal(0)
-            rows = [names_of(code.select(is_leaf, zero, field)) for field in (a, b, c)]
+            rows = [
+                names_of(code.select(count > position, field, zero))
+                for position, field in enumerate((a, b, c))
+            ]
             selects = number.same(_SELECT)
             taken = (
                 code.select(selects, rows[1], rows[0]),
@@ -161,8 +164,9 @@ def writer_code(lanes: Lanes, declarations: set[str]) -> str:
                 code.store(length, target.at(FIELD["result"]), "i16")
                 operand = code.select(is_leaf, a, name(rows[0], tile))
                 code.store(operand, target.at(FIELD["a"]), "i16")
-                code.store(name(rows[1], tile), target.at(FIELD["b"]), "i16")
-                code.store(name(rows[2], tile), target.at(FIELD["c"]), "i16")
+                for position, field in ((1, "b"), (2, "c")):
+                    operand = code.select(count > position, name(rows[position], tile), zero)
+                    code.store(operand, target.at(FIELD[field]), "i16")
                 code.store(length, own.at(tile * _NUMBER_BYTES), "i16")
                 code.store(length + 1, place)
     params = (

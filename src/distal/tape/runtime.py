@@ -6,6 +6,7 @@ once for a machine and then comes from the cache; it does not depend on the tape
 
 from __future__ import annotations
 
+import math
 import threading
 from dataclasses import dataclass
 from functools import cache
@@ -41,7 +42,7 @@ _LARGEST_SIDE: Final = 32768  # pixels
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class PlaneView:
     """The part of the plane that a picture shows.
 
     Attributes:
@@ -84,41 +85,41 @@ class TapeProgram:
         self,
         width: int,
         height: int,
-        view: View,
+        view: PlaneView,
         *,
-        colors: Any = ((1.0, 1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 1.0)),
-        samples: int = 1,
+        colors: Any = ((0.0, 0.0, 0.0, 1.0), (1.0, 1.0, 1.0, 1.0)),
         threads: int | None = None,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Floats:
-        """Return a picture (height, width, 4): one color where the tape is negative, else another.
+        """Return a picture (height, width, 4) that shows where the tape is negative.
 
         Args:
             width: Pixels across, 1 to 32768.
             height: Pixels down, 1 to 32768.
             view: The part of the plane that is shown.
-            colors: The colors inside and outside, four numbers each.
-            samples: Samples of a pixel in each direction, 1 to 16; a pixel is their mean.
+            colors: The color of a pixel for each number of its samples that are inside, (n + 1, 4).
+                A pixel has n samples, a square number.
             threads: The number of threads; None uses all processors of this process.
             progress: Called regularly with the fraction of the work that is done.
             cancel: Called regularly; True stops the work.
 
         Raises:
-            ValueError: A size or the number of samples is out of range.
+            ValueError: A size or the number of colors is out of range.
             Cancelled: ``cancel`` stopped the work.
         """
         if not (0 < width <= _LARGEST_SIDE and 0 < height <= _LARGEST_SIDE):
             raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
-        if not 1 <= samples <= 16:
-            raise ValueError(f"samples in each direction are 1 to 16, not {samples}")
+        shades = np.ascontiguousarray(colors, np.float32).reshape(-1, 4)
+        samples = math.isqrt(len(shades) - 1)
+        if samples < 1 or samples**2 != len(shades) - 1:
+            raise ValueError(f"the samples of a pixel are a square number, not {len(shades) - 1}")
         picture = PICTURES.take((height, width, 4))
         numbers = np.array([view.x, view.step_x, view.y, view.step_y, view.z], np.float32)
-        shades = np.array(colors, np.float32).reshape(2, 4)
         groups = -(-(-(-width // TILE) * -(-height // TILE)) // LANES)
         count = min(threads or pool.usable_threads(), groups)
         with self._lock:
-            job = _Job(self, count)
+            job = _RuntimeJob(self, count)
             job.set(output=picture.ctypes.data, width=width, height=height, samples=samples)
             job.set(view=numbers.ctypes.data, colors=shades.ctypes.data)
             work = pool.Work(job.counter, job.stop, groups)
@@ -181,7 +182,7 @@ class TapeProgram:
 
     def _run(self, name: str, inputs: Floats, found: Floats, passes: int) -> None:
         with self._lock:
-            job = _Job(self, 1)
+            job = _RuntimeJob(self, 1)
             aligned = _aligned(inputs.nbytes).view(np.float32)[: inputs.size]
             aligned[:] = inputs.reshape(-1)
             job.set(view=aligned.ctypes.data, output=found.ctypes.data, height=passes)
@@ -191,14 +192,14 @@ class TapeProgram:
         """Give the tape's values slots; return their number."""
         numbers = np.empty((3, len(self.tape)), np.uint16)
         found = np.zeros(1, np.int64)
-        job = _Job(self, 0)
+        job = _RuntimeJob(self, 0)
         job.set(workspace=numbers.ctypes.data, workspace_bytes=numbers[0].nbytes)
         job.set(output=found.ctypes.data)
         self._code.function(ALLOCATE)(job.address())
         return int(found[0])
 
 
-class _Job:
+class _RuntimeJob:
     """The memory of one run; it must exist as long as a thread may access it."""
 
     def __init__(self, program: TapeProgram, count: int) -> None:

@@ -24,7 +24,7 @@ def runtime_text(lanes: Lanes) -> str:
     Args:
         lanes: The vector shape of the CPU level; its number of chunks is not used.
     """
-    module = run_passes(lower(elementary), TARGET)
+    module = run_passes(lower(elementary()), TARGET)
     # The elementary functions compute several registers at once, but at most 64 lanes.
     chunks = min(lanes.chunks, LANES // lanes.width)
     program = LaneProgram(module, replace(lanes, chunks=chunks))

@@ -8,13 +8,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
+from distal.lang.lazy_module import LazyModule
 from distal.tape.layout import MOST_OPERATIONS, OPERATION_FIELDS
 from distal.tape.operations import NUMBER, OPERATIONS
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+else:
+    np = LazyModule("numpy")  # a file can be read, and compiled for pages, without it
 
 # One operation of a tape that is being built: its number, and its operands.
 Row: TypeAlias = tuple[int, int, int, int]

@@ -26,7 +26,7 @@ from typing import Final
 
 from distal.ir.intrinsics.bits import BITS
 from distal.ir.intrinsics.components import COMPONENTS
-from distal.ir.intrinsics.declaration import SCENE, Intrinsic
+from distal.ir.intrinsics.declaration import SCENE, Intrinsic, Trend
 from distal.ir.intrinsics.elementary import ELEMENTARY
 from distal.ir.intrinsics.matrices import MATRIX_FUNCTIONS
 from distal.ir.intrinsics.vectors import VECTOR_FUNCTIONS
@@ -50,4 +50,4 @@ def python_functions(module: str) -> dict[str, str]:
     }
 
 
-__all__ = ["INTRINSICS", "SCENE", "Intrinsic", "python_functions"]
+__all__ = ["INTRINSICS", "SCENE", "Intrinsic", "Trend", "python_functions"]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
+from enum import Enum
 from typing import Any, Final, TypeAlias
 
 from distal.ir import limits
@@ -39,6 +40,15 @@ NOT_NEGATIVE: Final[Interval] = (0.0, math.inf)
 WITHIN_ONE: Final[Interval] = (-1.01, 1.01)
 WIDER: Final = 2e-6  # relative; larger than the error of any target's arithmetic
 ZERO_TO_ONE: Final[Interval] = (0.0, 1.0 + WIDER)
+
+
+class Trend(Enum):
+    """How the result of a built-in follows from its argument."""
+
+    RISING = "rising"  # never decreases
+    FALLING = "falling"  # never increases
+    WAVE = "wave"  # slope at most 1, values from -1 to 1
+    UNKNOWN = "unknown"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +88,7 @@ class Intrinsic:
             Otherwise, and wherever this is empty, ordinary numbers (``limits.ORDINARY``) give a
             finite number.
         reach: The largest magnitude of arguments for which the result is finite.
+        trend: How the result follows from the argument, for interval arithmetic.
         hidden: Not a name of the language: only prelude code and passes use it.
     """
 
@@ -107,6 +118,7 @@ class Intrinsic:
     results: Interval = ANYWHERE
     edges: str = ""
     reach: float = limits.ORDINARY
+    trend: Trend = Trend.UNKNOWN
 
     def spelling(self, family: str) -> str | None:
         """Return the spelling for a target family; ``SCENE`` becomes ``@`` and the function's name.

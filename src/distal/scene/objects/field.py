@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from os import PathLike
 from typing import Any, ClassVar, Final, NoReturn, Self
 
 from distal.diagnostics import Span
@@ -28,6 +29,7 @@ from distal.scene.lowering.slope_limit import check_gradient, check_slope
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
+from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
 from distal.scene.tree.conversion import Asked, Number, number
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -367,6 +369,26 @@ class BaseShape(Composed, Presentable):
         if normalize:
             check_gradient(node)
         return cls._of(node)
+
+    @classmethod
+    def from_vm(cls, source: str | PathLike[str], *, slope: Any = None, bounds: Any = None) -> Any:
+        """Make a shape from a ``.vm`` file, a list of operations as Fidget writes it.
+
+        Each line has a name, an operation, and a number or the names of earlier results:
+        ``_2 add _0 _1``. The shape is flat if only ``var-x`` and ``var-y`` occur, else solid.
+
+        Args:
+            source: The path of a file, or its text (more than one line).
+            slope: Lipschitz bound (slope): a bound on |gradient| everywhere. The marcher relies on
+                it. None: 1.
+            bounds: Corners (low, high) of a box around the surface; None for an infinite shape.
+
+        Raises:
+            VmFileError: The file is invalid, or has more than 20,000 operations; the message shows
+                the line.
+            SceneValueError: The file cannot be read, or a number is beyond its limit.
+        """
+        return cls._of(vm_node(source, author_place(), slope=slope, bounds=bounds))
 
 
 def _bare(node: Node) -> bool:

@@ -7,7 +7,7 @@ operator of the field library.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Final, Self, cast
+from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 from distal.fields.combine import blends, joins, transitions
 from distal.fields.deform import folds
@@ -21,11 +21,16 @@ from distal.fields.place import solid as placing
 from distal.fields.repeat import along, grid
 from distal.fields.solids import heightfield
 from distal.ir.types import VEC2, VEC3
+from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.scene.objects.field import PLAIN, BaseShape
+from distal.scene.objects.filling import filled
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.images.picture import Picture
 
 _ROTATIONS: Final[Mapping[str, Operator]] = {
     "x": placing.ROTATE_X,
@@ -341,6 +346,53 @@ class Shape2D(Placed):
     def _solid(self, operator: Operator, *args: Any, **kwargs: Any) -> Shape:
         made: Shape = self._under(operator, args, kwargs, author_place())
         return made
+
+    def fill(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+        *,
+        box: Any = None,
+        inside: Any = "white",
+        outside: Any = "black",
+        samples: int = 4,
+    ) -> Picture:
+        """Return a picture of the shape, filled with one color, without a camera or lights.
+
+        A shape of thousands of parts is drawn in milliseconds, and nothing is compiled for it,
+        unless its function has loops of varying length, textures or noise. Always on the CPU.
+
+        Args:
+            size: Width and height in pixels.
+            time: Time in seconds; ``frame.time`` of an ``@image``.
+            params: Values of parameters by name; the others have their defaults.
+            threads: Number of CPU threads; None uses all that the process may use.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            box: Corners (low, high) of the part of the plane to show, which is centered; None: the
+                box of the shape with a margin, or from -1 to 1 if it is infinite.
+            inside: The color inside.
+            outside: The color outside.
+            samples: Samples in each pixel, which are averaged: 1, 4, 9, 16 ... up to 256.
+
+        Raises:
+            CompileError: The shape's scene code has mistakes.
+            TypeError: A value has the wrong type.
+            ValueError: A value is out of range, or there is no such parameter.
+        """
+        options = RenderOptions(
+            size=size,
+            time=time,
+            params=params or {},
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+        )
+        return filled(self, options, box, inside, outside, samples)
 
     def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
         """Extrude along z to a solid whose middle is at z = 0.
