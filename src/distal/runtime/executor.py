@@ -46,6 +46,7 @@ from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 if TYPE_CHECKING:
     from distal.devices.gpu import GpuKernel
     from distal.runtime import fills
+    from distal.tape.proofs import Proof
 else:
     fills = LazyModule("distal.runtime.fills")
 
@@ -287,6 +288,32 @@ class PythonExecutor:
         """
         shades = np.array(colors, np.float32)
         return fills.fill(self, shape, view, shades, options, ready)
+
+    def prove(self, function: Composed, low: Sequence[float], high: Sequence[float]) -> Proof:
+        """Return a bound on the slope of a function of a point, and a box, within a region.
+
+        Args:
+            function: The function; its numbers have their defaults.
+            low: The lower corner of the region.
+            high: Its upper corner.
+
+        Raises:
+            TapeError: Nothing can be proved; the message says why.
+        """
+        return fills.proof(self.lowered(function), low, high)
+
+    def steepest(
+        self, gradient: Composed, points: Sequence[Sequence[float]]
+    ) -> tuple[float, tuple[float, ...]]:
+        """Return the largest length of a gradient at some points, and the point where it is.
+
+        A gradient that is not finite is left out.
+        """
+        rows = np.array(points, np.float64)
+        lengths = np.linalg.norm(self.call(gradient, (rows,), {}, device=REFERENCE), axis=1)
+        lengths = np.where(np.isfinite(lengths), lengths, 0.0)
+        at = int(np.argmax(lengths))
+        return float(lengths[at]), tuple(rows[at].tolist())
 
     def lowered(self, function: Func | Composed) -> Lowered:
         """Return the IR of a function that has the types of its own parameters."""

@@ -23,7 +23,7 @@ from distal.compiler.driver import run_passes
 from distal.devices.base import Cancelled, cancel_test
 from distal.devices.resources import load
 from distal.images.picture import Picture, Provenance
-from distal.ir.nodes import Module
+from distal.ir.nodes import Module, Origin
 from distal.ir.types import Buffer
 from distal.lang.composed import Composed
 from distal.lang.render_options import RenderOptions
@@ -31,6 +31,7 @@ from distal.loading import loaded_from
 from distal.runtime.lowered import Lowered
 from distal.runtime.uniform_values import DeclaredUniforms
 from distal.tape.from_ir import LAST_PASS, PRECISION, tape_of
+from distal.tape.proofs import Proof, prove
 from distal.tape.runtime import PlaneView, TapeProgram
 from distal.tape.tape import Tape, TapeError
 
@@ -114,6 +115,22 @@ def _tape(known: _Known, uniforms: Mapping[str, Any]) -> Tape:
         if isinstance(resource.type, Buffer) and resource.source is not None
     }
     return tape_of(known.module, uniforms, buffers)
+
+
+def proof(lowered: Lowered, low: Sequence[float], high: Sequence[float]) -> Proof:
+    """Return what can be proved of a function in a region.
+
+    Args:
+        lowered: The function, which reads neither parameters nor the time.
+        low: The lower corner of the region.
+        high: Its upper corner.
+
+    Raises:
+        TapeError: Nothing can be proved.
+    """
+    if any(uniform.origin is not Origin.NUMBER for uniform in lowered.module.uniforms):
+        raise TapeError("it depends on parameters or the time")
+    return prove(_tape(_Known(lowered, None, {}), {}), low, high)
 
 
 def fill(

@@ -29,6 +29,7 @@ from distal.tape.layout import (
     PRUNE,
     SMALL_TILE,
     TILE,
+    TRACE,
     UNALLOCATED,
     VIEW_FIELDS,
     WORKSPACE,
@@ -422,6 +423,25 @@ def intervals_code(lanes: Lanes, declarations: set[str]) -> str:
         target = job.pointer("output").at(index * INTERVAL_SLOT)
         _copy(code, lanes, result, target, INTERVAL_SLOT)
     return code.function(INTERVALS, _JOB)
+
+
+def trace_code(lanes: Lanes, declarations: set[str]) -> str:
+    """Return the exported function that gives the intervals of all operations in 64 boxes.
+
+    ``view`` points to the boxes as for ``intervals_code``; ``output`` receives a slot for each
+    operation.
+
+    Args:
+        lanes: The shape of the machine's vectors.
+        declarations: Receives the declarations of LLVM intrinsics.
+    """
+    code = FunctionCode(lanes, declarations)
+    job = _thread(code)
+    code.call(
+        "intervals", job.pointer("operations"), job.word("length"), job.pointer("constants"),
+        job.pointer("output"), job.pointer("view"), job.memory("first_0"), job.memory("second_0"),
+    )  # fmt: skip
+    return code.function(TRACE, _JOB)
 
 
 def prune_code(lanes: Lanes, declarations: set[str]) -> str:

@@ -73,6 +73,7 @@ ALLOCATE: Final = "distal_tape_allocate"
 FLOATS: Final = "distal_tape_floats"
 INTERVALS: Final = "distal_tape_intervals"
 PRUNE: Final = "distal_tape_prune"
+TRACE: Final = "distal_tape_trace"
 
 
 def workspace(length: int, slots: int) -> tuple[dict[str, int], int]:

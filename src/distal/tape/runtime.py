@@ -27,11 +27,13 @@ from distal.tape.layout import (
     ALLOCATE,
     FILL,
     FLOATS,
+    INTERVAL_SLOT,
     INTERVALS,
     JOB_FIELDS,
     LANES,
     PRUNE,
     TILE,
+    TRACE,
     workspace,
 )
 from distal.tape.tape import Tape
@@ -161,6 +163,22 @@ class TapeProgram:
         ends = found.transpose(1, 0, 2).reshape(2, -1)[:, :count]
         return ends[0], ends[1]
 
+    def traces(self, low: NDArray[Any], high: NDArray[Any]) -> NDArray[np.float64]:
+        """Return the intervals of every operation in boxes, (operations, 2, n).
+
+        Args:
+            low: The lower corners, (n, 3).
+            high: The upper corners, (n, 3); they are rounded outwards to 32 bits.
+        """
+        count = len(low)
+        boxes = _boxes(_rounded(low, -np.inf), _rounded(high, np.inf))
+        parts = []
+        for box in boxes:
+            found = _aligned(len(self.tape) * INTERVAL_SLOT).view(np.float32)
+            self._run(TRACE, box, found, 1)
+            parts.append(found.reshape(len(self.tape), 2, LANES).astype(np.float64))
+        return np.concatenate(parts, axis=2)[..., :count]
+
     def pruned_values(
         self, low: NDArray[Any], high: NDArray[Any], points: NDArray[Any]
     ) -> tuple[Floats, NDArray[np.int64]]:
@@ -239,6 +257,13 @@ def _aligned(size: int) -> NDArray[np.uint8]:
     memory = np.empty(size + 64, np.uint8)
     start = -memory.ctypes.data % 64
     return memory[start : start + size]
+
+
+def _rounded(corners: NDArray[Any], toward: float) -> Floats:
+    """Round to 32 bits, away from the box."""
+    near = np.asarray(corners).astype(np.float32)
+    beyond = near > corners if toward < 0 else near < corners
+    return np.where(beyond, np.nextafter(near, np.float32(toward)), near)
 
 
 def _boxes(low: NDArray[Any], high: NDArray[Any]) -> Floats:

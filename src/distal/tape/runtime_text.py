@@ -45,6 +45,7 @@ def runtime_text(lanes: Lanes) -> str:
         driver.floats_code,
         driver.intervals_code,
         driver.prune_code,
+        driver.trace_code,
     ):
         program.define(write(one, program.declarations))
     return program.text("tape") + "\n!1 = !{i32 1}\n"

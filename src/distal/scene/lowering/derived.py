@@ -6,14 +6,34 @@ Input: a tree. Output: objects that the executor runs.
 from __future__ import annotations
 
 from distal.frontend import Assembly
-from distal.ir.nodes import Gradient, Param, Read, Return
-from distal.ir.types import VEC2, VEC3, tuple_type
+from distal.ir.nodes import Call, Gradient, Param, Read, Return
+from distal.ir.types import FLOAT, VEC2, VEC3, tuple_type
 from distal.lang.composed import Composed
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
+
+
+class DistanceOf(Composed):
+    """The value of a shape, as a function of a point."""
+
+    result = FLOAT
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self.name = node.name
+        self.signature = (("p", VEC2 if node.flat else VEC3),)
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function to the program, and return its name."""
+        node, ((_, point),) = self._node, self.signature
+        composer = ShapeComposer(assembly, [node])
+        field = composer.field(node, composer.values.all(node), ZERO_CELL)
+        value = Call(field.name, (Read("p", point), *field.captures), FLOAT)
+        name = f"{plain_name(node.name)}_value"
+        return assembly.define(name, (Param("p", point),), FLOAT, (Return(value),), node.place)
 
 
 class GradientOf(Composed):

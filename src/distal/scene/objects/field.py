@@ -29,6 +29,7 @@ from distal.scene.lowering.slope_limit import check_gradient, check_slope
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
+from distal.scene.objects.proving import proved
 from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
 from distal.scene.tree.conversion import Asked, Number, number
@@ -329,6 +330,7 @@ class BaseShape(Composed, Presentable):
         exact: bool = False,
         growth: Any = None,
         normalize: bool = False,
+        region: Any = None,
         **numbers: Any,
     ) -> Any:
         """Make a shape from a ``@func`` of a point, and of numbers passed by name.
@@ -348,14 +350,21 @@ class BaseShape(Composed, Presentable):
             normalize: Whether to divide values by the length of their gradient, which makes a badly
                 scaled function (0 on the surface, like x^4 + y^4 + z^4 - 1) about the distance near
                 its surface. Pass ``bounds`` too: they also limit the values far away.
+            region: Corners (low, high) of a box that contains the whole shape. Then a slope and
+                bounds that are not passed are proved by interval arithmetic, within the region; a
+                slope that is passed is compared with the function.
             numbers: Values of the function's other parameters.
 
         Raises:
             SceneTypeError: The function is not a ``@func`` of a point that returns a float.
-            SceneValueError: A number is beyond its limit, or a function to normalize has no
-                gradient.
+            SceneValueError: A number is beyond its limit, a function to normalize has no gradient,
+                or nothing can be proved in ``region``.
         """
         place = author_place()
+        if region is not None:
+            slope, bounds = proved(
+                function, numbers, place, region=region, slope=slope, bounds=bounds
+            )
         node = own_node(
             function,
             numbers,
