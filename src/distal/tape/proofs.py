@@ -112,7 +112,7 @@ class _Cells:
             corners[..., : self._size] = some
             values = self._program.traces(corners[0], corners[1])
             # If an end is not finite, nothing is known of the value.
-            known = np.isfinite(values).all(axis=1)
+            known: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(values), axis=1)
             values = np.where(known[:, None], values, np.nan)
             slopes.append(_Derivatives(self._program.tape, values, self._size).slope())
             lowest.append(np.where(known[-1], values[-1, 0], -np.inf))
@@ -124,7 +124,7 @@ class _Cells:
         """Cut the cells that decide the slope or the box; return whether there are any."""
         order = np.sort(self.slopes)
         # The slope is at least that of half of the cells, so only steeper ones matter.
-        steep = np.asarray(self.slopes > _ENOUGH * order[len(order) // 2])
+        steep = self.slopes > _ENOUGH * order[len(order) // 2]
         low, high = self._box()
         edge = np.zeros_like(steep)
         if low is not None and high is not None:
