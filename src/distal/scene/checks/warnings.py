@@ -231,7 +231,7 @@ class _Eye(Composed):
         It evaluates the shape at the origin of the ray in the middle of the picture.
         """
         made = SceneLowering(assembly, self._scene)
-        node = self._scene.shape.node
+        node = made.node
         field = made.composer.field(node, made.composer.values.all(node), ZERO_CELL)
         site = {"uv": number(0.0, VEC2), "resolution": number(1.0, VEC2)}
         origin = field_of(self._scene.camera.emit(made.composer, site), "origin")

@@ -44,7 +44,7 @@ class GuideImage(Composed):
     def compose(self, assembly: Assembly) -> str:
         """Add the function that maps the frame to a pixel, and return its name."""
         made = SceneLowering(assembly, self._scene)
-        composer, node = made.composer, self._scene.shape.node
+        composer, node = made.composer, made.node
         body = StatementList(taken={"frame"})
         values = composer.values.all(node)
         # The picture that is guided has another size than this image.

@@ -81,15 +81,19 @@ RANGE: Final = ("low", "middle", "high")
 
 
 class SceneLowering:
-    """The lowering of one scene to functions of one program."""
+    """The lowering of one scene to functions of one program.
+
+    Attributes:
+        node: The scene's tree, with a table if it has many parts.
+    """
 
     def __init__(self, assembly: Assembly, scene: Scene) -> None:
         self._assembly = assembly
         self._scene = scene
         rolls = scene.acceleration and not self._hybrid
-        self._node = rolled_for(assembly, scene.shape.node) if rolls else scene.shape.node
-        self.composer = ShapeComposer(assembly, [self._node])
-        self._rays = RayFunctions(self.composer, self._node, self._function)
+        self.node = rolled_for(assembly, scene.shape.node) if rolls else scene.shape.node
+        self.composer = ShapeComposer(assembly, [self.node])
+        self._rays = RayFunctions(self.composer, self.node, self._function)
         self._view_numbers: dict[str, Expr] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
@@ -205,7 +209,7 @@ class SceneLowering:
             resolution: Size of the picture in pixels.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
         """
-        composer, scene, node = self.composer, self._scene, self._node
+        composer, scene, node = self.composer, self._scene, self.node
         values = composer.values.all(node)
         bounds_of_scene = composer.bounds.of(body, node, values)
         # The hybrid march searches the crossing of the author's field itself.
@@ -258,8 +262,8 @@ class SceneLowering:
         """Return the maximum number of steps of a ray."""
         if self._scene.steps is not None:
             return integer(self._scene.steps)
-        values = self.composer.values.all(self._node)
-        divisor = self.composer.bounds.of(body, self._node, values).divisor
+        values = self.composer.values.all(self.node)
+        divisor = self.composer.bounds.of(body, self.node, values).divisor
         return body.let("steps", step_limit(divisor, in_glass=self._scene.renderer == "refracted"))
 
     def _function(
@@ -311,8 +315,8 @@ class SceneLowering:
                 asked["surface"] = self._surface_of_hit()
                 asked["field_of"] = self._rays.field_of(hybrid=self._hybrid)
             if shown in RENDERERS.values() and not self._hybrid:
-                values = self.composer.values.all(self._node)
-                asked["field"] = self.composer.safe_field(self._node, values, ZERO_CELL)
+                values = self.composer.values.all(self.node)
+                asked["field"] = self.composer.safe_field(self.node, values, ZERO_CELL)
             if shown is VIEWS.get(view):
                 asked |= self._shown_numbers(view, body, asked)
             if shown is layers.layer_material:
@@ -361,7 +365,7 @@ class SceneLowering:
     def _cone(self, resolution: Expr, view: str, *, steered: bool) -> FunctionRef:
         """Return the function ``(uv, size) -> Cone``: thin if no pattern is averaged."""
         kind = SurfaceAttribute(self.composer, self._scene.material)
-        is_averaged = view == "color" and kind.averages(self._node)
+        is_averaged = view == "color" and kind.averages(self.node)
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             if not is_averaged:
@@ -387,7 +391,7 @@ class SceneLowering:
         """
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            return attribute(body, kind, self._node, self._site(self._node, given))
+            return attribute(body, kind, self.node, self._site(self.node, given))
 
         return self._function(name, (("p", VEC3),), make)
 
@@ -398,11 +402,11 @@ class SceneLowering:
     def _surface_of_hit(self) -> FunctionRef:
         """Return the function ``(p, footprint, part) -> Surface``."""
         kind = SurfaceAttribute(self.composer, self._scene.material)
-        parts, beside = split_table(self._node)
+        parts, beside = split_table(self.node)
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             if parts is None:
-                return attribute(body, kind, self._node, self._site(self._node, given))
+                return attribute(body, kind, self.node, self._site(self.node, given))
             of = of_part(kind, parts, self._site(parts, given), given["part"])
             if beside is None:
                 return of
@@ -515,8 +519,8 @@ class SceneLowering:
 
     def _pivot(self, body: StatementList, given: Mapping[str, Expr]) -> Expr:
         """Return the point that a camera without a target is rotated about."""
-        values = self.composer.values.all(self._node)
-        bounds = self.composer.bounds.of(body, self._node, values).bounds
+        values = self.composer.values.all(self.node)
+        bounds = self.composer.bounds.of(body, self.node, values).bounds
         return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
 
     def _camera_of(self, resolution: Expr, *, steered: bool) -> FunctionRef:
