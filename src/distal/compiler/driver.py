@@ -30,6 +30,8 @@ VERIFY = os.environ.get("DISTAL_VERIFY", "") == "1"
 
 IR_TARGET = "ir"  # prints the IR after the CPU's passes
 # "numpy", the reference, runs the IR directly and has no text.
+# Texts for people have a table of parts only if it makes them much shorter: it needs NumPy.
+TEXT_TABLE_FROM: Final = 256
 COMPILE_TARGETS: Final = (IR_TARGET, *(name for name in target_names() if name != "numpy"))
 
 
@@ -97,14 +99,14 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
     if after is not None and target != IR_TARGET:
         raise ValueError("only the target 'ir' can stop after a pass")
     if target == IR_TARGET:
-        module = lower(obj)
+        module = lower(obj, table_from=TEXT_TABLE_FROM)
         if after != "lower":
             module = run_passes(module, get_target("llvm"), after=after)
         return Artifact(print_module(module), {})
     if target not in COMPILE_TARGETS:
         raise ValueError(f"there is no target '{target}'; targets: {', '.join(COMPILE_TARGETS)}")
     description = get_target(target)
-    module = lower(obj, buffers=description.buffers)
+    module = lower(obj, table_from=TEXT_TABLE_FROM if description.buffers else None)
     return emit(run_passes(module, description), description)
 
 

@@ -16,7 +16,7 @@ from distal.backends import TEXT_TARGETS, emit
 from distal.backends.base import Artifact
 from distal.backends.clike.module_text import comment_text
 from distal.backends.targets import Declares
-from distal.compiler.driver import run_passes
+from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
 from distal.export.exported import Exported
 from distal.export.page_options import TextOptions
 from distal.frontend import lower
@@ -106,7 +106,7 @@ def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Expo
     image = seen.image(options.view, encoded=True)
     description = TEXT_TARGETS[target]
     text_of = image.text() if isinstance(image, Composed) else image
-    module = lower(text_of, buffers=description.buffers)
+    module = lower(text_of, table_from=TEXT_TABLE_FROM if description.buffers else None)
     artifact = emit(run_passes(_set(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
     text = with_header(artifact, target, name)

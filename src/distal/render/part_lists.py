@@ -28,7 +28,7 @@ from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
 from distal.render.march import MOST_STEPS
 from distal.render.part_tree import (
-    Nearest,
+    NearestPart,
     beyond_box,
     box_count,
     inverse_of,
@@ -240,7 +240,7 @@ def distance_to_listed(
             if anywhere(is_own and beyond_box(p, boxes[2 * box], high) <= squared(best)):
                 best = select(is_own, min(best, distance(p, int(high.w))), best)
     elif anywhere(near.own_count > MOST_LISTED):
-        best = nearest_part(boxes, distance, p, Nearest(best, -1)).distance
+        best = nearest_part(boxes, distance, p, NearestPart(best, -1)).distance
     else:
         for i in range(MOST_LISTED):
             if not anywhere(i < near.own_count):

@@ -35,7 +35,7 @@ from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March, march, march_b
 
 
 @struct
-class Nearest:
+class NearestPart:
     """The part nearest to a point.
 
     Attributes:
@@ -115,8 +115,8 @@ def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
 
 @func
 def nearest_part(
-    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3, known: Nearest
-) -> Nearest:
+    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3, known: NearestPart
+) -> NearestPart:
     """Return the part nearest to a point.
 
     Args:
@@ -143,11 +143,13 @@ def nearest_part(
                 part = select(d < best, of, part)
                 best = min(d, best)
         box = following
-    return Nearest(best, part)
+    return NearestPart(best, part)
 
 
 @func
-def nearest_of_all(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> Nearest:
+def nearest_of_all(
+    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3
+) -> NearestPart:
     """Return the part nearest to a point, at any distance.
 
     Args:
@@ -156,7 +158,7 @@ def nearest_of_all(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], 
         p: The point.
     """
     first = near_leaf(boxes, p)
-    return nearest_part(boxes, distance, p, Nearest(distance(p, first), first))
+    return nearest_part(boxes, distance, p, NearestPart(distance(p, first), first))
 
 
 @func
@@ -194,7 +196,7 @@ def contains(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec
         distance: The signed distance of a point to a part.
         p: The point.
     """
-    return nearest_part(boxes, distance, p, Nearest(0.0, -1)).part >= 0
+    return nearest_part(boxes, distance, p, NearestPart(0.0, -1)).part >= 0
 
 
 @func

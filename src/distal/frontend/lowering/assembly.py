@@ -7,7 +7,7 @@ functions added to the program. Does not depend on the kinds of objects.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError, Span
 from distal.frontend.lowering.exact_overloads import exact_instance
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from distal.frontend.lowering.compilation import Compilation
 
 
+# The least number of parts of which an object makes a table, unless a caller says otherwise.
+TABLE_FROM: Final = 16
+
+
 class Assembly:
     """The interface through which an object adds its functions to a program.
 
@@ -41,9 +45,9 @@ class Assembly:
         self.made: dict[Any, Any] = {}
 
     @property
-    def has_buffers(self) -> bool:
-        """Whether objects may put their numbers into buffers: whether the target has them."""
-        return self._compilation.has_buffers
+    def table_from(self) -> int | None:
+        """The least number of parts whose numbers may be put into buffers; None for no buffers."""
+        return self._compilation.table_from
 
     def call(self, func: Func, arguments: Mapping[str, Expr]) -> Expr:
         """Return a call of a scene function, with arguments bound by parameter name.

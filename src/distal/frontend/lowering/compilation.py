@@ -13,7 +13,7 @@ from typing import Any
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering import lambda_lifting, scene_calls
-from distal.frontend.lowering.assembly import Assembly
+from distal.frontend.lowering.assembly import TABLE_FROM, Assembly
 from distal.frontend.lowering.expressions import lower_expression
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.problems import FollowupError, SceneError
@@ -52,11 +52,12 @@ class Compilation:
         instances: The lowered functions, by source and argument types.
         is_too_deep: Whether calls exceeded Python's recursion limit, which was reported.
         assembly: The interface for objects that add functions.
-        has_buffers: Whether objects may put their numbers into buffers.
+        table_from: With so many parts or more, an object may put the numbers of its parts into
+            buffers; None if the target has none.
     """
 
-    def __init__(self, *, has_buffers: bool = True) -> None:
-        self.has_buffers = has_buffers
+    def __init__(self, *, table_from: int | None = TABLE_FROM) -> None:
+        self.table_from = table_from
         self.expression: Callable[[FunctionBody, ast.expr], Value] = lower_expression
         self.functions: list[Function] = []
         self.diagnostics: list[Diagnostic] = []

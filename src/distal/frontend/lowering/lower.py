@@ -11,6 +11,7 @@ from typing import TypeAlias, TypeVar
 
 from distal.diagnostics import CompileError, Diagnostic
 from distal.frontend.freshness import Captured
+from distal.frontend.lowering.assembly import TABLE_FROM
 from distal.frontend.lowering.builtin_calls import exact_instances
 from distal.frontend.lowering.compilation import Compilation
 from distal.frontend.lowering.exact_overloads import exact_bindings, exact_instance
@@ -32,7 +33,10 @@ SceneCode: TypeAlias = Func | Composed | LangFunction
 
 
 def lower(
-    obj: SceneCode, arg_types: tuple[Type, ...] | None = None, *, buffers: bool = True
+    obj: SceneCode,
+    arg_types: tuple[Type, ...] | None = None,
+    *,
+    table_from: int | None = TABLE_FROM,
 ) -> Module:
     """Lower an image, or a function for the types of its arguments.
 
@@ -40,12 +44,13 @@ def lower(
         obj: A function decorated with ``@image`` or ``@func``, a shape, a scene, or a built-in.
         arg_types: The argument types; they select the overload and bind type variables. None if
             the annotations alone determine the types.
-        buffers: Whether objects may put their numbers into buffers: whether the target has them.
+        table_from: With so many parts or more, an object may put the numbers of its parts into
+            buffers; None if the target has none.
 
     Raises:
         CompileError: The function, or a function that it calls, has errors; contains all of them.
     """
-    return _lower(Compilation(has_buffers=buffers), obj, arg_types)
+    return _lower(Compilation(table_from=table_from), obj, arg_types)
 
 
 def lower_captured(

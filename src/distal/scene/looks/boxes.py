@@ -34,6 +34,9 @@ from distal.scene.tree.values import StatementList, Values
 # Length at which an infinite shape is cut, along each axis, if the scene has no finite one.
 REACH: Final = 2.0
 
+# The boxes of more parts are not folded, but computed together by NumPy.
+MOST_FOLDED: Final = 255
+
 Corners: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
 
 
@@ -80,9 +83,9 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
     """
-    table = rolled(root)
-    parts, sources = list(parts_of(table.node)), list(parts_of(root))
-    if table.table is not None:
+    parts = sources = list(parts_of(root))
+    if len(parts) > MOST_FOLDED and (table := rolled(root)).table is not None:
+        parts = list(parts_of(table.node))
         sources = [table.node, *(member.source for member, _ in table.beside)]
     known = list(zip(sources, _boxes(parts, params, time), strict=True))
     finite = [box for _, box in known if box is not None and _is_finite(*box)]

@@ -19,8 +19,7 @@ from distal.lang.resources import Buffer
 from distal.render.footprint import moved_footprint, point_footprint, step_along
 from distal.render.material import Surface, mix_surfaces
 from distal.scene.lowering.part_functions import POINT
-from distal.scene.lowering.parts.kinds import Kind as KindOfPart
-from distal.scene.lowering.parts.kinds import leaves_of, materials_in
+from distal.scene.lowering.parts.kinds import PartKind, leaves_of, materials_in
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.tree.calls import FOOTPRINT
@@ -75,7 +74,7 @@ class Attribute(ABC):
         """The type of the attribute."""
         return FLOAT
 
-    def in_row(self, kind: KindOfPart, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
+    def in_row(self, kind: PartKind, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the attribute of one part of a kind.
 
         Args:
@@ -170,7 +169,7 @@ def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) 
     if site.footprint is not None:
         given["footprint"] = site.footprint
 
-    def make(inner: StatementList, _: int, of: KindOfPart) -> Expr:
+    def make(inner: StatementList, _: int, of: PartKind) -> Expr:
         footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
         here = AttributePoint(POINT, site.cell, composer.values.all(of.node), footprint)
         return kind.in_row(of, functions.ordinal, lambda: attribute(inner, kind, of.node, here))
@@ -365,7 +364,7 @@ class ListedMaterial(SurfaceAttribute):
         self.materials.append(material)
         return number(float(len(self.materials) - 1))
 
-    def in_row(self, kind: KindOfPart, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
+    def in_row(self, kind: PartKind, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own material."""
         first = len(self.materials)
         found = make()
@@ -417,7 +416,7 @@ class Part(Attribute):
         """Return the cutter's own part: it made the face."""
         return attribute(body, self, node, site)
 
-    def in_row(self, kind: KindOfPart, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
+    def in_row(self, kind: PartKind, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own leaf."""
         first = len(self.nodes)
         found = make()

@@ -28,7 +28,7 @@ from distal.ir.build import number as constant_number
 from distal.ir.nodes import Const, Construct, Expr
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
-from distal.scene.lowering.parts.table import Table, TableNode
+from distal.scene.lowering.parts.table import PartTable, TableNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
 
@@ -98,7 +98,7 @@ class BoundsComposer:
         ]
         return self.of_operator(body, rule, inner, own)
 
-    def _of_table(self, table: Table) -> ShapeBounds:
+    def _of_table(self, table: PartTable) -> ShapeBounds:
         corners = (
             self._values.fixed("parts_low", VEC3, table.low),
             self._values.fixed("parts_high", VEC3, table.high),

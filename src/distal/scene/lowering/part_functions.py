@@ -15,9 +15,8 @@ from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Kind, Type, Vector
 from distal.render import part_tree
-from distal.scene.lowering.parts.kinds import Kind as KindOfPart
-from distal.scene.lowering.parts.kinds import numbers_in
-from distal.scene.lowering.parts.table import Table
+from distal.scene.lowering.parts.kinds import PartKind, numbers_in
+from distal.scene.lowering.parts.table import PartTable
 from distal.scene.tree.calls import COLUMN
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.values import StatementList
@@ -31,13 +30,13 @@ PART: Final = Read("part", INT)
 POINT: Final = Read("p", VEC3)
 
 # Adds the statements of one kind, and returns its value.
-OfKind: TypeAlias = "Callable[[StatementList, int, KindOfPart], Expr]"
+OfKind: TypeAlias = "Callable[[StatementList, int, PartKind], Expr]"
 
 
 class PartFunctions:
     """Makes the functions of the parts of one table."""
 
-    def __init__(self, composer: ShapeComposer, table: Table) -> None:
+    def __init__(self, composer: ShapeComposer, table: PartTable) -> None:
         self._composer = composer
         self._table = table
         assembly = composer.assembly
@@ -65,7 +64,7 @@ class PartFunctions:
         """The number of ``PART`` among the parts of its kind, as a float."""
         return self._head("y")
 
-    def _distance(self, body: StatementList, number: int, kind: KindOfPart) -> Expr:
+    def _distance(self, body: StatementList, number: int, kind: PartKind) -> Expr:
         composer = self._composer
         return composer.distance(body, kind.node, POINT, ZERO_CELL, composer.values.all(kind.node))
 
@@ -110,6 +109,6 @@ class PartFunctions:
         return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result))
 
 
-def _columns(kind: KindOfPart) -> list[Number]:
+def _columns(kind: PartKind) -> list[Number]:
     """Return the numbers of a kind's tree that are columns."""
     return [n for n in numbers_in(kind.node) if id(n) in kind.columns]

@@ -23,7 +23,7 @@ RISING: Final = frozenset((SCALE, SCALE_FLAT, ROUND, OFFSET))
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class UnionMember:
     """A member of the unions at the root of a tree.
 
     Attributes:
@@ -35,9 +35,9 @@ class Member:
     source: Node
 
 
-def members_of(root: Node) -> list[Member]:
+def members_of(root: Node) -> list[UnionMember]:
     """Return the members of the unions at the root of a tree."""
-    found: list[Member] = []
+    found: list[UnionMember] = []
     stack: list[tuple[Node, Callable[[Node], Node]]] = [(root, _unchanged)]
     while stack:
         node, above = stack.pop()
@@ -47,7 +47,7 @@ def members_of(root: Node) -> list[Member]:
         elif _passes(node) and _unites(node):
             stack.append((node.children[0], _wrapped(node, above)))
         else:
-            found.append(Member(above(node), node))
+            found.append(UnionMember(above(node), node))
     return found
 
 

@@ -15,14 +15,14 @@ from distal.ir.types import FLOAT, VEC3, Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import BoundsComposer
-from distal.scene.lowering.parts.kinds import Kind
+from distal.scene.lowering.parts.kinds import PartKind
 from distal.scene.tree.calls import COLUMN
 from distal.scene.tree.values import StatementList, Values
 
 Floats = NDArray[np.float64]
 
 
-def boxes_of(kind: Kind) -> tuple[Floats, Floats, float]:
+def boxes_of(kind: PartKind) -> tuple[Floats, Floats, float]:
     """Return the low and the high corners of the parts of a kind, each (n, 3), and their slope."""
     found = executor().call(BoxOfKind(kind), tuple(columns_of(kind)), {}, device="reference")
     size = (len(kind.members), 3)
@@ -30,7 +30,7 @@ def boxes_of(kind: Kind) -> tuple[Floats, Floats, float]:
     return np.broadcast_to(low, size), np.broadcast_to(high, size), float(slope.max())
 
 
-def columns_of(kind: Kind) -> list[Floats]:
+def columns_of(kind: PartKind) -> list[Floats]:
     """Return the columns of a kind's table: arrays (n,) or (n, components)."""
     return [np.array([n.value for n in column]) for column in zip(*kind.numbers, strict=True)]
 
@@ -38,7 +38,7 @@ def columns_of(kind: Kind) -> list[Floats]:
 class BoxOfKind(Composed):
     """The box and the slope of a part of a kind, from the numbers of its row."""
 
-    def __init__(self, kind: Kind) -> None:
+    def __init__(self, kind: PartKind) -> None:
         self.name = f"boxes of {kind.node.name}"
         self._kind = kind
         numbers = kind.numbers[0]

@@ -14,7 +14,7 @@ from typing import Any, Final
 from distal.fields.guarantees import Operator, Primitive
 from distal.ir.types import Vector
 from distal.lang.expressions import Expression
-from distal.scene.lowering.parts.flatten import Member
+from distal.scene.lowering.parts.flatten import UnionMember
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
@@ -24,7 +24,7 @@ HEAD: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class PartKind:
     """Parts of equal structure.
 
     Attributes:
@@ -36,7 +36,7 @@ class Kind:
     """
 
     node: Node
-    members: Sequence[Member]
+    members: Sequence[UnionMember]
     columns: Mapping[int, int]
     width: int
     numbers: Sequence[Sequence[Number]]
@@ -53,10 +53,10 @@ class Kind:
         return -(-self.width // 4)
 
 
-def kinds_of(members: Sequence[Member]) -> list[Kind]:
+def kinds_of(members: Sequence[UnionMember]) -> list[PartKind]:
     """Return the kinds of parts, in the order of the first part of each."""
     structures = _Structures()
-    grouped: dict[int, list[Member]] = {}
+    grouped: dict[int, list[UnionMember]] = {}
     for member in members:
         grouped.setdefault(structures.key(member.part), []).append(member)
     return [_kind(group) for group in grouped.values()]
@@ -128,7 +128,7 @@ def _constant(value: Any) -> Hashable:
     return (getattr(value, "type", None), plain) if plain is not None else id(value)
 
 
-def _kind(members: Sequence[Member]) -> Kind:
+def _kind(members: Sequence[UnionMember]) -> PartKind:
     every = [list(numbers_in(member.part)) for member in members]
     first = every[0]
     differs = [
@@ -150,7 +150,7 @@ def _kind(members: Sequence[Member]) -> Kind:
             taken.append(i)
     node = _Copying(copies).node(members[0].part) if copies else members[0].part
     numbers = [[row[i] for i in taken] for row in every]
-    return Kind(node, members, columns, width, numbers)
+    return PartKind(node, members, columns, width, numbers)
 
 
 def numbers_in(value: Any) -> Iterator[Number]:

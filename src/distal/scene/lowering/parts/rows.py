@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from distal.fields.guarantees import ENDLESS
 from distal.lang.resources import Buffer
 from distal.scene.lowering.parts.box_tree import box_tree
-from distal.scene.lowering.parts.flatten import Member
+from distal.scene.lowering.parts.flatten import UnionMember
 from distal.scene.lowering.parts.kind_boxes import boxes_of, columns_of
-from distal.scene.lowering.parts.kinds import Kind
-from distal.scene.lowering.parts.table import Table
+from distal.scene.lowering.parts.kinds import PartKind
+from distal.scene.lowering.parts.table import PartTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,30 +33,30 @@ class Rows:
         infinite: The other parts.
     """
 
-    kinds: Sequence[Kind]
+    kinds: Sequence[PartKind]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
     slope: float
-    infinite: Sequence[Member]
+    infinite: Sequence[UnionMember]
 
     @property
     def count(self) -> int:
         """The number of parts with finite boxes."""
         return len(self.low)
 
-    def table(self) -> Table:
+    def table(self) -> PartTable:
         """Return the table of the parts with finite boxes."""
         rows, places = _rows(self.kinds)
         tree = box_tree(self.low, self.high, places)
         low, high = self.low.min(axis=0), self.high.max(axis=0)
         corners = tuple(map(float, low)), tuple(map(float, high))
-        return Table(self.kinds, Buffer(tree), Buffer(rows), *corners, self.slope)
+        return PartTable(self.kinds, Buffer(tree), Buffer(rows), *corners, self.slope)
 
 
-def rows_of(kinds: Sequence[Kind]) -> Rows:
+def rows_of(kinds: Sequence[PartKind]) -> Rows:
     """Return the parts of several kinds that have finite boxes."""
-    finite: list[Kind] = []
-    infinite: list[Member] = []
+    finite: list[PartKind] = []
+    infinite: list[UnionMember] = []
     steepest = 0.0
     lows, highs = [np.zeros((0, 3))], [np.zeros((0, 3))]
     for kind in kinds:
@@ -72,7 +72,7 @@ def rows_of(kinds: Sequence[Kind]) -> Rows:
     return Rows(finite, np.concatenate(lows), np.concatenate(highs), steepest, infinite)
 
 
-def _chosen(kind: Kind, chosen: NDArray[np.bool_]) -> Kind:
+def _chosen(kind: PartKind, chosen: NDArray[np.bool_]) -> PartKind:
     if chosen.all():
         return kind
     members = [m for m, keep in zip(kind.members, chosen, strict=True) if keep]
@@ -80,7 +80,7 @@ def _chosen(kind: Kind, chosen: NDArray[np.bool_]) -> Kind:
     return replace(kind, members=members, numbers=numbers)
 
 
-def _rows(kinds: Sequence[Kind]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+def _rows(kinds: Sequence[PartKind]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
     """Return the rows of all parts, and the number of each part's first vec4."""
     rows: list[NDArray[np.float32]] = []
     places: list[NDArray[np.int64]] = []

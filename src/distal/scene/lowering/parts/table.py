@@ -19,8 +19,8 @@ from distal.frontend import Assembly
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
 from distal.packages import PackageError
-from distal.scene.lowering.parts.flatten import Member, members_of
-from distal.scene.lowering.parts.kinds import Kind, is_moving, kinds_of
+from distal.scene.lowering.parts.flatten import UnionMember, members_of
+from distal.scene.lowering.parts.kinds import PartKind, is_moving, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.tree.node import Node
 
@@ -45,7 +45,7 @@ PARTS: Final = Operator("parts", keeps=EXACT_OUTSIDE)
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PartTable:
     """The parts of a union.
 
     Attributes:
@@ -57,7 +57,7 @@ class Table:
         slope: Lipschitz bound (slope) of all parts.
     """
 
-    kinds: Sequence[Kind]
+    kinds: Sequence[PartKind]
     boxes: Buffer
     rows: Buffer
     low: tuple[float, ...]
@@ -74,7 +74,7 @@ class Table:
 class TableNode(Node):
     """A node that stands for all parts of a table."""
 
-    table: Table = None  # type: ignore[assignment]  # always given; the base class has defaults
+    table: PartTable = None  # type: ignore[assignment]  # always given; the base class has defaults
 
     @property
     def has_rows(self) -> bool:
@@ -93,8 +93,8 @@ class Rolled:
     """
 
     node: Node
-    table: Table | None
-    beside: Sequence[tuple[Member, str]]
+    table: PartTable | None
+    beside: Sequence[tuple[UnionMember, str]]
 
 
 _rolled: WeakKeyDictionary[Node, Rolled] = WeakKeyDictionary()
@@ -114,13 +114,13 @@ def rolled_for(assembly: Assembly, root: Node) -> Node:
     Raises:
         CompileError: The target has no buffers for a table, and the parts are too many without one.
     """
-    if assembly.has_buffers:
-        return rolled(root).node
+    if assembly.table_from is not None:
+        return rolled(root).node if root.parts >= assembly.table_from else root
     if root.parts > MOST_WITHOUT:
         raise CompileError.at(
             f"{root.parts:,} parts of '{root.name}' need a table, and this target has no buffers",
             root.place,
-            f"glsl-es300, glsl-330 and wgsl have; {MOST_WITHOUT:,} parts are possible without",
+            f"take a target with buffers; {MOST_WITHOUT:,} parts are possible without",
         )
     return root
 
@@ -165,7 +165,7 @@ def _roll(root: Node) -> Rolled:
     return Rolled(node, table, beside)
 
 
-def _fit(members: Sequence[Member], reasons: dict[int, str]) -> list[Member]:
+def _fit(members: Sequence[UnionMember], reasons: dict[int, str]) -> list[UnionMember]:
     """Return the members that a table can hold; add why it cannot hold the others."""
     safe = SafeParts()
     for member in members:
