@@ -172,7 +172,8 @@ ERRORS = {
     ),
     "too many": (
         lambda: grown(20),
-        "this union is made of 4,096 shapes; more than 2,048 take too long to compile and to draw",
+        "this union is made of 1,048,576 shapes; "
+        "more than 1,000,000 take too long to compile and to draw",
         "repeat, array and mirror show many copies for the price of one",
     ),
     # Own functions

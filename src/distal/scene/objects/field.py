@@ -38,7 +38,7 @@ from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
 from distal.scene.tree.values import plain_name
 
-# The most primitives in a tree: with more, compilation takes minutes.
+# The most primitives in a tree: a hundred thousand take some hundred megabytes.
 MOST_PARTS: Final = 1_000_000
 
 
