@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import Span
@@ -55,11 +56,7 @@ def bound(
         SceneTypeError: An argument is unknown, missing or of another type.
         SceneValueError: A number is beyond its limit.
     """
-    functions: tuple[Func, ...]
-    if isinstance(rule, Primitive):
-        functions, reserved = (rule.distance,), RESERVED_OF_SHAPES | {*rule.measured}
-    else:
-        functions, reserved = rule.number_functions, RESERVED | {*rule.fixed}
+    functions, reserved = _parameters_of(rule)
     given = arguments(
         functions,
         args,
@@ -76,8 +73,18 @@ def bound(
             assert isinstance(data, Texture2D)
             given[name] = Number(VEC2, measuring.largest_rise(data, rule.name, place))
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
+    if len(numbers) == len(given):
+        return numbers, {}
     constants = {name: value for name, value in given.items() if name not in numbers}
     return numbers, constants
+
+
+@lru_cache(maxsize=1024)
+def _parameters_of(rule: Rule) -> tuple[tuple[Func, ...], frozenset[str]]:
+    """Return the functions with a rule's numbers, and the parameters that the author never sets."""
+    if isinstance(rule, Primitive):
+        return (rule.distance,), frozenset(RESERVED_OF_SHAPES | {*rule.measured})
+    return rule.number_functions, frozenset(RESERVED | {*rule.fixed})
 
 
 def own_node(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property, lru_cache
 from os import PathLike
 from typing import Any, ClassVar, Final, NoReturn, Self
 
@@ -48,9 +49,8 @@ class BaseShape(Composed, Presentable):
     flat: ClassVar[bool] = False
     point_type: ClassVar[Type] = VEC3
     result = FLOAT
+    signature = (("p", VEC3),)
     node: Node
-    _gradient: GradientOf
-    _bounds_function: BoundsOf
 
     def __init__(self, node: Node) -> None:
         if node.parts > MOST_PARTS:
@@ -60,13 +60,7 @@ class BaseShape(Composed, Presentable):
                 "repeat, array and mirror show many copies for the price of one",
                 node.place,
             )
-        made = {
-            "node": node,
-            "signature": (("p", self.point_type),),
-            "_gradient": GradientOf(node),
-            "_bounds_function": BoundsOf(node),
-        }
-        self.__dict__.update(made)
+        self.__dict__["node"] = node
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
@@ -82,6 +76,14 @@ class BaseShape(Composed, Presentable):
         return self.node.name
 
     # Evaluation
+
+    @cached_property
+    def _gradient(self) -> GradientOf:
+        return GradientOf(self.node)
+
+    @cached_property
+    def _bounds_function(self) -> BoundsOf:
+        return BoundsOf(self.node)
 
     def compose(self, assembly: Assembly) -> str:
         """Add the distance function to the program, and return its name."""
@@ -192,8 +194,8 @@ class BaseShape(Composed, Presentable):
             place: The author's line.
             others: The shapes to combine this one with.
         """
-        flat = rule.lies_flat(self.flat)
-        if rule.takes_flat(flat) is not self.flat:
+        flat = _flat_result(rule, self.flat)
+        if flat is None:
             kind, fix = ("solid", ".extrude(height)") if self.flat else ("flat", ".slice()")
             refuse(f"{rule.name} works on {kind} shapes", f"{fix} first", place)
         numbers, constants = bound(rule, args, kwargs, place)
@@ -227,12 +229,17 @@ class BaseShape(Composed, Presentable):
                     place,
                 )
         rule, numbers, constants = joining(sharp, smooth, blend, k, place)
+        # A union of a union is one union; a difference of a difference likewise.
+        bare = rule if not numbers else None
         nodes: list[Node] = []
-        for shape in (self, *others):
-            plain = not numbers and shape.node.rule is rule and _bare(shape.node)
-            nested = plain and (sharp in _ASSOCIATIVE or shape is self)
-            nodes.extend(shape.node.children if nested else (shape.node,))
-        return self._of(Node(rule, self.flat, tuple(nodes), numbers, constants, place))
+        for shape in others:
+            node = shape.node
+            nested = node.rule is bare and sharp in _ASSOCIATIVE and _bare(node)
+            nodes.extend(node.children if nested else (node,))
+        own = self.node
+        if own.rule is bare and _bare(own):
+            return self._of(Node(rule, self.flat, own.followed_by(nodes), {}, constants, place))
+        return self._of(Node(rule, self.flat, (own, *nodes), numbers, constants, place))
 
     def union(self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> Self:
         """Unite with other shapes; also written ``a | b``.
@@ -302,7 +309,7 @@ class BaseShape(Composed, Presentable):
 
     def paint(self, material: Any) -> Self:
         """Set the material, or its color; the outermost ``paint`` has priority."""
-        changed: Self = self._of(replace(self.node, material=as_material(material)))
+        changed: Self = self._of(self.node.with_material(as_material(material)))
         return changed
 
     def cut_material(self, material: Any) -> Self:
@@ -402,6 +409,18 @@ class BaseShape(Composed, Presentable):
 
 def _bare(node: Node) -> bool:
     return node.material is None and node.cut_material is None and not node.label
+
+
+@lru_cache(maxsize=1024)
+def _flat_result(rule: Operator, flat: bool) -> bool | None:
+    """Return whether the result of an operator lies in the plane; None if it takes no such child.
+
+    Args:
+        rule: The operator.
+        flat: Whether the child lies in the plane.
+    """
+    result = rule.lies_flat(flat)
+    return result if rule.takes_flat(result) is flat else None
 
 
 _ASSOCIATIVE: Final = (joins.UNION, joins.INTERSECTION)

@@ -337,6 +337,7 @@ class Shape2D(Placed):
 
     flat = True
     point_type = VEC2
+    signature = (("p", VEC2),)
 
     def rotate(self, angle: Any) -> Self:
         """Rotate counterclockwise about the origin by an angle in radians."""

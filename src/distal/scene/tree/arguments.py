@@ -10,6 +10,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any, Final, NoReturn, TypeAlias
 from weakref import WeakKeyDictionary
 
@@ -28,8 +29,10 @@ from distal.scene.tree.conversion import (
     Asked,
     Number,
     choice,
+    is_plain_scalar,
     is_scalar,
     number,
+    plain_number,
     resource,
     type_name,
     unwrapped,
@@ -50,6 +53,8 @@ SPLATTED: Final = frozenset(
     ("size", "half_size", "spacing", "factor", "scale", "radii", "sizes", "margin")
 )
 _LETTERS: Final = "xyzw"
+_SCALARS: Final = (float, int)
+_SEQUENCES: Final = (tuple, list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +64,11 @@ class FunctionParameter:
     name: str
     type: Type | None
     default: Any
+    is_vector: bool = field(init=False)  # whether several scalars may be passed for it
 
-    @property
-    def is_vector(self) -> bool:
-        """Whether several scalars may be passed for the parameter."""
-        return isinstance(self.type, Vector) and self.type.kind is Kind.FLOAT
+    def __post_init__(self) -> None:
+        is_vector = isinstance(self.type, Vector) and self.type.kind is Kind.FLOAT
+        object.__setattr__(self, "is_vector", is_vector)
 
     @property
     def is_number(self) -> bool:
@@ -135,23 +140,63 @@ def arguments(
             type.
         SceneValueError: A number is not finite, is beyond its limit, or contradicts others.
     """
-    binding = _ArgumentBinding(_number_slots(functions, reserved), what, place)
-    binding.take_keywords(kwargs)
-    binding.take_positional(args)
+    listed = (functions,) if isinstance(functions, Func) else tuple(functions)
+    slots = _number_slots(listed, frozenset(reserved))
+    given = _bound_quickly(slots, args, kwargs)
+    if given is None:
+        binding = _ArgumentBinding(slots, what, place)
+        binding.take_keywords(kwargs)
+        binding.take_positional(args)
+        given = {slot.name: binding.value_of(slot) for slot in slots}
     values: dict[str, Given] = {}
-    for slot in binding.slots:
-        asked = Asked(
-            slot.name,
-            what,
-            _known_type(slot, what, place),
-            (limits or {}).get(slot.name, Limit.ANY),
-            takes_color(slot.name, colors),
-            slot.name in SPLATTED,
-            place,
-        )
-        values[slot.name] = _value(binding.value_of(slot), asked, accept)
-    _check_together(requires, values, what, place)
+    for slot in slots:
+        name = slot.name
+        limit = limits.get(name, Limit.ANY) if limits else Limit.ANY
+        is_color = takes_color(name, colors)
+        value: Given | None = plain_number(given[name], slot.type, limit, is_color=is_color)
+        if value is None:
+            known = _known_type(slot, what, place)
+            asked = Asked(name, what, known, limit, is_color, name in SPLATTED, place)
+            value = _value(given[name], asked, accept)
+        values[name] = value
+    if requires is not None:
+        _check_together(requires, values, what, place)
     return values
+
+
+def _bound_quickly(
+    slots: tuple[FunctionParameter, ...], args: Sequence[Any], kwargs: Mapping[str, Any]
+) -> dict[str, Any] | None:
+    """Return the arguments by name if they are of the usual forms, which need no search.
+
+    None for all others, including those that are wrong. A loop binds the arguments of 10,000
+    parts; this takes a third of the time of ``_ArgumentBinding``.
+    """
+    given = dict(kwargs)
+    at, count = 0, len(args)
+    for slot in slots:
+        name = slot.name
+        if at == count:
+            if name not in given:
+                if slot.default is MISSING:
+                    return None
+                given[name] = slot.default
+            continue
+        value = args[at]
+        if name in given:
+            return None
+        if slot.is_vector and type(value) not in _SCALARS:
+            value = unwrapped(value)
+        if not slot.is_vector or type(value) in _SEQUENCES:
+            given[name] = value
+            at += 1
+            continue
+        size = _size(slot)
+        given[name] = components = tuple(args[at : at + size])
+        if len(components) < size or not all([is_plain_scalar(c) for c in components]):
+            return None
+        at += size
+    return given if at == count and len(given) == len(slots) else None
 
 
 def takes_color(name: str, colors: Collection[str]) -> bool:
@@ -159,12 +204,13 @@ def takes_color(name: str, colors: Collection[str]) -> bool:
     return name in colors or name == "color" or name.endswith("_color")
 
 
+@lru_cache(maxsize=1024)
 def _number_slots(
-    functions: Func | Iterable[Func], reserved: Collection[str]
+    functions: tuple[Func, ...], reserved: frozenset[str]
 ) -> tuple[FunctionParameter, ...]:
     """Return the parameters of all functions that are numbers or choices, each name once."""
     found: dict[str, FunctionParameter] = {}
-    for func in (functions,) if isinstance(functions, Func) else functions:
+    for func in functions:
         for slot in slots_of(func):
             if slot.name in reserved:
                 continue
@@ -320,12 +366,9 @@ def _parts_of_default(slot: FunctionParameter) -> tuple[Any, ...]:
 
 
 def _check_together(
-    requires: Requirement | None, values: Mapping[str, Given], what: str, place: Span | None
+    requires: Requirement, values: Mapping[str, Given], what: str, place: Span | None
 ) -> None:
-    if requires is None:
-        return
-    wanted = inspect.signature(requires).parameters
-    takes_all = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in wanted.values())
+    wanted, takes_all = _required(requires)
     known = {n: _plain(v) for n, v in values.items() if takes_all or n in wanted}
     plain = {n: v for n, v in known.items() if v is not None}
     if len(plain) < len(known) and not takes_all:
@@ -333,6 +376,14 @@ def _check_together(
     reason = requires(**plain)
     if reason is not None:
         refuse(f"{what}: {reason}", place=place)
+
+
+@lru_cache(maxsize=1024)
+def _required(requires: Requirement) -> tuple[frozenset[str], bool]:
+    """Return the names that a requirement takes, and whether it takes all names."""
+    wanted = inspect.signature(requires).parameters
+    takes_all = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in wanted.values())
+    return frozenset(wanted), takes_all
 
 
 def _plain(value: Given) -> Any:

@@ -8,7 +8,7 @@ function computes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
 from distal.diagnostics import Span
@@ -24,7 +24,7 @@ from distal.lang.resources import Buffer, TextureValue
 from distal.render.declarations import PLACE_NAMES
 from distal.render.footprint import footprint_length
 from distal.scene.tree.arguments import slots_of
-from distal.scene.tree.conversion import Number
+from distal.scene.tree.conversion import NO_VALUES, Number
 
 FOOTPRINT: Final = "footprint"
 # With the id of a number: the key in ``Assembly.made`` of the expression that reads its column.
@@ -40,7 +40,7 @@ class Composer(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True, init=False)
 class FunctionCall(Immutable):
     """A scene function and its arguments.
 
@@ -53,8 +53,29 @@ class FunctionCall(Immutable):
 
     what: str
     func: Func
-    values: Mapping[str, Any] = field(default_factory=dict)
-    place: Span | None = None
+    values: Mapping[str, Any]
+    place: Span | None
+
+    def __init__(
+        self,
+        what: str,
+        func: Func,
+        values: Mapping[str, Any] = NO_VALUES,
+        place: Span | None = None,
+    ) -> None:
+        """Keep the call's parts; the arguments are the attributes.
+
+        Args:
+            what: The name in messages.
+            func: The function.
+            values: The values by parameter.
+            place: The author's line.
+        """
+        # Each part of a scene may have a material, so it is made without object.__setattr__.
+        _set_what(self, what)
+        _set_func(self, func)
+        _set_values(self, values)
+        _set_place(self, place)
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
@@ -109,6 +130,11 @@ class FunctionCall(Immutable):
         for value in self.values.values():
             if hasattr(value, "functions"):
                 yield from value.functions()
+
+
+_set_what, _set_func, _set_values, _set_place = (
+    vars(FunctionCall)[name].__set__ for name in ("what", "func", "values", "place")
+)
 
 
 def result_of(func: Func) -> Type | None:

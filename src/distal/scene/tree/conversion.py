@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
 from distal.diagnostics import Span
@@ -19,7 +20,14 @@ from distal.ir.nodes import Cast, Compose, Const, Expr, Splat, Uniform
 from distal.ir.types import FLOAT, INT, TEXTURE_2D, TEXTURE_3D, Kind, Scalar, Texture, Type, Vector
 from distal.ir.types import Buffer as BufferType
 from distal.lang.expressions import Expression, Symbolic
-from distal.lang.parameter_values import ColorNameError, as_bool, as_color, as_float, as_int
+from distal.lang.parameter_values import (
+    LARGEST_FLOAT,
+    ColorNameError,
+    as_bool,
+    as_color,
+    as_float,
+    as_int,
+)
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
 from distal.lang.values import VectorValue
@@ -28,13 +36,16 @@ from distal.scene.tree.errors import refuse, refuse_kind
 Component: TypeAlias = "float | Expression"
 Plain: TypeAlias = "float | tuple[float, ...]"
 
+# The values of an object without values, shared by all of them.
+NO_VALUES: Final[Mapping[str, Any]] = MappingProxyType({})
 _OF_ARRAYS: Final = {TEXTURE_2D: Texture2D, TEXTURE_3D: Texture3D}
 _WORDS: Final = {2: "two", 3: "three", 4: "four"}
 # A direction written with six digits is accepted as having length 1.
 _UNIT_TOLERANCE: Final = 1e-5
+_SEQUENCES: Final = (tuple, list)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class Number:
     """A float or a vector of floats among the arguments of a scene object.
 
@@ -46,6 +57,11 @@ class Number:
     type: Type
     value: Plain | Expression
 
+    def __init__(self, type: Type, value: Plain | Expression) -> None:
+        # There are some for each part of a scene, so it is made without object.__setattr__.
+        _set_type(self, type)
+        _set_value(self, value)
+
     @property
     def plain(self) -> Plain | None:
         """The value if it is constant, else None."""
@@ -55,6 +71,10 @@ class Number:
         """Return whether a component is, or may become, larger than ``low``."""
         known = self.plain
         return known is None or any(c > low for c in components(known))
+
+
+_set_type: Final = vars(Number)["type"].__set__
+_set_value: Final = vars(Number)["value"].__set__
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +121,42 @@ def number(value: Any, asked: Asked) -> Number:
         made = _vector(value, asked, asked.type)
     _check_limit(made, asked)
     return made
+
+
+def plain_number(
+    value: Any, type_: Type | None, limit: Limit, *, is_color: bool = False
+) -> Number | None:
+    """Convert a plain number, or a tuple or list of them, that needs no other conversion.
+
+    It accepts what ``number`` accepts, in a fifth of the time, and returns None for other values,
+    which ``number`` converts or reports.
+
+    Args:
+        value: The value.
+        type_: The type of the scene function's parameter.
+        limit: The limit of each number.
+        is_color: Whether components must not be negative.
+    """
+    if is_plain_scalar(value):
+        if type_ is not FLOAT or not -LARGEST_FLOAT <= value <= LARGEST_FLOAT:
+            return None
+        plain: Plain = float(value)
+    elif type(value) in _SEQUENCES:
+        if not isinstance(type_, Vector) or type_.kind is not Kind.FLOAT:
+            return None
+        if len(value) != type_.size or not all([is_plain_scalar(c) for c in value]):
+            return None
+        if not all([-LARGEST_FLOAT <= c <= LARGEST_FLOAT for c in value]):
+            return None
+        plain = tuple(map(float, value))
+    else:
+        return None
+    if is_color and min(components(plain)) < 0.0:
+        return None
+    if limit is not Limit.ANY and complaint(plain, limit) is not None:
+        return None
+    assert type_ is not None
+    return Number(type_, plain)
 
 
 def choice(value: Any, asked: Asked) -> int | bool:
@@ -154,6 +210,11 @@ def is_scalar(value: Any) -> bool:
     return isinstance(value, int | float) or (
         hasattr(value, "__float__") and not isinstance(value, Sequence)
     )
+
+
+def is_plain_scalar(value: Any) -> bool:
+    """Return whether a value is a float (NumPy's float64 is one) or an int, not a bool."""
+    return isinstance(value, float) or type(value) is int
 
 
 def components(value: Plain) -> tuple[float, ...]:

@@ -7,19 +7,48 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.lang.functions import Func
-from distal.scene.tree.conversion import Number
+from distal.scene.tree.conversion import NO_VALUES, Number
 
 Rule: TypeAlias = Primitive | Operator
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
+class GrowingChildren:
+    """The children of a union that may be joined with more: the beginning of a list.
+
+    ``a | b``, ``a | b | c`` and so on share one list. Only the last of them may append to it: it
+    holds the list in ``_last``, from which the first to append takes it.
+    """
+
+    __slots__ = ("_count", "_last", "_nodes", "parts")
+
+    def __init__(self, nodes: list[Node], parts: int) -> None:
+        self._nodes = nodes
+        self._count = len(nodes)
+        self._last = [nodes]
+        self.parts = parts
+
+    def children(self) -> tuple[Node, ...]:
+        """Return the children."""
+        return tuple(self._nodes[: self._count])
+
+    def followed_by(self, nodes: Sequence[Node]) -> GrowingChildren:
+        """Return these children with others after them."""
+        try:
+            own = self._last.pop()  # atomic: of two threads, one makes a copy
+        except IndexError:
+            own = self._nodes[: self._count]
+        own.extend(nodes)
+        return GrowingChildren(own, self.parts + sum([node.parts for node in nodes]))
+
+
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True, init=False)
 class Node:
     """A node of the tree: one shape.
 
@@ -47,10 +76,92 @@ class Node:
     cut_material: Any = None
     label: str = ""
     parts: int = field(init=False, default=1)
+    _growing: GrowingChildren | None = field(init=False, repr=False, default=None)
+
+    def __init__(
+        self,
+        rule: Rule,
+        flat: bool,
+        children: tuple[Node, ...] | GrowingChildren = (),
+        numbers: Mapping[str, Number] = NO_VALUES,
+        constants: Mapping[str, Any] = NO_VALUES,
+        place: Span | None = None,
+        material: Any = None,
+        cut_material: Any = None,
+        label: str = "",
+    ) -> None:
+        """Keep the parts of the node; ``children`` are the tuple or the list that it grows from.
+
+        Args:
+            rule: The primitive or operator.
+            flat: Whether the shape lies in the plane.
+            children: The shapes that an operator is applied to.
+            numbers: Values of the floats and vectors, by name.
+            constants: Choices, textures and buffers, by name.
+            place: The author's line.
+            material: The material of this node and everything below it, or None.
+            cut_material: The material of faces that this node cuts into others, or None.
+            label: The author's name for the shape, or "".
+        """
+        # A scene has 100,000 nodes: the descriptors of the slots take a quarter of the time of
+        # object.__setattr__.
+        _set_rule(self, rule)
+        _set_flat(self, flat)
+        _set_numbers(self, numbers)
+        _set_constants(self, constants)
+        _set_place(self, place)
+        _set_material(self, material)
+        _set_cut_material(self, cut_material)
+        _set_label(self, label)
+        if type(children) is tuple:
+            _set_children(self, children)
+            _set_growing(self, None)
+            self.__post_init__()
+        else:
+            assert isinstance(children, GrowingChildren)
+            _set_growing(self, children)
+            _set_parts(self, children.parts)
 
     def __post_init__(self) -> None:
-        if self.children:
-            object.__setattr__(self, "parts", sum(child.parts for child in self.children))
+        # Subclasses have the __init__ of a dataclass, which calls this method.
+        children = self.children
+        if len(children) == 1:
+            _set_parts(self, children[0].parts)
+        else:
+            _set_parts(self, sum([child.parts for child in children]) if children else 1)
+
+    def __getattr__(self, name: str) -> Any:
+        # The slot of the children is empty until they are read, if the union still grows.
+        if name != "children" or self._growing is None:
+            raise AttributeError(f"a node has no attribute '{name}'", name=name, obj=self)
+        found = self._growing.children()
+        _set_children(self, found)
+        return found
+
+    def followed_by(self, nodes: Sequence[Node]) -> GrowingChildren:
+        """Return this node's children with others after them.
+
+        The first call takes time in proportion to ``nodes`` alone, so that ``a = a | b`` in a loop
+        takes linear time.
+        """
+        own = self._growing
+        if own is None:
+            own = GrowingChildren(list(self.children), self.parts)
+        return own.followed_by(nodes)
+
+    def with_material(self, material: Any) -> Node:
+        """Return the node with another material."""
+        return Node(
+            self.rule,
+            self.flat,
+            self.children,
+            self.numbers,
+            self.constants,
+            self.place,
+            material,
+            self.cut_material,
+            self.label,
+        )
 
     @property
     def has_rows(self) -> bool:
@@ -105,3 +216,18 @@ class Node:
                 yield rule.distance
             else:
                 yield from rule.point_functions
+
+
+# The descriptors of the slots write what ``frozen`` keeps from changing.
+_SLOTS: Final[Mapping[str, Any]] = vars(Node)
+_set_rule: Final = _SLOTS["rule"].__set__
+_set_flat: Final = _SLOTS["flat"].__set__
+_set_children: Final = _SLOTS["children"].__set__
+_set_numbers: Final = _SLOTS["numbers"].__set__
+_set_constants: Final = _SLOTS["constants"].__set__
+_set_place: Final = _SLOTS["place"].__set__
+_set_material: Final = _SLOTS["material"].__set__
+_set_cut_material: Final = _SLOTS["cut_material"].__set__
+_set_label: Final = _SLOTS["label"].__set__
+_set_parts: Final = _SLOTS["parts"].__set__
+_set_growing: Final = _SLOTS["_growing"].__set__

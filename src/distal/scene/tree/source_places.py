@@ -12,7 +12,7 @@ import linecache
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import Final, TypeAlias
 
@@ -31,11 +31,19 @@ _REMEMBERED: Final = 16
 
 @dataclass(frozen=True, slots=True)
 class _CodeText:
-    """Cached facts about a code object: the position of each instruction, the file's lines."""
+    """Cached facts about a code object: the position of each instruction, the file's lines.
 
-    code: CodeType  # kept alive, so that its id is not reused
+    Attributes:
+        code: The code object, kept alive, so that its id is not reused.
+        positions: The position of each instruction.
+        lines: The lines of the file.
+        spans: The spans that were asked for, by instruction: a loop makes its parts at one place.
+    """
+
+    code: CodeType
     positions: tuple[_Position, ...]
     lines: Sequence[str]
+    spans: dict[int, Span] = field(default_factory=dict)
 
 
 _texts: dict[int, _CodeText] = {}
@@ -67,6 +75,13 @@ def _is_inside(frame: FrameType) -> bool:
 
 def _span(frame: FrameType) -> Span:
     text = _text(frame)
+    found = text.spans.get(frame.f_lasti)
+    if found is None:
+        found = text.spans[frame.f_lasti] = _span_at(frame, text)
+    return found
+
+
+def _span_at(frame: FrameType, text: _CodeText) -> Span:
     index = frame.f_lasti // 2  # one position for each two bytes of bytecode
     known: _Position = (None, None, None, None)
     if 0 <= index < len(text.positions):

@@ -25,15 +25,18 @@ class StatementList:
 
     statements: list[Stmt] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
+    # The number from which to look for a free name, by stem: a scene has thousands of boxes.
+    _next: dict[str, int] = field(default_factory=dict)
 
     def let(self, stem: str, value: Expr) -> Expr:
         """Add a named value and return the expression that reads it."""
         if isinstance(value, Read | Const):
             return value
-        name, n = stem, 2
+        name, n = stem, self._next.get(stem, 2)
         while name in self.taken:
             name, n = f"{stem}_{n}", n + 1
         self.taken.add(name)
+        self._next[stem] = n
         self.statements.append(Let(name, value))
         return Read(name, value.type)
 
