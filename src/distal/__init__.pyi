@@ -14,6 +14,9 @@ from distal.loading import load as load
 from distal.scene.looks.look import Look as Look
 from distal.scene.objects.backgrounds import Background as Background
 from distal.scene.objects.backgrounds import Environment as Environment
+from distal.scene.objects.copies import copies as copies
+from distal.scene.objects.joined import intersection as intersection
+from distal.scene.objects.joined import union as union
 from distal.scene.objects.letters import SvgPath as SvgPath
 from distal.scene.objects.letters import Text as Text
 from distal.scene.objects.materials import Material as Material
@@ -23,6 +26,11 @@ from distal.scene.objects.patterns import image_pattern as image_pattern
 from distal.scene.objects.patterns import pattern as pattern
 from distal.scene.objects.shape import Shape as Shape
 from distal.scene.objects.shape import Shape2D as Shape2D
+from distal.scene.points.curves import circle_path as circle_path
+from distal.scene.points.curves import helix_path as helix_path
+from distal.scene.points.curves import points_along as points_along
+from distal.scene.points.scatter import points_in as points_in
+from distal.scene.points.scatter import points_on as points_on
 from distal.scene.scene import Scene as Scene
 from distal.scene.steering import Steering as Steering
 from distal.scene.objects.backgrounds import DeclaredBackground as _DeclaredBackground
@@ -3345,8 +3353,10 @@ __all__ = [
     "checker",
     "chocolate",
     "chrome",
+    "circle_path",
     "clay",
     "concrete",
+    "copies",
     "copper",
     "cube_map",
     "diamond",
@@ -3358,9 +3368,11 @@ __all__ = [
     "gold",
     "gradient",
     "granite",
+    "helix_path",
     "honey",
     "ice",
     "image_pattern",
+    "intersection",
     "iron",
     "jade",
     "leather",
@@ -3379,6 +3391,9 @@ __all__ = [
     "plaster",
     "plastic",
     "platinum",
+    "points_along",
+    "points_in",
+    "points_on",
     "porcelain",
     "radial_gradient",
     "rubber",
@@ -3395,6 +3410,7 @@ __all__ = [
     "terracotta",
     "time",
     "titanium",
+    "union",
     "water",
     "waves",
     "wax",

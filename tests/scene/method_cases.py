@@ -212,6 +212,78 @@ SOLIDS = [
     ),
     Case(
         "array",
+        {
+            "positions": [(0.0, 0.3, -0.4), (0.5, -0.2, 0.7)],
+            "scale": (1.3, 0.8),
+            "rotation": [(0.7, -0.4, 1.1), (-0.5, 0.3, 0.2)],
+            "align": [(0.3, 1.0, -0.4), (1.0, 0.2, 0.5)],
+            "axis": (0.2, -0.3, 1.0),
+        },
+        lambda a, b, p, positions, scale, rotation, align, axis: np.min(
+            [
+                s
+                * a(
+                    turned_back(
+                        turned_back(p - arr(at), turn_towards(axis, to)),
+                        about(Z, z) @ about(Y, y) @ about(X, x),
+                    )
+                    / s
+                )
+                for at, s, (x, y, z), to in zip(positions, scale, rotation, align, strict=True)
+            ],
+            axis=0,
+        ),
+    ),
+    Case(
+        "array",
+        {
+            "positions": [(0.0, 0.3, -0.4), (0.5, -0.2, 0.7)],
+            "scale": [(1.3, 0.7, 1.9), (0.8, 1.1, 0.9)],
+            "rotation": (0.7, -0.4),
+        },
+        lambda a, b, p, positions, scale, rotation: np.min(
+            [
+                min(s) * a(turned_back(p - arr(at), about(Y, angle)) / arr(s))
+                for at, s, angle in zip(positions, scale, rotation, strict=True)
+            ],
+            axis=0,
+        ),
+        changed={"scale": [[(1.6, 0.7, 1.9), (0.8, 1.1, 0.9)], [(1.3, 0.7, 1.9), (0.8, 1.4, 0.7)]]},
+        child=HIGH,
+    ),
+    Case(
+        "array",
+        {"positions": [(0.0, 0.3, -0.4), (0.5, -0.2, 0.7)], "scale": 1.3, "rotation": 0.7},
+        lambda a, b, p, positions, scale, rotation: np.min(
+            [scale * a(turned_back(p - arr(at), about(Y, rotation)) / scale) for at in positions],
+            axis=0,
+        ),
+    ),
+    Case(
+        "array",
+        {
+            "positions": [(0.0, 0.3, -0.4), (0.5, -0.2, 0.7)],
+            "rotation": [QUATERNION, OTHER_QUATERNION],
+        },
+        lambda a, b, p, positions, rotation: np.min(
+            [
+                a(
+                    turned_back(
+                        p - arr(at),
+                        about(
+                            arr(q[:3]) / np.linalg.norm(q[:3]),
+                            2.0 * np.arctan2(np.linalg.norm(q[:3]), q[3]),
+                        ),
+                    )
+                )
+                for at, q in zip(positions, rotation, strict=True)
+            ],
+            axis=0,
+        ),
+        changed={"rotation": [[OTHER_QUATERNION, OTHER_QUATERNION], [QUATERNION, QUATERNION]]},
+    ),
+    Case(
+        "array",
         {"start": (0.3, -0.4, 0.2), "end": (3.0, 2.5, -2.0), "count": 4},
         copies=lambda q, start, end, count: [
             q + arr(start) + (arr(end) - arr(start)) * i / (count - 1) for i in range(count)

@@ -204,6 +204,7 @@ EXEMPT = {
     **{name: {"other"} for name in ("carve", "emboss", "morph", "engrave", "pipe", "groove")},
     **{name: {"other"} for name in ("tongue", "loft")},
     "xor": {"others"},
+    "array": {"colors"},  # scene/test_columns
     "displace": {"field"},
     "apply": {"operator", "args", "others", "kwargs"},  # cases name what the operators take
     "relief": {"numbers"},  # there are none, and any are refused
@@ -217,7 +218,11 @@ DEFAULTS = {
     "repeat": {"count": None, "neighbours": 0, "mirrored": False},
     "repeat_polar": {"neighbours": 0},
     "shear": {"xy": 0.0, "xz": 0.0, "yz": 0.0},
-    "array": {"positions": None, "start": None, "end": None, "count": None},
+    "array": {
+        **dict.fromkeys(("positions", "start", "end", "count")),
+        **dict.fromkeys(("colors", "scale", "rotation", "align")),
+        "axis": (0.0, 1.0, 0.0),
+    },
     "bend_linear": {"ease": "linear"},
     "bend_radial": {"ease": "linear"},
     "transition_linear": {"ease": "linear"},

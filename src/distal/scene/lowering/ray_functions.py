@@ -17,7 +17,7 @@ from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
 from distal.ir.build import boolean, builtin, cast, compare, integer, multiply
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Return
+from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
@@ -309,6 +309,9 @@ class RayFunctions:
             here = {name: _with_captures(f, name, given) for name, f in functions.items()}
             return self._composer.call(function, {**constants, **here, **given})
 
+        # Local values that the functions capture are parameters of the same names.
+        inner = [c for ref in functions.values() for c in ref.captures if isinstance(c, Read)]
+        captured |= {value.name: value for value in inner if value.name not in captured}
         every = [*params, *((name, value.type) for name, value in captured.items())]
         return self._define(function.name, every, make, list(captured.values()))
 

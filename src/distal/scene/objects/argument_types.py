@@ -35,6 +35,8 @@ Vector: TypeAlias = "Sequence[Number] | vec2 | vec3 | vec4 | Parameter | Express
 Color: TypeAlias = "str | Vector | Number"
 # A list of points or of numbers.
 Points: TypeAlias = "Sequence[Vector] | Sequence[float] | Buffer | ArrayLike"
+# A column: one number, vector or color for each row.
+Columns: TypeAlias = "Iterable[Vector] | Iterable[Number] | Iterable[str] | ArrayLike"
 # A picture: its file, an array, or a texture.
 Image: TypeAlias = "str | PathLike[str] | ArrayLike | Picture | TextureValue"
 Images: TypeAlias = "Iterable[Image] | TextureCube"

@@ -22,6 +22,7 @@ from distal.fields.repeat import along, grid
 from distal.fields.solids import heightfield
 from distal.ir.types import VEC2, VEC3
 from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
 from distal.scene.objects.placed import Placed
@@ -134,22 +135,51 @@ class Shape(Placed):
         start: Any = None,
         end: Any = None,
         count: int | None = None,
+        colors: Any = None,
+        scale: Any = None,
+        rotation: Any = None,
+        align: Any = None,
+        axis: Any = (0.0, 1.0, 0.0),
     ) -> Self:
         """Repeat at given positions, or ``count`` times evenly along a line.
+
+        With positions alone, or on a line, the index of a copy is its ``cell``. With colors, scale,
+        rotation or directions, the result is the union of the copies; ``copies`` does this for
+        several shapes.
 
         Args:
             positions: Positions of the copies, an (n, 3) array.
             start: Position of the first copy.
             end: Position of the last copy.
             count: Number of copies on the line.
+            colors: Color of each copy: linear (n, 3), or a list of "#rrggbb" and names. The other
+                numbers of the material are kept.
+            scale: Size of each copy: one factor for all, (n,), or (n, 3) factors along the axes.
+            rotation: Rotation of each copy: one angle about y for all, (n,) angles about y, (n, 3)
+                angles about x, y, z as for ``rotate``, or (n, 4) unit quaternions.
+            align: Direction to which ``axis`` is turned after that, (n, 3), such as normals.
+            axis: The direction of the shape that ``align`` turns.
 
         Raises:
-            SceneValueError: The arguments are neither ``positions`` alone nor start, end and count.
+            SceneTypeError: A row has the wrong type.
+            SceneValueError: The arguments are neither ``positions`` nor start, end and count;
+                columns have different lengths; or a number is beyond its limit.
         """
+        on_line = start is not None and end is not None and count is not None
+        given = (colors, scale, rotation, align)
+        columns = any(column is not None for column in given)
         if positions is not None and start is None and end is None and count is None:
-            return self._with(along.REPEAT_AT, positions)
-        if positions is None and start is not None and end is not None and count is not None:
+            if not columns:
+                return self._with(along.REPEAT_AT, positions)
+            made: Self = copied(
+                "array", (self,), CopyColumns(positions, None, *given, axis), author_place()
+            )
+            return made
+        if positions is None and on_line and not columns:
             return self._with(along.REPEAT_LINE, start=start, end=end, count=count)
+        if positions is None and on_line:
+            hint = "points, _ = points_along([start, end], count), then array(points, …)"
+            refuse("colors, scale, rotation and align need positions", hint, author_place())
         hint = "array(positions) or array(start=…, end=…, count=…)"
         refuse("an array takes positions, or a line and a count", hint, author_place())
 

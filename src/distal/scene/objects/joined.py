@@ -1,0 +1,64 @@
+"""Unions and intersections of lists of shapes.
+
+Input: shapes, in a list, a generator or one by one. Output: one shape. The methods ``union`` and
+``intersection`` of a shape do the work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, TypeVar
+
+from distal.scene.objects.field import BaseShape
+from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.source_places import author_place
+
+S = TypeVar("S", bound=BaseShape)
+
+
+def union(*shapes: S | Iterable[S], smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> S:
+    """Return the union of shapes: ``union(parts)`` or ``union(a, b, c)``.
+
+    Args:
+        shapes: Shapes, or one list or generator of shapes.
+        smooth: How far a blend moves the surface outwards where two surfaces meet, in scene units;
+            0 for a sharp edge.
+        blend: Form of the blend, one of those of the method ``union``.
+        k: ``count``: number of columns or stairs.
+
+    Raises:
+        SceneTypeError: There is no shape, or something else is among the shapes.
+        SceneValueError: Flat shapes and solids are mixed, or a number is beyond its limit.
+    """
+    first, rest = _first_of("union", shapes)
+    joined: S = first.union(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    return joined
+
+
+def intersection(
+    *shapes: S | Iterable[S], smooth: Any = 0.0, blend: str = "quadratic", **k: Any
+) -> S:
+    """Return the intersection of shapes: ``intersection(parts)`` or ``intersection(a, b)``.
+
+    Arguments as for ``union``.
+
+    Raises:
+        SceneTypeError: There is no shape, or something else is among the shapes.
+        SceneValueError: Flat shapes and solids are mixed, or a number is beyond its limit.
+    """
+    first, rest = _first_of("intersection", shapes)
+    joined: S = first.intersection(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    return joined
+
+
+def _first_of(what: str, given: tuple[Any, ...]) -> tuple[Any, list[Any]]:
+    """Return the first shape and the others."""
+    if len(given) == 1 and isinstance(given[0], Iterable) and not isinstance(given[0], str):
+        given = tuple(given[0])
+    if not given:
+        hint = f"{what}(parts) for a list with shapes; test 'if parts:' before"
+        refuse_kind(f"{what} needs at least one shape, and there is none", hint, author_place())
+    first, *rest = given
+    if not isinstance(first, BaseShape):
+        refuse_kind(f"{what} joins shapes, not {first!r:.60}", None, author_place())
+    return first, rest

@@ -1,0 +1,1 @@
+"""Points along curves, on surfaces and in volumes, for arrays of shapes."""
