@@ -34,7 +34,7 @@ SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7
 GROUPS: Final = {
     "Showpieces": (
         *("city", "castle", "still_life", "room_door", "gyroid_part", "enclosure", "catalogue"),
-        *("bunny", "sea"),
+        *("bunny", "sea", "beach", "forest", "bricks", "molecule"),
     ),
     "The first pictures": ("raymarcher", "melting"),
     "After sdfray": ("sdfray_",),
