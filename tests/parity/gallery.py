@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 import distal
 from distal.backends.base import Artifact
 from tests import webgl
+from tests.buffer_data import buffers_of
 from tests.pictures.comparison import MOST_FAR_OFF, MOST_MEAN, as_bytes, difference
 
 TIMES: Final = (0.0, 2.9, 11.3)
@@ -102,6 +103,12 @@ def program(example: str, target: str = "glsl-es300") -> Artifact:
     return distal.compile(image(example), target=target)
 
 
+@cache
+def buffers(example: str) -> dict[str, NDArray[Any]]:
+    """The data that the text reads."""
+    return buffers_of(image(example))
+
+
 def is_moving(example: str) -> bool:
     """Whether its picture reads the time."""
     return "time" in {u["name"] for u in program(example).interface["uniforms"]}
@@ -131,7 +138,8 @@ def by_browser(driver: str) -> Callable[[str, tuple[int, int], float], NDArray[A
 
     def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
         values = {"time": seconds} if is_moving(example) else {}
-        return webgl.run_webgl(program(example), size, values, driver=driver)
+        given = {"buffers": buffers(example), "driver": driver}
+        return webgl.run_webgl(program(example), size, values, **given)
 
     return draw
 

@@ -12,6 +12,7 @@ from functools import cache
 import pytest
 
 import distal
+from tests.buffer_data import buffers_of
 from tests.pictures.comparison import difference
 
 SIZE = (160, 120)
@@ -21,10 +22,14 @@ TARGETS = ("glsl-es300", "wgsl", "wgsl-compute")
 ALL = os.environ.get("DISTAL_ALL_PICTURES") == "1"
 # NumPy follows all rays of mirrors and glass through all steps: a minute for some of these.
 LONG_BY_REFERENCE = (
+    "beach",
+    "bricks",
     "castle",
     "catalogue",
     "enclosure",
+    "forest",
     "gyroid_part",
+    "molecule",
     "sdfray_csg_on_checker",
     "sdfray_glass",
     "sdfray_refraction",
@@ -62,25 +67,31 @@ def cpu_picture(example, time):
     return image(example).render(size=SIZE, samples=1, time=time).array
 
 
-def drawn(program, time):
+@cache
+def buffers(example):
+    return buffers_of(image(example))
+
+
+def drawn(example, target, time):
+    program = artifact(example, target)
     values = {u["name"] for u in program.interface["uniforms"]} & {"time"}
     uniforms = dict.fromkeys(values, time)
     if program.interface["target"].startswith("wgsl"):
         gpu = pytest.importorskip("tests.gpu")
         try:
-            return gpu.run_wgsl(program, SIZE, uniforms)
+            return gpu.run_wgsl(program, SIZE, uniforms, buffers=buffers(example))
         except gpu.GpuUnavailableError as error:
             pytest.skip(str(error))
     glsl = pytest.importorskip("tests.glsl")
     try:
-        return glsl.run_glsl(program, SIZE, uniforms)
+        return glsl.run_glsl(program, SIZE, uniforms, buffers=buffers(example))
     except glsl.egl.EglUnavailableError as error:
         pytest.skip(str(error))
 
 
 @pytest.mark.parametrize(("example", "target", "time"), CASES)
 def test_driver_draws_the_cpu_picture(example, target, time):
-    found = difference(drawn(artifact(example, target), time), cpu_picture(example, time))
+    found = difference(drawn(example, target, time), cpu_picture(example, time))
     assert found.is_agreement, found
 
 
