@@ -155,6 +155,23 @@ def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
 
 
 @func
+def choose_surface(a: Surface, b: Surface, is_second: bool) -> Surface:
+    """Return ``b`` if ``is_second``, else ``a``."""
+    return Surface(
+        color=b.color if is_second else a.color,
+        diffuse=b.diffuse if is_second else a.diffuse,
+        specular=b.specular if is_second else a.specular,
+        transmission=b.transmission if is_second else a.transmission,
+        ior=b.ior if is_second else a.ior,
+        roughness=b.roughness if is_second else a.roughness,
+        metal=b.metal if is_second else a.metal,
+        emission=b.emission if is_second else a.emission,
+        absorption=b.absorption if is_second else a.absorption,
+        fresnel=b.fresnel if is_second else a.fresnel,
+    )
+
+
+@func
 def fresnel_dielectric(cosine: float, eta: float) -> float:
     """Return the fraction of unpolarised light that a clear surface mirrors.
 

@@ -43,6 +43,7 @@ class Assembly:
     def __init__(self, compilation: Compilation) -> None:
         self._compilation = compilation
         self.made: dict[Any, Any] = {}
+        self._defined: dict[tuple[str, tuple[Param, ...], Type, tuple[Stmt, ...]], str] = {}
 
     @property
     def table_from(self) -> int | None:
@@ -86,6 +87,9 @@ class Assembly:
     ) -> str:
         """Add a function and return its unique name in the program.
 
+        If an equal function with the same preferred name was added before, its name is returned: a
+        scene makes the distance of its parts for each march.
+
         Args:
             name: The preferred name.
             params: Its parameters.
@@ -102,10 +106,13 @@ class Assembly:
             given = body[-1].value.type
             if given != result:
                 raise CompileError.at(f"'{name}' gives a {given}; a {result} is wanted", span)
-        unique = self._compilation.unique_name(name)
-        self._compilation.functions.append(
-            Function(unique, tuple(params), result, tuple(body), name, span=span)
-        )
+        key = (name, tuple(params), result, tuple(body))
+        unique = self._defined.get(key)
+        if unique is None:
+            unique = self._defined[key] = self._compilation.unique_name(name)
+            self._compilation.functions.append(
+                Function(unique, tuple(params), result, tuple(body), name, span=span)
+            )
         return unique
 
     def function(self, name: str) -> Function:

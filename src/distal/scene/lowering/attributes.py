@@ -17,7 +17,7 @@ from distal.ir.types import FLOAT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer
 from distal.render.footprint import moved_footprint, point_footprint, step_along
-from distal.render.material import Surface, mix_surfaces
+from distal.render.material import Surface, choose_surface, mix_surfaces
 from distal.scene.lowering.part_functions import POINT
 from distal.scene.lowering.parts.kinds import PartKind, leaves_of, materials_in
 from distal.scene.lowering.parts.table import TableNode
@@ -52,6 +52,10 @@ class Attribute(ABC):
     @abstractmethod
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Combine two attributes, with ``share`` (0 to 1) of ``b``."""
+
+    @abstractmethod
+    def chosen(self, a: Expr, b: Expr, is_second: Expr) -> Expr:
+        """Return ``b`` if the condition holds, else ``a``."""
 
     @abstractmethod
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
@@ -258,14 +262,15 @@ def _joined(
             b = found
         pair = {**given, "a": a, "b": b}
         if other is not None and other is not result:
-            share = composer.call(rule.mix, pair) if rule.mix is not None else _nearer(a, b)
-            result = body.let("shown", kind.blended(result, other, body.let("share", share)))
+            if rule.mix is None:
+                is_second = body.let("is_nearer", compare(CompareOp.LT, b, a))
+                shown = kind.chosen(result, other, is_second)
+            else:
+                share = body.let("share", composer.call(rule.mix, pair))
+                shown = kind.blended(result, other, share)
+            result = body.let("shown", shown)
         a = body.let("d", composer.call(rule.combine, pair))
     return a, result
-
-
-def _nearer(a: Expr, b: Expr) -> Expr:
-    return select(compare(CompareOp.LT, b, a), number(1.0), number(0.0))
 
 
 def _more_shown(a: Expr, b: Expr, share: Expr) -> Expr:
@@ -303,6 +308,10 @@ class SurfaceAttribute(Attribute):
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Interpolate every number of both surfaces."""
         return self.composer.call(mix_surfaces, {"a": a, "b": b, "t": share})
+
+    def chosen(self, a: Expr, b: Expr, is_second: Expr) -> Expr:
+        """Choose one of two surfaces."""
+        return self.composer.call(choose_surface, {"a": a, "b": b, "is_second": is_second})
 
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the cutter's ``cut_material``."""
@@ -360,6 +369,10 @@ class ListedMaterial(SurfaceAttribute):
         """Return the number with the larger share."""
         return _more_shown(a, b, share)
 
+    def chosen(self, a: Expr, b: Expr, is_second: Expr) -> Expr:
+        """Choose one of two numbers."""
+        return select(is_second, b, a)
+
     def _shown(self, body: StatementList, material: Any, node: Node, site: AttributePoint) -> Expr:
         self.materials.append(material)
         return number(float(len(self.materials) - 1))
@@ -411,6 +424,10 @@ class Part(Attribute):
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Return the number with the larger share."""
         return _more_shown(a, b, share)
+
+    def chosen(self, a: Expr, b: Expr, is_second: Expr) -> Expr:
+        """Choose one of two numbers."""
+        return select(is_second, b, a)
 
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the cutter's own part: it made the face."""

@@ -253,13 +253,14 @@ class ShapeComposer:
             return body.let("d", self.call(rule.around, given))
         inner_p, inner_cell = self.moved(body, rule, given)
         of_children = self.parts.shared_out(node, factors)
-        parts = [
+        parts = (
             self.distance(body, child, inner_p, inner_cell, share, own)
             for child, share, own in zip(node.children, shares, of_children, strict=True)
-        ]
-        result = parts[0]
+        )
+        result = next(parts)
         if rule.combine is not None:
-            for other in parts[1:]:
+            # Each part is combined at once: few values are alive at a time.
+            for other in parts:
                 result = self.call(rule.combine, {**given, "a": result, "b": other})
                 result = body.let("d", result)
         if rule.finish is not None:
