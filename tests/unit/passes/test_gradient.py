@@ -330,6 +330,54 @@ def test_a_still_part_costs_nothing():
     assert "return (vec3 1.0 0.0 0.0)" in text and "length" not in text
 
 
+def test_a_shifted_point_changes_as_the_point_does():
+    """The tangents of the shifted point are known: no product with them is left."""
+
+    @func
+    def moved(p: vec3, offset: vec3) -> vec3:
+        return p - offset
+
+    @func
+    def ball(p: vec3, radius: float) -> float:
+        return length(p) - radius
+
+    @func
+    def field(p: vec3) -> float:
+        return min(ball(moved(p, vec3(1, 2, 3)), 0.5), ball(moved(p, vec3(-1, 0, 2)), 0.75))
+
+    @func
+    def slope(p: vec3) -> vec3:
+        return gradient(field, p)
+
+    module = passed(slope, after="gradient")
+    text = print_module(module)
+    assert "moved_dual" not in text and text.count("fn ball_dual") == 1
+    assert "dot" not in text
+    at = points(3, reach=4.0)
+    centers = np.array([[1.0, 2.0, 3.0], [-1.0, 0.0, 2.0]])[:, :, None]
+    away = at - centers
+    distances = np.linalg.norm(away, axis=1) - np.array([[0.5], [0.75]])
+    nearer = distances.argmin(0)
+    found = evaluate(passed(slope), at)
+    wanted = np.take_along_axis(away, nearer[None, None], 0)[0]
+    assert np.allclose(found, wanted / np.linalg.norm(wanted, axis=0), atol=1e-12)
+
+
+def test_tangents_that_differ_between_returns_are_passed():
+    @func
+    def moved(p: vec3) -> vec3:
+        if p.x > 0.0:
+            return p.zyx
+        return p
+
+    @func
+    def slope(p: vec3) -> vec3:
+        return gradient(lambda q: dot(moved(q), vec3(1, 2, 3)), p)
+
+    found = evaluate(passed(slope), np.array([[1.0, -1.0], [0.5, 0.5], [0.25, 0.25]]))
+    assert found.T.tolist() == [[3.0, 2.0, 1.0], [1.0, 2.0, 3.0]]
+
+
 def test_the_gradient_of_a_texture_is_refused():
     photo = Texture2D([[[0.0, 0.0, 0.0, 1.0]]])
 

@@ -85,12 +85,14 @@ class Version:
 
     Attributes:
         function: Its name. It returns a tuple: the value, then a tangent for each direction.
-        directions: The directions along which the result changes, one bit for each.
+        directions: The directions whose tangents it returns, one bit for each.
+        constants: The constant tangents, for each direction; it does not return them.
         passed: The tangents to pass after the arguments.
     """
 
     function: str
     directions: int
+    constants: Lanes
     passed: tuple[Expr, ...]
 
 
@@ -296,12 +298,12 @@ class DualBody:
             return plain
         version = self._derive(name, tuple(a.tangents for a in args))
         if not version.directions:
-            return plain
+            return _Pair(plain.value, version.constants)
         items = tuple_type((e.type,) * (1 + version.directions.bit_count()))
         call = Call(version.function, (*values, *version.passed), items, span=e.span)
         result = Read(self._names.fresh(f"{name}_result"), items)
         out.append(Let(result.name, call, span=self._span))
-        tangents = list(self._still)
+        tangents = list(version.constants)
         item = 1
         for k in range(self._count):
             if version.directions >> k & 1:

@@ -43,7 +43,7 @@ from distal.ir.types import FLOAT, Kind, Type, tuple_type, vector_of
 from distal.ir.walk import expressions_in, map_expressions, rewrite
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
-from distal.passes.gradient.activity import Activity
+from distal.passes.gradient.activity import Activity, FunctionActivity
 from distal.passes.gradient.dual import DualBody, Returned, Version, tangent_name
 from distal.passes.naming import FreshNames, local_names
 
@@ -95,10 +95,25 @@ def _without_gradients(function: Function, derived: _Derived) -> Function:
 
 @dataclass(slots=True)
 class _DerivativeFunction:
-    """A finished derivative function."""
+    """A finished derivative function.
+
+    Attributes:
+        name: Its name; that of the function itself if all its tangents are constant.
+        directions: The directions whose tangents it returns.
+        constants: The tangents that are constant, for each direction; it does not return them.
+    """
 
     name: str
-    directions: int  # the directions along which its result changes
+    directions: int
+    constants: Lanes
+
+
+@dataclass(slots=True)
+class _Differentiated:
+    """A derivative function, and the tangents at each of its Returns."""
+
+    function: Function
+    returned: list[Lanes]
 
 
 class _Derived:
@@ -138,7 +153,7 @@ class _Derived:
             for tangent, change in zip(along, changes, strict=True)
             for part in _passed(tangent, change)
         ]
-        return Version(made.name, made.directions, tuple(passed))
+        return Version(made.name, made.directions, made.constants, tuple(passed))
 
     def _version(
         self, name: str, form: _Form, changes: tuple[tuple[_Change, ...], ...]
@@ -157,23 +172,74 @@ class _Derived:
             sum(1 << k for k, change in enumerate(along) if change is not None) for along in changes
         )
         activity = self._activity.of(name, masks)
+        count = len(changes[0])
+        directions = activity.result
+        known: Lanes = (None,) * count
+        made = self._differentiated(original, form, changes, activity, directions)
+        if form is _Form.DUAL:
+            known = _constants(made.returned, directions)
+        if any(known):
+            # A shifted point changes as the point does: its tangents are known to the callers.
+            directions = sum(1 << k for k in range(count) if directions >> k & 1 and not known[k])
+            if not directions:
+                return _DerivativeFunction(name, 0, known)
+            made = self._differentiated(original, form, changes, activity, directions)
+        new = self._names.fresh(f"{name}_{form.value}")
+        self.functions[new] = replace(made.function, name=new)
+        return _DerivativeFunction(new, directions, known)
+
+    def _differentiated(
+        self,
+        original: Function,
+        form: _Form,
+        changes: tuple[tuple[_Change, ...], ...],
+        activity: FunctionActivity,
+        directions: int,
+    ) -> _Differentiated:
+        """Return a derivative function that is not named yet.
+
+        Args:
+            original: The function to differentiate.
+            form: The form of the result.
+            changes: How each parameter changes along each direction.
+            activity: The locals that change.
+            directions: The directions whose tangents are returned.
+        """
         names = FreshNames(local_names(original))
         extra: list[Param] = []
-        tangents: dict[str, Lanes] = {}
-        for param, along in zip(original.params, changes, strict=True):
-            tangents[param.name] = _parameter_tangents(param, along, names, extra)
+        tangents = {
+            param.name: _parameter_tangents(param, along, names, extra)
+            for param, along in zip(original.params, changes, strict=True)
+        }
         count = len(changes[0])
+        result, pack = _returned(original.result, form, directions, count)
+        returned: list[Lanes] = []
+
+        def noted(value: Expr, along: Lanes) -> Expr:
+            returned.append(along)
+            return pack(value, along)
+
         body = DualBody(self.dual, names, activity, tangents, count)
-        result, returned = _returned(original.result, form, activity.result, count)
-        new = self._names.fresh(f"{name}_{form.value}")
-        self.functions[new] = replace(
+        function = replace(
             original,
-            name=new,
             params=(*original.params, *extra),
             result=result,
-            body=body.function_body(original.body, returned),
+            body=body.function_body(original.body, noted),
         )
-        return _DerivativeFunction(new, activity.result)
+        return _Differentiated(function, returned)
+
+
+def _constants(returns: list[Lanes], directions: int) -> Lanes:
+    """Return the tangents that are the same constant at every Return; None for the others."""
+    return tuple(
+        along[0]
+        if directions >> k & 1
+        and along[0] is not None
+        and is_constant(along[0])
+        and all(t is along[0] for t in along)
+        else None
+        for k, along in enumerate(zip(*returns, strict=True))
+    )
 
 
 def _change(tangent: Tangent) -> _Change:
