@@ -77,8 +77,6 @@ def prepare(
     if kernel is None:
         passes = passes or importlib.import_module("distal.compiler.driver").run_passes
         shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
-        if any(function.apart for function in shaped.functions):
-            lanes = lanes.one_chunk()
         artifact = emit_for(shaped, lanes)
         kernel = compile_object(artifact.text, level), {**artifact.interface, "lanes": lanes.count}
         cache.store(key, _stored(*kernel))

@@ -54,6 +54,10 @@ class LaneCosts:
         """Return the cost of a function's body."""
         return self._functions[name]
 
+    def rounds_of(self, name: str) -> int:
+        """Return the maximum iterations of a function's innermost loop; 1: it has no loop."""
+        return self._rounds[name]
+
     def rounds(self, block: tuple[Stmt, ...]) -> int:
         """Return the maximum iterations of a block's innermost loop, including called functions."""
         most = 1
@@ -73,7 +77,7 @@ class LaneCosts:
 
     def expression(self, *roots: Expr) -> int:
         """Return the cost of expressions; shared parts are counted once."""
-        return sum(self._node(e) for e in nodes_in(*roots))
+        return sum(self.node(e) for e in nodes_in(*roots))
 
     def block(self, block: tuple[Stmt, ...]) -> int:
         """Return the cost of running every statement of a block once."""
@@ -85,7 +89,8 @@ class LaneCosts:
                 total += self.LOOP
         return total
 
-    def _node(self, e: Expr) -> int:
+    def node(self, e: Expr) -> int:
+        """Return the cost of a node without its operands."""
         match e:
             case Const() | Read() | Uniform() | PerFrame() | Resource() | Swizzle():
                 return 0
@@ -94,18 +99,18 @@ class LaneCosts:
             case Texel() | Sample():
                 return 30
             case Binary(op) if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD):
-                return _DIVISION * _width(e)
+                return _DIVISION * width(e)
             case Builtin(name):
-                width = max(map(_width, children(e)))
+                wide = max(map(width, children(e)))
                 if name == "length":
-                    return _DIVISION + width
-                return width * (_DIVISION if name in _HEAVY else 1)
+                    return _DIVISION + wide
+                return wide * (_DIVISION if name in _HEAVY else 1)
             case MatMul():
                 return 16
             case Index(base):
                 return 1 if is_static(base.type) else 4
             case Binary() | Unary() | Compare() | Logical() | Select():
-                return _width(e)
+                return width(e)
             case _:
                 return 0
 
@@ -119,5 +124,6 @@ def constant_rounds(stmt: For) -> int | None:
             return None
 
 
-def _width(e: Expr) -> int:
+def width(e: Expr) -> int:
+    """Return the number of components of a value."""
     return component_count(e.type) if kind_of(e.type) else 4

@@ -273,7 +273,7 @@ class LaneExpressions:
             self.mask = self.within(holds)
             if skip:
                 test = arithmetic.any_lane(Leaf(Kind.BOOL, self.mask, False))
-                outcome.append(self._branched(test, side, None, True))
+                outcome.append(self.skipped(test, side))
             else:
                 outcome.append(side())
             self.mask = outer
@@ -285,6 +285,10 @@ class LaneExpressions:
         if self.mask is not None:
             condition = self.arithmetic.both(Leaf(Kind.BOOL, self.mask, False), condition)
         return self.arithmetic.vectors(condition)
+
+    def skipped(self, test: str, side: Callable[[], Leaves]) -> Leaves:
+        """Compute a varying value only if a test holds; otherwise it is zero."""
+        return self._branched(test, side, None, True)
 
     def _branched(
         self,

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.expressions import LaneExpressions
-from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, Stored, leaf_kinds
+from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, Stored, leaf_count, leaf_kinds
 from distal.backends.llvm.layout import (
     BATCH,
     FRAME,
@@ -25,8 +25,12 @@ from distal.backends.llvm.program import LaneProgram, prologue
 from distal.backends.llvm.storage import Storage
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import LlvmWriter
-from distal.ir.nodes import EntryKind, Function, PerFrame
+from distal.ir.nodes import EntryKind, Expr, Function, PerFrame
 from distal.ir.types import FLOAT, VEC4, Kind, Scalar
+
+# The cost of the per-frame values that one function computes. The time of LLVM's instruction
+# selection grows with the square of a block's stores: 12900 lines took 2.9 s, in groups 0.1 s.
+FRAME_COST = 1000
 
 
 def kernels(program: LaneProgram) -> bool:
@@ -52,18 +56,51 @@ def _frame(program: LaneProgram) -> None:
     """Write scalar code that computes the per-frame values; each may read the previous ones."""
     arithmetic = program.arithmetic()
     writer = arithmetic.writer
-    prologue(writer)
+    groups = _groups(program)
+    if len(groups) == 1:
+        prologue(writer)
+        _frame_values(program, arithmetic, groups[0])
+    else:
+        for number, group in enumerate(groups):
+            part = program.arithmetic()
+            prologue(part.writer)
+            _frame_values(program, part, group)
+            part.writer.line("ret void")
+            name = f"frame_part.{number}"
+            text = part.writer.text()
+            program.define(f"define internal void @{name}(ptr noalias %job) #0 {{\n{text}\n}}")
+            writer.line(f"call void @{name}(ptr %job)")
+    writer.line("ret void")
+    _define(program, FRAME, writer)
+
+
+def _groups(program: LaneProgram) -> list[list[tuple[str, Expr]]]:
+    """Return the per-frame values in groups of a bounded cost, each for a function."""
+    groups: list[list[tuple[str, Expr]]] = []
+    cost = FRAME_COST
+    for name, value in program.module.frame:
+        own = program.costs.expression(value) + leaf_count(value.type)
+        if cost + own > FRAME_COST:
+            groups.append([])
+            cost = 0
+        groups[-1].append((name, value))
+        cost += own
+    return groups
+
+
+def _frame_values(
+    program: LaneProgram, arithmetic: LaneArithmetic, values: list[tuple[str, Expr]]
+) -> None:
+    """Write code that computes per-frame values and stores them."""
     nothing = Function("frame", (), FLOAT, (), "frame")
     expressions = LaneExpressions(program, arithmetic, Uniformity(nothing, frozenset()))
     storage = Storage(arithmetic)
-    for name, value in program.module.frame:
+    for name, value in values:
         leaves = expressions.value(value)
         place = Stored(value.type, "%frame", True)
         storage.store(place, leaves, program.layout.frame[name], None, None)
-        # Later values use the registers instead of the memory.
+        # Later values of the group use the registers instead of the memory.
         expressions.memo[PerFrame(name, value.type)] = leaves
-    writer.line("ret void")
-    _define(program, FRAME, writer)
 
 
 def _field(writer: LlvmWriter, name: str, type: str = "i32") -> str:

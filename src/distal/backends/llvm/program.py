@@ -3,14 +3,16 @@
 Input: a module after the passes, and the shape of the machine's vectors. Output: the text of an
 LLVM module with the kernels that are needed: pixels of a picture, the per-frame part, a batch of
 points. A function that is not inlined becomes an LLVM function, once for each set of varying
-arguments.
+arguments; a long one computes one vector of each value instead of all (decision 29).
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
 from distal.backends.llvm.arithmetic import LaneArithmetic
+from distal.backends.llvm.chains import Chains
 from distal.backends.llvm.costs import LaneCosts
 from distal.backends.llvm.expressions import LaneExpressions
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, leaf_kinds
@@ -27,7 +29,21 @@ from distal.ir.walk import expressions_in
 # The register width of each level, so that LLVM neither splits nor avoids full vectors.
 _REGISTER_BITS = {"avx512": 512, "avx2": 256, "sse4.2": 128, "neon": 128}
 
+# The largest cost of a function that is inlined at each call, for each vector of a value: vector
+# registers are not preserved by calls, so calling a small function costs more than its body.
 INLINE_COST = 120
+# The largest cost of a function that is inlined at its only call. Inlining without a limit put a
+# whole scene into one function, and LLVM's time grows faster than a function's length.
+ONCE_COST = 600
+# A function of at least this cost, without loops, is called for each vector of a value separately
+# if it has enough independent instructions, because then it is only a fraction as long.
+CHUNK_COST = 400
+# The least cost for each instruction of the longest chain: as independent instructions as hide the
+# latency of each other. Smooth unions have 7, hard unions 13 or more; with 7, a frame took 1.2
+# times as long.
+PARALLEL = 10
+# A function of this cost is called for each vector in any case.
+LARGE_COST = 3000
 # Arrays are on a thread's stack, with a value for each lane; ``devices.threads`` enlarges it.
 ARRAY_BYTES = 8 * 2**20
 _SMALL_ARRAY_BYTES = 2**18
@@ -50,6 +66,7 @@ class LaneProgram:
         self.lanes = lanes
         self.layout = KernelLayout.of(module)
         self.costs = LaneCosts(module.functions)
+        self._chains = Chains(module.functions, self.costs)
         self.declarations: set[str] = set()
         self.polls = False
         self._array_bytes = 0
@@ -89,9 +106,9 @@ class LaneProgram:
                 "put constant numbers into a Buffer",
             )
 
-    def arithmetic(self) -> LaneArithmetic:
-        """Return the arithmetic of a new function."""
-        return LaneArithmetic(self.lanes, LlvmWriter(), self.declarations)
+    def arithmetic(self, lanes: Lanes | None = None) -> LaneArithmetic:
+        """Return the arithmetic of a new function; ``lanes`` is None for the module's lanes."""
+        return LaneArithmetic(lanes or self.lanes, LlvmWriter(), self.declarations)
 
     def table(self, leaves: Leaves) -> str:
         """Return the name of a constant table, with one slot for each leaf."""
@@ -130,71 +147,124 @@ class LaneProgram:
             caller.arithmetic.spread_all(v) if vary else v
             for v, vary in zip(values, varying, strict=True)
         ]
-        masked = any(varying) and caller.mask is not None
-        if self._inlined(name):
-            mask = caller.mask if any(varying) else None
+        mask = caller.mask if any(varying) else None
+        if self._inlined(name, caller.arithmetic.lanes):
             return self.run(caller.arithmetic, function, values, varying, mask)
-        symbol, result_varies = self._variant(function, varying, masked)
-        operands = ["ptr %job"]
-        if masked:
-            assert caller.mask is not None
-            operands += [f"{self.lanes.vector(Kind.BOOL)} {m}" for m in caller.mask]
+        lanes = caller.arithmetic.lanes
+        if lanes.chunks == 1 or not any(varying) or not self._by_chunk(name):
+            return self._called(caller.writer, lanes, function, values, varying, mask)
+        results = [
+            self._chunk_called(caller, c, function, values, varying) for c in range(lanes.chunks)
+        ]
+        return tuple(_joined(leaves) for leaves in zip(*results, strict=True))
+
+    def _chunk_called(
+        self,
+        caller: LaneExpressions,
+        c: int,
+        function: Function,
+        values: Sequence[Leaves],
+        varying: tuple[bool, ...],
+    ) -> Leaves:
+        """Write the call of a function for one chunk, skipped if no lane of it is active.
+
+        Args:
+            caller: The expressions of the calling function.
+            c: The index of the chunk.
+            function: The called function.
+            values: The leaves of the arguments.
+            varying: Which arguments vary between lanes.
+        """
+        lanes = caller.arithmetic.lanes.one_chunk()
+        chunk = [tuple(_chunk(leaf, c) for leaf in value) for value in values]
+        mask = None if caller.mask is None else (caller.mask[c],)
+
+        def call() -> Leaves:
+            return self._called(caller.writer, lanes, function, chunk, varying, mask)
+
+        if mask is None:
+            return call()
+        return caller.skipped(caller.arithmetic.any_lane(Leaf(Kind.BOOL, mask, False)), call)
+
+    def _called(
+        self,
+        writer: LlvmWriter,
+        lanes: Lanes,
+        function: Function,
+        values: Sequence[Leaves],
+        varying: tuple[bool, ...],
+        mask: Mask,
+    ) -> Leaves:
+        """Write the call of a function.
+
+        Args:
+            writer: The text of the caller.
+            lanes: The vector shape of the function.
+            function: The called function.
+            values: The leaves of the arguments.
+            varying: Which arguments vary between lanes.
+            mask: The active lanes; None: all.
+        """
+        symbol, result_varies = self._variant(function, lanes, varying, mask is not None)
+        operands = ["ptr %job", *(f"{lanes.vector(Kind.BOOL)} {m}" for m in mask or ())]
         for leaf in (leaf for value in values for leaf in value):
-            type = self.lanes.type(leaf.kind, uniform=leaf.uniform)
+            type = lanes.type(leaf.kind, uniform=leaf.uniform)
             operands += [f"{type} {n}" for n in leaf.names]
         kinds = leaf_kinds(function.result)
-        returned = self._result_type(kinds, uniform=not result_varies)
-        result = caller.writer.value(f"call {returned} {symbol}({', '.join(operands)})")
-        return self._unpacked(caller.writer, result, returned, kinds, uniform=not result_varies)
+        returned = _result_type(lanes, kinds, uniform=not result_varies)
+        result = writer.value(f"call {returned} {symbol}({', '.join(operands)})")
+        return _unpacked(writer, lanes, result, kinds, uniform=not result_varies)
 
-    def _inlined(self, name: str) -> bool:
+    def _inlined(self, name: str, lanes: Lanes) -> bool:
         """Return whether to inline a function: if it is small, or has a single call.
 
-        Vector registers are not preserved by calls, so calling a small function costs more than
-        its body.
+        Args:
+            name: The function.
+            lanes: The vector shape of the caller.
         """
         if self._functions[name].apart:
             return False
-        return self.costs.function(name) <= INLINE_COST or self._sites[name] == 1
+        most = INLINE_COST * self.lanes.chunks // lanes.chunks
+        if self._sites[name] == 1:
+            most = max(most, ONCE_COST)
+        return self.costs.function(name) <= most
 
-    def _result_type(self, kinds: tuple[Kind, ...], *, uniform: bool) -> str:
-        per_leaf = 1 if uniform else self.lanes.chunks
-        names = (t for k in kinds for t in (self.lanes.type(k, uniform=uniform),) * per_leaf)
-        return f"{{ {', '.join(names)} }}"
-
-    def _unpacked(
-        self, writer: LlvmWriter, result: str, type: str, kinds: tuple[Kind, ...], *, uniform: bool
-    ) -> Leaves:
-        per_leaf = 1 if uniform else self.lanes.chunks
-        names = [
-            writer.value(f"extractvalue {type} {result}, {i}") for i in range(len(kinds) * per_leaf)
-        ]
-        return tuple(
-            Leaf(kind, tuple(names[i * per_leaf : (i + 1) * per_leaf]), uniform)
-            for i, kind in enumerate(kinds)
-        )
+    def _by_chunk(self, name: str) -> bool:
+        """Return whether a function is called for each vector of its arguments separately."""
+        if self._functions[name].apart:
+            return True
+        cost = self.costs.function(name)
+        if cost < CHUNK_COST or self.costs.rounds_of(name) > 1:
+            return False
+        return cost >= LARGE_COST or cost >= PARALLEL * self._chains.of(name)
 
     # Functions
 
     def _variant(
-        self, function: Function, varying: tuple[bool, ...], masked: bool
+        self, function: Function, lanes: Lanes, varying: tuple[bool, ...], masked: bool
     ) -> tuple[str, bool]:
         """Return the LLVM function for a set of varying parameters; whether its result varies."""
-        key = function.name, varying, masked
+        key = function.name, lanes.chunks, varying, masked
         known = self._variants.get(key)
         if known is None:
             letters = "".join("v" if v else "u" for v in varying) + ("m" if masked else "")
+            letters += "" if lanes.chunks == self.lanes.chunks else f".{lanes.chunks}"
             symbol = f'@"{_escaped(function.name)}.{letters}"'
             # The result varies if one of the arguments does.
             known = self._variants[key] = symbol, any(varying)
-            self._define(function, varying, masked, symbol)
+            self._define(function, lanes, varying, masked, symbol)
         return known
 
     def _define(
-        self, function: Function, varying: tuple[bool, ...], masked: bool, symbol: str
+        self,
+        function: Function,
+        lanes: Lanes,
+        varying: tuple[bool, ...],
+        masked: bool,
+        symbol: str,
     ) -> None:
-        arithmetic = self.arithmetic()
-        lanes, writer = self.lanes, arithmetic.writer
+        arithmetic = self.arithmetic(lanes)
+        writer = arithmetic.writer
         params = ["ptr %job"]
         mask: Mask = None
         if masked:
@@ -215,7 +285,7 @@ class LaneProgram:
         if result_varies:
             result = arithmetic.spread_all(result)
         kinds = leaf_kinds(function.result)
-        returned = self._result_type(kinds, uniform=not result_varies)
+        returned = _result_type(lanes, kinds, uniform=not result_varies)
         packed = "poison"
         for i, (type, name) in enumerate(
             (lanes.type(leaf.kind, uniform=leaf.uniform), name)
@@ -288,6 +358,36 @@ def prologue(writer: LlvmWriter) -> None:
     for name in ("stop", "uniforms", "frame", "resources"):
         at = writer.value(f"getelementptr i8, ptr %job, i64 {JOB_OFFSET[name]}")
         writer.line(f"%{name} = load ptr, ptr {at}, !invariant.load !0")
+
+
+def _chunk(leaf: Leaf, c: int) -> Leaf:
+    """Return one chunk of a leaf; a uniform leaf is the same in each."""
+    return leaf if leaf.uniform else Leaf(leaf.kind, (leaf.names[c],), False)
+
+
+def _joined(chunks: Leaves) -> Leaf:
+    """Return the leaf with these chunks."""
+    return Leaf(chunks[0].kind, tuple(chunk.names[0] for chunk in chunks), False)
+
+
+def _result_type(lanes: Lanes, kinds: tuple[Kind, ...], *, uniform: bool) -> str:
+    per_leaf = 1 if uniform else lanes.chunks
+    names = (t for k in kinds for t in (lanes.type(k, uniform=uniform),) * per_leaf)
+    return f"{{ {', '.join(names)} }}"
+
+
+def _unpacked(
+    writer: LlvmWriter, lanes: Lanes, result: str, kinds: tuple[Kind, ...], *, uniform: bool
+) -> Leaves:
+    type = _result_type(lanes, kinds, uniform=uniform)
+    per_leaf = 1 if uniform else lanes.chunks
+    names = [
+        writer.value(f"extractvalue {type} {result}, {i}") for i in range(len(kinds) * per_leaf)
+    ]
+    return tuple(
+        Leaf(kind, tuple(names[i * per_leaf : (i + 1) * per_leaf]), uniform)
+        for i, kind in enumerate(kinds)
+    )
 
 
 def _escaped(name: str) -> str:
