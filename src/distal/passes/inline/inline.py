@@ -168,7 +168,7 @@ class _Inliner:
         return value
 
     def _wanted(self, callee: _Callee, in_loop: bool) -> bool:
-        if self._size + callee.size > CALLER:
+        if callee.size > SMALL and self._size + callee.size > CALLER:
             return False
         if self._sites[callee.function.name] == 1:
             return callee.size <= ONCE
