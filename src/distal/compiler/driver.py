@@ -15,6 +15,7 @@ from distal.backends.base import Artifact
 from distal.compiler.prelude_library import PreludeLibrary
 from distal.diagnostics import CompileError
 from distal.frontend import lower
+from distal.ir.collection import paused_collection
 from distal.ir.nodes import Module
 from distal.ir.printer import print_module
 from distal.ir.target import Target
@@ -50,7 +51,8 @@ def run_passes(
         CompileError: The scene code uses something that the target does not support.
     """
     try:
-        return _run_passes(module, target, precision, after)
+        with paused_collection():
+            return _run_passes(module, target, precision, after)
     except RecursionError:
         # An elif chain of hundreds of branches is a chain of as many nested blocks.
         entry = module.function(module.entry)

@@ -38,6 +38,7 @@ from distal.devices.jit import compile_object
 from distal.devices.kernel_key import kernel_key
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
+from distal.ir.collection import paused_collection
 from distal.ir.nodes import Module
 from distal.ir.printer import print_identity
 from distal.ir.target import Target
@@ -77,7 +78,8 @@ def prepare(
     if kernel is None:
         passes = passes or importlib.import_module("distal.compiler.driver").run_passes
         shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
-        artifact = emit_for(shaped, lanes)
+        with paused_collection():
+            artifact = emit_for(shaped, lanes)
         kernel = compile_object(artifact.text, level), {**artifact.interface, "lanes": lanes.count}
         cache.store(key, _stored(*kernel))
     code, interface = kernel

@@ -22,7 +22,7 @@ from enum import Enum
 from typing import Any, ClassVar, Final, TypeAlias
 
 from distal.diagnostics import Span
-from distal.ir.interning import Interned, discriminate_number
+from distal.ir.interning import Interned, discriminate_number, interned
 from distal.ir.types import Type
 
 FRAME_TIME: Final = "frame.time"
@@ -95,8 +95,21 @@ class LogicalOp(Enum):
     OR = "or"
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Const(metaclass=Interned):
+class Node(Interned):
+    """An expression node.
+
+    Attributes:
+        memo: What the expression contains, once ``distal.ir.contents`` has found it. It lives as
+            long as the node.
+    """
+
+    __slots__ = ("memo",)
+
+    memo: Any
+
+
+@interned
+class Const(Node):
     """A scalar literal: bool, int (of INT or UINT, within 32 bits) or finite float."""
 
     discriminate: ClassVar = staticmethod(discriminate_number)
@@ -106,8 +119,8 @@ class Const(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Read(metaclass=Interned):
+@interned
+class Read(Node):
     """The value of a parameter or local variable."""
 
     name: str
@@ -115,8 +128,8 @@ class Read(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Uniform(metaclass=Interned):
+@interned
+class Uniform(Node):
     """The value of a uniform of the module (``Module.uniforms``), constant over the whole picture.
 
     Before the entry pass, a Uniform named ``FRAME_TIME`` is the frame's time; it is not declared.
@@ -127,8 +140,8 @@ class Uniform(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class PerFrame(metaclass=Interned):
+@interned
+class PerFrame(Node):
     """A value computed by the per-frame part (``Module.frame``); created by the frequency pass."""
 
     name: str
@@ -136,8 +149,8 @@ class PerFrame(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Resource(metaclass=Interned):
+@interned
+class Resource(Node):
     """A texture or buffer of ``Module.resources``, referenced by name."""
 
     name: str
@@ -145,8 +158,8 @@ class Resource(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class FunctionRef(metaclass=Interned):
+@interned
+class FunctionRef(Node):
     """A module function as a value, with its last parameters bound to ``captures``.
 
     ``type`` is the FunctionType of the remaining parameters. Removed by the specialise pass.
@@ -158,8 +171,8 @@ class FunctionRef(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Unary(metaclass=Interned):
+@interned
+class Unary(Node):
     """``op operand``; the result has the operand's type."""
 
     op: UnaryOp
@@ -168,8 +181,8 @@ class Unary(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Binary(metaclass=Interned):
+@interned
+class Binary(Node):
     """``lhs op rhs``; both operands have the type of this node."""
 
     op: BinaryOp
@@ -179,8 +192,8 @@ class Binary(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class MatMul(metaclass=Interned):
+@interned
+class MatMul(Node):
     """``lhs @ rhs``: matrix @ matrix, matrix @ vector (column), vector (row) @ matrix."""
 
     lhs: Expr
@@ -189,8 +202,8 @@ class MatMul(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Compare(metaclass=Interned):
+@interned
+class Compare(Node):
     """``lhs op rhs``; both operands have the same type; the result is a bool or a bvec."""
 
     op: CompareOp
@@ -200,8 +213,8 @@ class Compare(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Logical(metaclass=Interned):
+@interned
+class Logical(Node):
     """``lhs and rhs`` or ``lhs or rhs`` with short circuit."""
 
     op: LogicalOp
@@ -211,8 +224,8 @@ class Logical(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Select(metaclass=Interned):
+@interned
+class Select(Node):
     """``yes if condition else no``.
 
     A bvec condition selects component by component. A bool condition selects the whole value, of
@@ -226,8 +239,8 @@ class Select(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Splat(metaclass=Interned):
+@interned
+class Splat(Node):
     """A scalar repeated into every component of a vector or (for MUL and DIV) a matrix."""
 
     value: Expr
@@ -235,8 +248,8 @@ class Splat(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Compose(metaclass=Interned):
+@interned
+class Compose(Node):
     """A vector built from scalars and vectors of its kind, or a matrix built from its columns."""
 
     parts: tuple[Expr, ...]
@@ -244,8 +257,8 @@ class Compose(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Swizzle(metaclass=Interned):
+@interned
+class Swizzle(Node):
     """Components of a vector selected by letters of ``xyzw``: ``base.xz``; one letter: a scalar."""
 
     base: Expr
@@ -254,8 +267,8 @@ class Swizzle(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Index(metaclass=Interned):
+@interned
+class Index(Node):
     """``base[index]`` of an array, vector, matrix (a column) or buffer; the index is an int.
 
     Every index is defined to be clamped into range. The bounds pass makes the clamp explicit unless
@@ -269,8 +282,8 @@ class Index(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Field(metaclass=Interned):
+@interned
+class Field(Node):
     """The field ``base.name`` of a struct."""
 
     base: Expr
@@ -279,8 +292,8 @@ class Field(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Construct(metaclass=Interned):
+@interned
+class Construct(Node):
     """A struct built from its fields in order, or an array built from its elements."""
 
     parts: tuple[Expr, ...]
@@ -288,8 +301,8 @@ class Construct(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Cast(metaclass=Interned):
+@interned
+class Cast(Node):
     """A scalar or vector with its components converted to another kind.
 
     float to int or uint truncates and saturates, and NaN gives 0; conversions between int and uint
@@ -301,8 +314,8 @@ class Cast(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Builtin(metaclass=Interned):
+@interned
+class Builtin(Node):
     """A call of an intrinsic of ``distal.ir.intrinsics``."""
 
     name: str
@@ -311,8 +324,8 @@ class Builtin(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Call(metaclass=Interned):
+@interned
+class Call(Node):
     """A call of a module function. Functions have no side effects."""
 
     function: str
@@ -321,8 +334,8 @@ class Call(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Apply(metaclass=Interned):
+@interned
+class Apply(Node):
     """A call of a function value (a Read of FunctionType, a FunctionRef). Removed by specialise."""
 
     function: Expr
@@ -331,8 +344,8 @@ class Apply(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Gradient(metaclass=Interned):
+@interned
+class Gradient(Node):
     """The exact derivative of a float-valued function value at ``point`` (float, vec2-4).
 
     ``type`` is the point's type; with ``with_value`` it is the tuple (float, gradient), both from
@@ -346,8 +359,8 @@ class Gradient(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Sample(metaclass=Interned):
+@interned
+class Sample(Node):
     """A filtered texture value, a vec4. There are no mip maps: every target reads level 0.
 
     2D: (0, 0) is the lower left corner of the picture, (1, 1) the upper right. The filter is
@@ -361,8 +374,8 @@ class Sample(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Texel(metaclass=Interned):
+@interned
+class Texel(Node):
     """One unfiltered texel, a vec4, at an ivec2 (2D) or ivec3 (3D; cube: x, y, face); clamped."""
 
     texture: Expr
@@ -371,8 +384,8 @@ class Texel(metaclass=Interned):
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Size(metaclass=Interned):
+@interned
+class Size(Node):
     """The size of a texture in texels, ivec2 (2D, cube) or ivec3 (3D), or a buffer's int length."""
 
     resource: Expr

@@ -8,11 +8,10 @@ by the argument passed.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
 from typing import Final, TypeAlias
 
-from distal.ir.interning import Interned
+from distal.ir.interning import Interned, interned
 
 
 class Kind(Enum):
@@ -29,8 +28,8 @@ class Kind(Enum):
 _VECTOR_PREFIX: Final = {Kind.FLOAT: "vec", Kind.INT: "ivec", Kind.UINT: "uvec", Kind.BOOL: "bvec"}
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Scalar(metaclass=Interned):
+@interned
+class Scalar(Interned):
     """A single number or bool."""
 
     kind: Kind
@@ -39,8 +38,8 @@ class Scalar(metaclass=Interned):
         return self.kind.value
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Vector(metaclass=Interned):
+@interned
+class Vector(Interned):
     """A vector of 2 to 4 components of one kind."""
 
     kind: Kind
@@ -50,8 +49,8 @@ class Vector(metaclass=Interned):
         return f"{_VECTOR_PREFIX[self.kind]}{self.size}"
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Matrix(metaclass=Interned):
+@interned
+class Matrix(Interned):
     """A square float matrix of ``size`` columns; ``m[i]`` is column i."""
 
     size: int
@@ -60,8 +59,8 @@ class Matrix(metaclass=Interned):
         return f"mat{self.size}"
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Struct(metaclass=Interned):
+@interned
+class Struct(Interned):
     """A value with named fields.
 
     A returned tuple is a struct with ``is_tuple`` set and the fields item0, item1 ...
@@ -81,8 +80,8 @@ class Struct(metaclass=Interned):
         return self.name
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Array(metaclass=Interned):
+@interned
+class Array(Interned):
     """An array of ``length`` values of one type; the length is at least 1."""
 
     element: Type
@@ -100,8 +99,8 @@ class TextureShape(Enum):
     VOLUME = "Texture3D"
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Texture(metaclass=Interned):
+@interned
+class Texture(Interned):
     """A read-only texture of vec4 texels, sampled at a vec2 (2D) or a vec3 (cube, 3D)."""
 
     shape: TextureShape
@@ -110,8 +109,8 @@ class Texture(metaclass=Interned):
         return self.shape.value
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Buffer(metaclass=Interned):
+@interned
+class Buffer(Interned):
     """A read-only sequence of scalars or float vectors; its length is known when data is bound."""
 
     element: Type
@@ -120,8 +119,8 @@ class Buffer(metaclass=Interned):
         return f"Buffer[{self.element}]"
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class FunctionType(metaclass=Interned):
+@interned
+class FunctionType(Interned):
     """The type of a function that is passed to a function. Exists at compile time only."""
 
     params: tuple[Type, ...]

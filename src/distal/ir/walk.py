@@ -1,147 +1,45 @@
-"""Traverse and transform expressions and statements without a case for every node class.
-
-``children`` and ``rebuild`` are the only functions that know the operands of every node class;
-passes that treat most nodes alike use them.
-"""
+"""Traverse and transform expressions and statements without a case for every node class."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator
-from typing import Any, Final, assert_never, get_args
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import assert_never
 
+from distal.ir.contents import append_unseen, contents, nodes_of
 from distal.ir.nodes import (
-    Apply,
     Assign,
-    Binary,
     Break,
-    Builtin,
-    Call,
-    Cast,
-    Compare,
-    Compose,
     Const,
-    Construct,
     Continue,
     Expr,
     Field,
     For,
     Function,
-    FunctionRef,
-    Gradient,
     If,
     Index,
     Let,
-    Logical,
-    MatMul,
     PerFrame,
     Read,
     Resource,
     Return,
-    Sample,
-    Select,
-    Size,
-    Splat,
     Stmt,
     Swizzle,
-    Texel,
-    Unary,
     Uniform,
     Var,
     While,
 )
-
-
-def _none(e: Any) -> tuple[Expr, ...]:
-    return ()
-
-
-def _both_sides(e: Any) -> tuple[Expr, ...]:
-    return (e.lhs, e.rhs)
-
-
-# A table instead of a match statement: passes look this up many times for every node, and testing
-# one class after another took a third of their time.
-_OPERANDS: Final[dict[type, Callable[[Any], tuple[Expr, ...]]]] = {
-    **dict.fromkeys((Const, Read, Uniform, PerFrame, Resource), _none),
-    **dict.fromkeys((Binary, Compare, Logical, MatMul), _both_sides),
-    FunctionRef: lambda e: tuple(e.captures),
-    Unary: lambda e: (e.operand,),
-    Select: lambda e: (e.condition, e.yes, e.no),
-    Splat: lambda e: (e.value,),
-    Cast: lambda e: (e.value,),
-    Compose: lambda e: tuple(e.parts),
-    Construct: lambda e: tuple(e.parts),
-    Swizzle: lambda e: (e.base,),
-    Field: lambda e: (e.base,),
-    Index: lambda e: (e.base, e.index),
-    Builtin: lambda e: tuple(e.args),
-    Call: lambda e: tuple(e.args),
-    Apply: lambda e: (e.function, *e.args),
-    Gradient: lambda e: (e.function, e.point),
-    Sample: lambda e: (e.texture, e.coord),
-    Texel: lambda e: (e.texture, e.index),
-    Size: lambda e: (e.resource,),
-}
-assert set(_OPERANDS) == set(get_args(Expr)), "a node without operands"
+from distal.ir.operands import OPERANDS, REBUILT
 
 
 def children(e: Expr) -> tuple[Expr, ...]:
     """Return the operands of an expression, left to right."""
-    return _OPERANDS[type(e)](e)
+    return OPERANDS[type(e)](e)
 
 
 def rebuild(e: Expr, operands: tuple[Expr, ...]) -> Expr:
     """Return ``e`` with other operands of the same types; ``e`` itself when they are unchanged."""
-    if operands == children(e):
-        return e
-    span = e.span
-    match e:
-        case Const() | Read() | Uniform() | PerFrame() | Resource():
-            return e
-        case FunctionRef(name, _, type):
-            return FunctionRef(name, operands, type, span=span)
-        case Unary(op, _, type):
-            return Unary(op, operands[0], type, span=span)
-        case Binary(op, _, _, type):
-            return Binary(op, operands[0], operands[1], type, span=span)
-        case Compare(op, _, _, type):
-            return Compare(op, operands[0], operands[1], type, span=span)
-        case Logical(op, _, _, type):
-            return Logical(op, operands[0], operands[1], type, span=span)
-        case MatMul(_, _, type):
-            return MatMul(operands[0], operands[1], type, span=span)
-        case Select(_, _, _, type):
-            return Select(operands[0], operands[1], operands[2], type, span=span)
-        case Splat(_, type):
-            return Splat(operands[0], type, span=span)
-        case Cast(_, type):
-            return Cast(operands[0], type, span=span)
-        case Compose(_, type):
-            return Compose(operands, type, span=span)
-        case Construct(_, type):
-            return Construct(operands, type, span=span)
-        case Swizzle(_, lanes, type):
-            return Swizzle(operands[0], lanes, type, span=span)
-        case Field(_, name, type):
-            return Field(operands[0], name, type, span=span)
-        case Index(_, _, type):
-            return Index(operands[0], operands[1], type, span=span)
-        case Builtin(name, _, type):
-            return Builtin(name, operands, type, span=span)
-        case Call(name, _, type):
-            return Call(name, operands, type, span=span)
-        case Apply(_, _, type):
-            return Apply(operands[0], operands[1:], type, span=span)
-        case Gradient(_, _, with_value, type):
-            return Gradient(operands[0], operands[1], with_value, type, span=span)
-        case Sample(_, _, type):
-            return Sample(operands[0], operands[1], type, span=span)
-        case Texel(_, _, type):
-            return Texel(operands[0], operands[1], type, span=span)
-        case Size(_, type):
-            return Size(operands[0], type, span=span)
-        case _:
-            assert_never(e)
+    kind = type(e)
+    return e if operands == OPERANDS[kind](e) else REBUILT[kind](e, operands)
 
 
 def rewrite(e: Expr, change: Callable[[Expr], Expr], memo: dict[Expr, Expr]) -> Expr:
@@ -177,28 +75,13 @@ def substitute(e: Expr, replacements: dict[Expr, Expr], memo: dict[Expr, Expr]) 
     return done
 
 
-def nodes_in(*roots: Expr) -> Iterator[Expr]:
-    """Yield every distinct node of the expressions, including ``roots``; operands before users."""
-    return _unseen(roots, set())
-
-
-def _unseen(roots: tuple[Expr, ...], seen: set[Expr]) -> Iterator[Expr]:
-    """Yield the nodes of expressions that are not in ``seen``, and add them to it."""
-    # A node is pushed again inside a one-element tuple; it is yielded when the tuple is popped,
-    # after its operands.
-    stack: list[Any] = list(reversed(roots))
-    while stack:
-        e = stack.pop()
-        if type(e) is tuple:
-            yield e[0]
-        elif e not in seen:
-            seen.add(e)
-            operands = _OPERANDS[type(e)](e)
-            if operands:
-                stack.append((e,))
-                stack.extend(operands[::-1])
-            else:
-                yield e
+def nodes_in(*roots: Expr) -> Sequence[Expr]:
+    """Return every distinct node of the expressions, including ``roots``; operands before users."""
+    if len(roots) == 1:
+        return nodes_of(roots[0])
+    found: list[Expr] = []
+    append_unseen(roots, set(), found)
+    return found
 
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
@@ -239,11 +122,19 @@ def statements_in(body: tuple[Stmt, ...]) -> Iterator[Stmt]:
             yield from statements_in(block)
 
 
-def expressions_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
-    """Yield every distinct expression node of a block, including the blocks inside it."""
+def expressions_in(body: tuple[Stmt, ...]) -> Sequence[Expr]:
+    """Return every distinct expression node of a block, including the blocks inside it."""
     seen: set[Expr] = set()
+    found: list[Expr] = []
     for stmt in statements_in(body):
-        yield from _unseen(expressions(stmt), seen)
+        append_unseen(expressions(stmt), seen, found)
+    return found
+
+
+def roots_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:
+    """Yield the expressions directly in the statements of a block and of the blocks inside it."""
+    for stmt in statements_in(body):
+        yield from expressions(stmt)
 
 
 def is_unchanging(e: Expr, variables: Collection[str]) -> bool:
@@ -258,20 +149,17 @@ def is_unchanging(e: Expr, variables: Collection[str]) -> bool:
 
 def per_frame_reads(*roots: Expr) -> set[str]:
     """Return the names of the per-frame values that the expressions read."""
-    return {e.name for e in nodes_in(*roots) if isinstance(e, PerFrame)}
+    return {name for e in roots for name in contents(e).frames}
 
 
 def per_frame_reads_in(functions: Iterable[Function]) -> set[str]:
     """Return the names of the per-frame values that the functions read directly."""
-    found = set()
-    for function in functions:
-        found |= {e.name for e in expressions_in(function.body) if isinstance(e, PerFrame)}
-    return found
+    return {name for f in functions for e in roots_in(f.body) for name in contents(e).frames}
 
 
 def names_read(body: tuple[Stmt, ...]) -> set[str]:
     """Return the parameters and locals that a block reads, including the blocks inside it."""
-    return {e.name for e in expressions_in(body) if isinstance(e, Read)}
+    return {name for e in roots_in(body) for name in contents(e).reads}
 
 
 def map_statement(

@@ -12,9 +12,10 @@ from dataclasses import replace
 from typing import Final
 
 from distal.ir.build import builtin, integer
+from distal.ir.contents import contents
 from distal.ir.nodes import Const, Expr, For, Function, Index, Let, Module, Stmt
 from distal.ir.types import INT, UINT, Type, index_count
-from distal.ir.walk import expressions_in, map_statement, rewrite
+from distal.ir.walk import map_statement, rewrite, roots_in
 from distal.passes.context import Context
 from distal.passes.ranges import Ranges
 
@@ -29,15 +30,18 @@ _BOUNDING: Final[dict[tuple[str, tuple[Type, ...]], str]] = {
 
 def run(module: Module, context: Context) -> Module:
     """Clamp every index that is not provably in range."""
-    if not any(_indexes(f) for f in module.functions):
+    indexing = {f.name for f in module.functions if any(map(_indexes, roots_in(f.body)))}
+    if not indexing:
         return module
     meanings = _bounding_functions(module, context)
-    functions = tuple(_IndexBounder(meanings).function(f) for f in module.functions)
+    functions = tuple(
+        _IndexBounder(meanings).function(f) if f.name in indexing else f for f in module.functions
+    )
     return replace(module, functions=functions)
 
 
-def _indexes(function: Function) -> bool:
-    return any(isinstance(e, Index) for e in expressions_in(function.body))
+def _indexes(e: Expr) -> bool:
+    return Index in contents(e).kinds
 
 
 def _bounding_functions(module: Module, context: Context) -> dict[str, str]:
@@ -72,7 +76,10 @@ class _IndexBounder:
     def _statement(self, stmt: Stmt) -> Stmt:
         if isinstance(stmt, Let | For):
             self._ranges.enter(stmt)
-        return map_statement(stmt, lambda e: rewrite(e, self._clamped, self._memo), self._block)
+        return map_statement(stmt, self._bounded, self._block)
+
+    def _bounded(self, e: Expr) -> Expr:
+        return rewrite(e, self._clamped, self._memo) if _indexes(e) else e
 
     def _clamped(self, e: Expr) -> Expr:
         if not isinstance(e, Index):

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from distal.ir.nodes import Call, Function, FunctionRef
-from distal.ir.walk import expressions_in
+from distal.ir.contents import contents
+from distal.ir.nodes import Function
+from distal.ir.walk import roots_in
 
 
 def in_call_order(functions: Iterable[Function], entry: str) -> tuple[Function, ...]:
@@ -34,10 +35,5 @@ def in_call_order(functions: Iterable[Function], entry: str) -> tuple[Function, 
 
 
 def _callees(known: Mapping[str, Function], name: str) -> list[str]:
-    found: dict[str, None] = {}
-    for e in expressions_in(known[name].body):
-        if isinstance(e, Call):
-            found[e.function] = None
-        elif isinstance(e, FunctionRef):
-            found[e.name] = None
-    return list(found)
+    roots = roots_in(known[name].body)
+    return list(dict.fromkeys(callee for e in roots for callee in contents(e).callees))

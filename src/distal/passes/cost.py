@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final, assert_never
 
+from distal.ir.contents import contents
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Apply,
@@ -78,7 +79,7 @@ def node_cost(e: Expr, calls: Mapping[str, int]) -> int:
         case Builtin(name, args):
             return INTRINSICS[name].cost * _components(args[0].type)
         case Call(function):
-            return 2 + calls.get(function, 100)
+            return _call_cost(function, calls)
         case Sample() | Texel():
             return 20
         case Apply() | Gradient():
@@ -108,8 +109,20 @@ class Costs:
         """Return the cost of an expression."""
         found = self._found.get(e)
         if found is None:
-            found = self._found[e] = sum(node_cost(n, self.calls) for n in nodes_in(e))
+            found = self._found[e] = expression_cost(e, self.calls)
         return found
+
+
+def expression_cost(root: Expr, calls: Mapping[str, int]) -> int:
+    """Return the cost of an expression; ``calls`` maps functions to their costs."""
+    known = contents(root)
+    if known.cost is None:
+        known.cost = sum([node_cost(n, {}) for n in nodes_in(root) if not isinstance(n, Call)])
+    return known.cost + sum([_call_cost(name, calls) for name in known.called])
+
+
+def _call_cost(function: str, calls: Mapping[str, int]) -> int:
+    return 2 + calls.get(function, 100)
 
 
 def function_costs(functions: Iterable[Function]) -> dict[str, int]:
@@ -124,7 +137,11 @@ def block_cost(body: tuple[Stmt, ...], calls: Mapping[str, int]) -> int:
     """Return the cost of running a block; both branches of an If are counted."""
     total = 0
     for stmt in body:
-        own = sum(node_cost(n, calls) for n in nodes_in(*expressions(stmt)))
+        roots = expressions(stmt)
+        if len(roots) == 1:
+            own = expression_cost(roots[0], calls)
+        else:
+            own = sum(node_cost(n, calls) for n in nodes_in(*roots))
         inner = sum(block_cost(b, calls) for b in blocks(stmt))
         total += own + inner * rounds(stmt)
         if isinstance(stmt, While):
@@ -145,7 +162,10 @@ def rounds(stmt: Stmt) -> int:
 
 def size(body: tuple[Stmt, ...]) -> int:
     """Return the size of a block: its statements plus its nodes except constants and reads."""
-    return sum(
-        1 + sum(1 for n in nodes_in(*expressions(s)) if not isinstance(n, Const | Read))
-        for s in statements_in(body)
-    )
+    return sum(1 + _size(expressions(s)) for s in statements_in(body))
+
+
+def _size(roots: tuple[Expr, ...]) -> int:
+    if len(roots) == 1:
+        return contents(roots[0]).size
+    return sum(1 for n in nodes_in(*roots) if not isinstance(n, Const | Read))

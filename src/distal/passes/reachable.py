@@ -8,26 +8,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from distal.ir.nodes import Call, Expr, Function, FunctionRef, Module
-from distal.ir.walk import expressions_in, nodes_in, per_frame_reads, per_frame_reads_in
+from distal.ir.contents import contents
+from distal.ir.nodes import Expr, Function, Module
+from distal.ir.walk import per_frame_reads, per_frame_reads_in, roots_in
 
 
 def called_in(*roots: Expr) -> set[str]:
     """Return the functions that expressions call or refer to."""
-    return {
-        e.function if isinstance(e, Call) else e.name
-        for e in nodes_in(*roots)
-        if isinstance(e, Call | FunctionRef)
-    }
+    return {name for e in roots for name in contents(e).callees}
 
 
 def callees(function: Function) -> set[str]:
     """Return the functions that a function calls or refers to directly."""
-    return {
-        e.function if isinstance(e, Call) else e.name
-        for e in expressions_in(function.body)
-        if isinstance(e, Call | FunctionRef)
-    }
+    return called_in(*roots_in(function.body))
 
 
 def closure(functions: tuple[Function, ...], roots: set[str]) -> set[str]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -60,6 +61,8 @@ class Versions:
                 self.births[self._now[name]] = self._region
 
     def _expr(self, root: Expr) -> Expr:
+        if self._now.keys().isdisjoint(contents(root).reads):
+            return root
         memo: dict[Expr, Expr] = {}
         for e in nodes_in(root):
             if isinstance(e, Read):
@@ -159,6 +162,8 @@ class Versions:
 
 def plain(e: Expr) -> Expr:
     """Return the expression with the version numbers removed from its names."""
+    if not any(MARK in name for name in contents(e).reads):
+        return e
     memo: dict[Expr, Expr] = {}
     for n in nodes_in(e):
         if isinstance(n, Read):

@@ -5,6 +5,7 @@ Input: expressions and blocks. Output: numbers that decide whether a branch arou
 
 from __future__ import annotations
 
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -62,9 +63,8 @@ class LaneCosts:
         """Return the maximum iterations of a block's innermost loop, including called functions."""
         most = 1
         for stmt in block:
-            for e in nodes_in(*expressions(stmt)):
-                if isinstance(e, Call):
-                    most = max(most, self._rounds[e.function])
+            for e in expressions(stmt):
+                most = max([most, *(self._rounds[name] for name in contents(e).called)])
             inside = max((self.rounds(b) for b in blocks(stmt)), default=1)
             match stmt:
                 case For():
@@ -77,7 +77,16 @@ class LaneCosts:
 
     def expression(self, *roots: Expr) -> int:
         """Return the cost of expressions; shared parts are counted once."""
+        if len(roots) == 1:
+            return self._expression(roots[0])
         return sum(self.node(e) for e in nodes_in(*roots))
+
+    def _expression(self, root: Expr) -> int:
+        known = contents(root)
+        if known.lane_cost is None:
+            nodes = (e for e in nodes_in(root) if not isinstance(e, Call))
+            known.lane_cost = sum(map(self.node, nodes))
+        return known.lane_cost + sum([self._functions[name] for name in known.called])
 
     def block(self, block: tuple[Stmt, ...]) -> int:
         """Return the cost of running every statement of a block once."""

@@ -14,6 +14,7 @@ from distal.backends.llvm.expressions import LaneExpressions
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored, field_offset
 from distal.backends.llvm.loops import Loops
 from distal.backends.llvm.uniformity import reads_in
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -34,7 +35,7 @@ from distal.ir.nodes import (
     While,
 )
 from distal.ir.types import Array, Kind, Scalar, Struct, Type
-from distal.ir.walk import expressions_in, root_of
+from distal.ir.walk import nodes_in, root_of, roots_in
 
 # A block of at least this cost is skipped by a branch if no lane needs it.
 SKIP_COST = 40
@@ -280,7 +281,8 @@ def _picks_several(target: Expr) -> bool:
 def _dynamically_indexed(function: Function) -> frozenset[str]:
     """Return the locals that contain an array with an index that is not constant."""
     found = set()
-    for e in expressions_in(function.body):
+    roots = (root for root in roots_in(function.body) if Index in contents(root).kinds)
+    for e in (e for root in roots for e in nodes_in(root)):
         if (
             isinstance(e, Index)
             and not isinstance(e.index, Const)

@@ -20,6 +20,7 @@ from distal.frontend.lowering.scene_calls import instantiate
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING
+from distal.ir.collection import paused_collection
 from distal.ir.nodes import EntryKind, Function, Module
 from distal.ir.types import FRAME, VEC3, VEC4, FunctionType, Type, is_static
 from distal.lang.composed import Composed
@@ -108,7 +109,8 @@ def has_overload(func: Func, arg_types: tuple[Type, ...]) -> bool:
 def _guarded(compilation: Compilation, name: str, work: Callable[[], R]) -> R:
     """Run ``work``, and convert any exception of lowering to one ``CompileError``."""
     try:
-        return work()
+        with paused_collection():
+            return work()
     except SceneError as problem:
         compilation.report(problem.diagnostic)
     except FollowupError:

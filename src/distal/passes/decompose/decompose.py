@@ -90,14 +90,17 @@ class _Linker:
     Attributes:
         module: The module with the functions added so far.
         natives: Functions that replace a built-in of an inaccurate driver -> the built-in's name.
+        ranges: The declared ranges of the module's uniforms.
     """
 
     def __init__(self, module: Module, context: Context) -> None:
         self.module = module
+        self.ranges = declared_ranges(module.uniforms)
         self.natives: dict[str, str] = {}
         self._library = context.library
         self._blames: dict[str, Blame] = {}  # prelude function -> who needs it
         self._wrappers: dict[tuple[str, tuple[Type, ...]], str] = {}
+        self._linked: dict[tuple[str, tuple[Type, ...]], str] = {}
 
     def blame(self, function: str) -> Blame | None:
         """Return the author's operation that needs a prelude function; None for other functions."""
@@ -121,11 +124,14 @@ class _Linker:
         return Call(self._wrappers[key], args, type, span=blame.span)
 
     def _link(self, name: str, types: tuple[Type, ...], blame: Blame) -> str:
-        before = {f.name for f in self.module.functions}
-        self.module, function = self._library.link(self.module, name, types)
-        for added in self.module.functions:
-            if added.name not in before:
-                self._blames[added.name] = blame
+        function = self._linked.get((name, types))
+        if function is None:
+            before = {f.name for f in self.module.functions}
+            self.module, function = self._library.link(self.module, name, types)
+            for added in self.module.functions:
+                if added.name not in before:
+                    self._blames[added.name] = blame
+            self._linked[name, types] = function
         return function
 
     def _wrap(self, name: str, types: tuple[Type, ...], type: Type, blame: Blame) -> str:
@@ -158,7 +164,7 @@ class _Decomposer:
         self._blame = linker.blame(function.name)
         self._names = FreshNames(local_names(function))
         # A loop over a parameter outside its declared range runs for that range's length only.
-        self._ranges = Ranges(uniforms=declared_ranges(linker.module.uniforms))
+        self._ranges = Ranges(uniforms=linker.ranges)
         self._known: dict[Expr, Expr] = {}
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = function.span

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TypeAlias, assert_never
 
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Call,
     Compose,
@@ -40,7 +41,7 @@ from distal.ir.tangents import (
     seeds,
 )
 from distal.ir.types import FLOAT, Kind, Type, tuple_type, vector_of
-from distal.ir.walk import expressions_in, map_expressions, rewrite
+from distal.ir.walk import map_expressions, rewrite, roots_in
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.gradient.activity import Activity, FunctionActivity
@@ -70,7 +71,7 @@ _Key: TypeAlias = tuple[str, _Form, tuple[tuple[_Change, ...], ...]]
 
 def run(module: Module, context: Context) -> Module:
     """Replace every Gradient in the module."""
-    if not any(isinstance(e, Gradient) for f in module.functions for e in expressions_in(f.body)):
+    if not any(Gradient in contents(e).kinds for f in module.functions for e in roots_in(f.body)):
         return module
     derived = _Derived(module)
     for function in module.functions:
@@ -89,7 +90,10 @@ def _without_gradients(function: Function, derived: _Derived) -> Function:
         name = derived.gradient(e.function.name, e.point.type, with_value=e.with_value)
         return Call(name, (e.point, *e.function.captures), e.type, span=e.span)
 
-    body = map_expressions(function.body, lambda e: rewrite(e, replaced, memo))
+    def without(e: Expr) -> Expr:
+        return rewrite(e, replaced, memo) if Gradient in contents(e).kinds else e
+
+    body = map_expressions(function.body, without)
     return replace(function, body=body)
 
 

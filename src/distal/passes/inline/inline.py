@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Final
 
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Assign,
     Call,
@@ -35,17 +36,16 @@ from distal.ir.nodes import (
 )
 from distal.ir.walk import (
     children,
-    expressions,
     map_statement,
     nodes_in,
     rebuild,
     root_of,
+    roots_in,
     statements_in,
     substitute,
 )
 from distal.passes.context import Context
 from distal.passes.cost import Costs, block_cost, size
-from distal.passes.dead_code import ReadNames
 from distal.passes.fold.constants import is_plain
 from distal.passes.inline.straighten import RESULT, Straight, straighten
 from distal.passes.naming import FreshNames, local_names
@@ -81,8 +81,8 @@ def _call_sites(module: Module) -> Counter[str]:
     """Return the number of statements that call each function."""
     sites: Counter[str] = Counter()
     for function in module.functions:
-        for stmt in statements_in(function.body):
-            sites.update(n.function for n in nodes_in(*expressions(stmt)) if isinstance(n, Call))
+        for root in roots_in(function.body):
+            sites.update(contents(root).called)
     return sites
 
 
@@ -105,7 +105,6 @@ class _Inliner:
         self._sites = sites
         self._names = FreshNames(local_names(function))
         self._size = size(function.body)
-        self._reads = ReadNames()
         self._mutable = set(_assigned(function.body))
         # Inlined calls -> their values, for each block around the current place.
         self._available: list[dict[Expr, Expr]] = [{}]
@@ -138,9 +137,9 @@ class _Inliner:
     def _expr(
         self, root: Expr, in_loop: bool, eager: bool, before: list[Stmt], done: dict[Expr, Expr]
     ) -> Expr:
-        nodes = [e for e in nodes_in(root) if e not in done]
-        if not any(isinstance(e, Call) for e in nodes):
+        if not contents(root).called:
             return done.get(root, root)
+        nodes = [e for e in nodes_in(root) if e not in done]
         always = set(always_computed(root)) if eager else set()
         for e in nodes:
             changed = rebuild(e, tuple([done[c] for c in children(e)]))
@@ -158,7 +157,7 @@ class _Inliner:
                 return scope[call]
         if eager:
             value = self._insert(callee, call, before)
-            if not self._reads.of(call) & self._mutable:
+            if not contents(call).reads & self._mutable:
                 self._available[-1][call] = value
         elif callee.straight.only_lets and callee.cost <= CHEAP:
             value = _as_expression(callee, call)

@@ -26,9 +26,11 @@ class Picking:
         lets: set[str] = set()
         for stmt in statements_in(function.body):
             roots = expressions(stmt)
-            reads.update(e.name for e in roots if isinstance(e, Read))
+            reads.update([e.name for e in roots if type(e) is Read])
             for e in nodes_in(*roots):
-                reads.update(c.name for c in children(e) if isinstance(c, Read))
+                for c in children(e):
+                    if type(c) is Read:
+                        reads[c.name] += 1
             if isinstance(stmt, Let):
                 lets.add(stmt.name)
         self._read_once = {name for name in lets if reads[name] == 1}
@@ -39,10 +41,10 @@ class Picking:
         A local that is read in several places does not count as cost: it is computed once per frame
         itself, and a sum of such locals is not worth another per-frame value.
         """
-        if isinstance(e, Splat | Construct) or not (is_carried(e.type) or is_exploded(e.type)):
-            return False
         form = here.form(e)
-        if form is None:
+        if form is None or isinstance(e, Splat | Construct):
+            return False
+        if not (is_carried(e.type) or is_exploded(e.type)):
             return False
         if isinstance(e, Read | Call):
             return self._costs.of(form) >= LEAST_COST

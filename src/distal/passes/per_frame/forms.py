@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from distal.ir import build
 from distal.ir.constant_arithmetic import ConstantArithmetic
+from distal.ir.contents import contents
 from distal.ir.exits import never_ends
 from distal.ir.nodes import (
     Assign,
@@ -41,16 +42,18 @@ from distal.ir.nodes import (
 from distal.ir.types import BOOL, Scalar, Vector
 from distal.ir.walk import (
     children,
-    expressions_in,
     map_indices,
     nodes_in,
     rebuild,
     root_of,
+    roots_in,
     statements_in,
 )
 from distal.passes.cost import rounds
 from distal.passes.fold.rules import Rules
 from distal.passes.versions import assigned_in
+
+_NOT_HOISTED: Final = frozenset((Resource, FunctionRef))
 
 Forms: TypeAlias = Mapping[str, Expr]
 
@@ -65,11 +68,8 @@ def hoistable_calls(functions: tuple[Function, ...]) -> frozenset[str]:
     for function in functions:
         if any(isinstance(s, While) for s in statements_in(function.body)):
             continue
-        bad = False
-        for e in expressions_in(function.body):
-            bad = bad or isinstance(e, Resource | FunctionRef)
-            bad = bad or (isinstance(e, Call) and e.function not in found)
-        if not bad:
+        inside = [contents(e) for e in roots_in(function.body)]
+        if all(c.kinds.isdisjoint(_NOT_HOISTED) and found.issuperset(c.callees) for c in inside):
             found.add(function.name)
     return frozenset(found)
 

@@ -24,10 +24,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from distal.ir.contents import contents
 from distal.ir.nodes import Call, Construct, Expr, Field, Function, Module, Param, Read, Uniform
 from distal.ir.target import FramePlace
 from distal.ir.types import Struct, Type
-from distal.ir.walk import children, nodes_in, rebuild
+from distal.ir.walk import children, rebuild
 from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs
 from distal.passes.naming import FreshNames, local_names
@@ -78,7 +79,7 @@ class _Calls:
 
 
 def _leaves(form: Expr, *classes: type) -> bool:
-    return any(isinstance(n, classes) for n in nodes_in(form))
+    return not contents(form).kinds.isdisjoint(classes)
 
 
 def _may_travel(type: Type) -> bool:
@@ -96,6 +97,14 @@ class _Hoisting:
         self.keeps_constants = not context.target.inline
         self.params = {f.name: f.params for f in module.functions}
         self.calls: dict[str, _Calls] = {}
+        self._pickings: dict[str, Picking] = {}
+
+    def picking(self, function: Function) -> Picking:
+        """Return the decisions for a function of the module."""
+        found = self._pickings.get(function.name)
+        if found is None:
+            found = self._pickings[function.name] = Picking(function, self.costs)
+        return found
 
     def functions(self) -> tuple[Function, ...]:
         """Return the functions that pixels run, rewritten."""
@@ -110,7 +119,7 @@ class _Hoisting:
 
     def _learn(self, function: Function) -> None:
         """Record the arguments of the calls that stay in a function's pixel code."""
-        picking = Picking(function, self.costs)
+        picking = self.picking(function)
         heat = self.calls[function.name].rate
 
         def visit(e: Expr, here: Here) -> Expr:
@@ -138,7 +147,7 @@ class _Rewriting:
     def __init__(self, hoisting: _Hoisting, function: Function) -> None:
         self._hoisting = hoisting
         self._function = function
-        self._picking = Picking(function, hoisting.costs)
+        self._picking = hoisting.picking(function)
         self._calls = hoisting.calls[function.name]
         self._params = hoisting.forms_of(function)
         self._names = FreshNames(local_names(function))

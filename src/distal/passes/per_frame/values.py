@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from functools import cache
 from typing import Final, NamedTuple
 
+from distal.ir.contents import contents
 from distal.ir.nodes import Builtin, Call, Expr, Let, PerFrame, Read, Return, Stmt, Uniform
 from distal.ir.types import Matrix, Scalar, Struct, Type, Vector, component_count
 from distal.ir.walk import children, nodes_in, rebuild, substitute
@@ -24,11 +26,13 @@ LEAST_COST: Final = 4
 MARK: Final = "#"  # first character of the temporary names of values
 
 
+@cache
 def is_carried(type: Type) -> bool:
     """Return whether a per-frame value may have the type."""
     return isinstance(type, Scalar | Vector | Matrix)
 
 
+@cache
 def is_exploded(type: Type) -> bool:
     """Return whether the type is a struct that is passed field by field."""
     return isinstance(type, Struct) and all(is_carried(t) or is_exploded(t) for _, t in type.fields)
@@ -48,7 +52,8 @@ class NameHint(NamedTuple):
 def suggestion(form: Expr) -> NameHint:
     """Suggest a name such as ``cos_angle`` for a built-in or function of one named value."""
     if isinstance(form, Builtin | Call):
-        leaves = {n.name for n in nodes_in(form) if isinstance(n, Read | Uniform)}
+        below = contents(form).below or ()
+        leaves = {n.name for n in below if isinstance(n, Read | Uniform)}
         if len(leaves) == 1:
             name = form.name if isinstance(form, Builtin) else form.function
             return NameHint(f"{name}_{leaves.pop()}")
