@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.expressions import LaneExpressions
-from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, Stored, leaf_count, leaf_kinds
+from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, Stored, leaf_kinds
 from distal.backends.llvm.layout import (
     BATCH,
     FRAME,
@@ -28,9 +28,9 @@ from distal.backends.llvm.writer import LlvmWriter
 from distal.ir.nodes import EntryKind, Expr, Function, PerFrame
 from distal.ir.types import FLOAT, VEC4, Kind, Scalar
 
-# The cost of the per-frame values that one function computes. The time of LLVM's instruction
-# selection grows with the square of a block's stores: 12900 lines took 2.9 s, in groups 0.1 s.
-FRAME_COST = 1000
+# The length of the per-frame values that one function computes, in nodes. The time of LLVM's
+# instruction selection grows with the square of a block's stores: 12900 lines took 2.9 s.
+FRAME_LENGTH = 1000
 
 
 def kernels(program: LaneProgram) -> bool:
@@ -75,16 +75,16 @@ def _frame(program: LaneProgram) -> None:
 
 
 def _groups(program: LaneProgram) -> list[list[tuple[str, Expr]]]:
-    """Return the per-frame values in groups of a bounded cost, each for a function."""
+    """Return the per-frame values in groups of a bounded length, each for a function."""
     groups: list[list[tuple[str, Expr]]] = []
-    cost = FRAME_COST
+    length = FRAME_LENGTH
     for name, value in program.module.frame:
-        own = program.costs.expression(value) + leaf_count(value.type)
-        if cost + own > FRAME_COST:
+        own = program.code_of(value)
+        if length + own > FRAME_LENGTH:
             groups.append([])
-            cost = 0
+            length = 0
         groups[-1].append((name, value))
-        cost += own
+        length += own
     return groups
 
 

@@ -15,16 +15,17 @@ from distal.backends.llvm.arithmetic import LaneArithmetic
 from distal.backends.llvm.chains import Chains
 from distal.backends.llvm.costs import LaneCosts
 from distal.backends.llvm.expressions import LaneExpressions
-from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, leaf_kinds
+from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, leaf_count, leaf_kinds
 from distal.backends.llvm.layout import JOB_OFFSET, KernelLayout
 from distal.backends.llvm.statements import Statements
 from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import LlvmWriter
 from distal.diagnostics import CompileError
-from distal.ir.nodes import Call, Expr, Function, Module
+from distal.ir.contents import contents
+from distal.ir.nodes import Expr, Function, Module
 from distal.ir.types import Kind
-from distal.ir.walk import expressions_in
+from distal.ir.walk import roots_in
 
 # The register width of each level, so that LLVM neither splits nor avoids full vectors.
 _REGISTER_BITS = {"avx512": 512, "avx2": 256, "sse4.2": 128, "neon": 128}
@@ -72,10 +73,7 @@ class LaneProgram:
         self._array_bytes = 0
         self._functions = {f.name: f for f in module.functions}
         self._sites = Counter(
-            e.function
-            for f in module.functions
-            for e in expressions_in(f.body)
-            if isinstance(e, Call)
+            name for f in module.functions for e in roots_in(f.body) for name in contents(e).called
         )
         self._variants: dict[tuple[str, tuple[bool, ...], bool], tuple[str, bool]] = {}
         self._definitions: list[str] = []
@@ -228,6 +226,12 @@ class LaneProgram:
         if self._sites[name] == 1:
             most = max(most, ONCE_COST)
         return self.costs.function(name) <= most
+
+    def code_of(self, value: Expr) -> int:
+        """Return the length of the code of a per-frame value, roughly in instructions."""
+        found = contents(value)
+        inside = (self.costs.function(name) for name in found.called)
+        return found.size + leaf_count(value.type) + sum(c for c in inside if c <= INLINE_COST)
 
     def _by_chunk(self, name: str) -> bool:
         """Return whether a function is called for each vector of its arguments separately."""

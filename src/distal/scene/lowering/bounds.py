@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final, assert_never
 
 from distal.fields.boxes import everywhere, everywhere2, hull, hull2
@@ -25,12 +26,13 @@ from distal.fields.guarantees import (
 )
 from distal.ir.build import builtin, field, multiply
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Const, Construct, Expr
+from distal.ir.contents import contents
+from distal.ir.nodes import Call, Const, Construct, Expr, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
 from distal.scene.lowering.parts.table import PartTable, TableNode
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import StatementList, Values
+from distal.scene.tree.values import StatementList, Values, plain_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +74,23 @@ ONE: Final = constant_number(1.0)
 UNKNOWN: Final = constant_number(UNBOUNDED)
 
 
+# The most children of an operator whose bounds are composed in one function.
+AT_ONCE: Final = 16
+
+# The parts of bounds that are numbers, and constant for many shapes.
+NUMBERS: Final = ("slope", "divisor", "growth", "side_growth")
+
+
+def _is_closed(values: Sequence[Expr]) -> bool:
+    """Return whether values are the same in every function: they read no parameters or locals."""
+    return not any(contents(value).reads for value in values)
+
+
+def _folds(rule: Operator) -> bool:
+    """Return whether an operator's bounds are composed child by child, because order matters."""
+    return rule.bounds is not None or rule.slope is not None
+
+
 class BoundsComposer:
     """Composes the bounds of subtrees as IR expressions."""
 
@@ -93,10 +112,62 @@ class BoundsComposer:
         rule = node.rule
         if isinstance(rule, Primitive):
             return self.of_primitive(body, rule, own, flat=node.flat)
+        children = list(zip(node.children, shares, strict=True))
+        if len(children) > AT_ONCE and _is_closed(values) and not _folds(rule):
+            return self._of_many(body, rule, children, own, flat=node.flat)
+        inner = [self.of(body, child, share) for child, share in children]
+        return self.of_operator(body, rule, inner, own)
+
+    def _of_many(
+        self,
+        body: StatementList,
+        rule: Operator,
+        children: Sequence[tuple[Node, Sequence[Expr]]],
+        own: Mapping[str, Expr],
+        *,
+        flat: bool,
+    ) -> ShapeBounds:
+        """Return the bounds of an operator on many children: a function for each group of them.
+
+        Each value of the per-frame part repeats what it is computed from, except functions.
+        """
+        groups = -(-len(children) // AT_ONCE)
+        groups = min(groups, AT_ONCE)
+        ends = [len(children) * g // groups for g in range(groups + 1)]
         inner = [
-            self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
+            self._of_group(body, rule, children[start:stop], own, flat=flat)
+            for start, stop in pairwise(ends)
         ]
         return self.of_operator(body, rule, inner, own)
+
+    def _of_group(
+        self,
+        body: StatementList,
+        rule: Operator,
+        children: Sequence[tuple[Node, Sequence[Expr]]],
+        own: Mapping[str, Expr],
+        *,
+        flat: bool,
+    ) -> ShapeBounds:
+        inside = StatementList()
+        if len(children) > AT_ONCE:
+            found = self._of_many(inside, rule, children, own, flat=flat)
+        else:
+            inner = [self.of(inside, child, share) for child, share in children]
+            found = self.of_operator(inside, rule, inner, own)
+        box = inside.let("bounds", found.bounds)
+        numbers = {n: getattr(found, n) for n in NUMBERS}
+        varying = {n: e for n, e in numbers.items() if not isinstance(e, Const)}
+        parts = (field(box, "low"), field(box, "high"), *varying.values())
+        packed = tuple_type(tuple(part.type for part in parts))
+        inside.statements.append(Return(Construct(parts, packed)))
+        assembly = self._values.assembly
+        name = assembly.define(f"{plain_name(rule.name)}_bounds", (), packed, inside.statements)
+        group = body.let("group", Call(name, (), packed))
+        low, high, *rest = (field(group, f"item{i}") for i in range(len(parts)))
+        numbers |= dict(zip(varying, rest, strict=True))
+        corners = Construct((low, high), assembly.struct(Bounds2 if flat else Bounds))
+        return ShapeBounds(bounds=corners, **numbers)
 
     def _of_table(self, table: PartTable) -> ShapeBounds:
         corners = (
@@ -124,7 +195,7 @@ class BoundsComposer:
         """
         if len(inner) == 1:
             return self._one(body, rule, inner[0], own)
-        if rule.bounds is None and rule.slope is None:
+        if not _folds(rule):
             return self._halved(body, rule, inner, own)
         result = inner[0]
         for other in inner[1:]:
