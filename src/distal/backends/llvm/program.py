@@ -75,7 +75,7 @@ class LaneProgram:
         self._sites = Counter(
             name for f in module.functions for e in roots_in(f.body) for name in contents(e).called
         )
-        self._variants: dict[tuple[str, tuple[bool, ...], bool], tuple[str, bool]] = {}
+        self._variants: dict[tuple[str, int, tuple[bool, ...], bool], tuple[str, bool]] = {}
         self._definitions: list[str] = []
         self._tables: dict[Leaves, str] = {}
 
