@@ -97,4 +97,3 @@ REBUILT: Final[dict[type, Callable[[Any, _Operands], Expr]]] = {
     Size: lambda e, o: Size(o[0], e.type, span=e.span),
 }
 assert set(OPERANDS) == set(REBUILT) == set(get_args(Expr)), "a node without operands"
-
