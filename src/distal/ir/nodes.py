@@ -95,7 +95,7 @@ class LogicalOp(Enum):
     OR = "or"
 
 
-class Node(Interned):
+class ExpressionNode(Interned):
     """An expression node.
 
     Attributes:
@@ -109,7 +109,7 @@ class Node(Interned):
 
 
 @interned
-class Const(Node):
+class Const(ExpressionNode):
     """A scalar literal: bool, int (of INT or UINT, within 32 bits) or finite float."""
 
     discriminate: ClassVar = staticmethod(discriminate_number)
@@ -120,7 +120,7 @@ class Const(Node):
 
 
 @interned
-class Read(Node):
+class Read(ExpressionNode):
     """The value of a parameter or local variable."""
 
     name: str
@@ -129,7 +129,7 @@ class Read(Node):
 
 
 @interned
-class Uniform(Node):
+class Uniform(ExpressionNode):
     """The value of a uniform of the module (``Module.uniforms``), constant over the whole picture.
 
     Before the entry pass, a Uniform named ``FRAME_TIME`` is the frame's time; it is not declared.
@@ -141,7 +141,7 @@ class Uniform(Node):
 
 
 @interned
-class PerFrame(Node):
+class PerFrame(ExpressionNode):
     """A value computed by the per-frame part (``Module.frame``); created by the frequency pass."""
 
     name: str
@@ -150,7 +150,7 @@ class PerFrame(Node):
 
 
 @interned
-class Resource(Node):
+class Resource(ExpressionNode):
     """A texture or buffer of ``Module.resources``, referenced by name."""
 
     name: str
@@ -159,7 +159,7 @@ class Resource(Node):
 
 
 @interned
-class FunctionRef(Node):
+class FunctionRef(ExpressionNode):
     """A module function as a value, with its last parameters bound to ``captures``.
 
     ``type`` is the FunctionType of the remaining parameters. Removed by the specialise pass.
@@ -172,7 +172,7 @@ class FunctionRef(Node):
 
 
 @interned
-class Unary(Node):
+class Unary(ExpressionNode):
     """``op operand``; the result has the operand's type."""
 
     op: UnaryOp
@@ -182,7 +182,7 @@ class Unary(Node):
 
 
 @interned
-class Binary(Node):
+class Binary(ExpressionNode):
     """``lhs op rhs``; both operands have the type of this node."""
 
     op: BinaryOp
@@ -193,7 +193,7 @@ class Binary(Node):
 
 
 @interned
-class MatMul(Node):
+class MatMul(ExpressionNode):
     """``lhs @ rhs``: matrix @ matrix, matrix @ vector (column), vector (row) @ matrix."""
 
     lhs: Expr
@@ -203,7 +203,7 @@ class MatMul(Node):
 
 
 @interned
-class Compare(Node):
+class Compare(ExpressionNode):
     """``lhs op rhs``; both operands have the same type; the result is a bool or a bvec."""
 
     op: CompareOp
@@ -214,7 +214,7 @@ class Compare(Node):
 
 
 @interned
-class Logical(Node):
+class Logical(ExpressionNode):
     """``lhs and rhs`` or ``lhs or rhs`` with short circuit."""
 
     op: LogicalOp
@@ -225,7 +225,7 @@ class Logical(Node):
 
 
 @interned
-class Select(Node):
+class Select(ExpressionNode):
     """``yes if condition else no``.
 
     A bvec condition selects component by component. A bool condition selects the whole value, of
@@ -240,7 +240,7 @@ class Select(Node):
 
 
 @interned
-class Splat(Node):
+class Splat(ExpressionNode):
     """A scalar repeated into every component of a vector or (for MUL and DIV) a matrix."""
 
     value: Expr
@@ -249,7 +249,7 @@ class Splat(Node):
 
 
 @interned
-class Compose(Node):
+class Compose(ExpressionNode):
     """A vector built from scalars and vectors of its kind, or a matrix built from its columns."""
 
     parts: tuple[Expr, ...]
@@ -258,7 +258,7 @@ class Compose(Node):
 
 
 @interned
-class Swizzle(Node):
+class Swizzle(ExpressionNode):
     """Components of a vector selected by letters of ``xyzw``: ``base.xz``; one letter: a scalar."""
 
     base: Expr
@@ -268,7 +268,7 @@ class Swizzle(Node):
 
 
 @interned
-class Index(Node):
+class Index(ExpressionNode):
     """``base[index]`` of an array, vector, matrix (a column) or buffer; the index is an int.
 
     Every index is defined to be clamped into range. The bounds pass makes the clamp explicit unless
@@ -283,7 +283,7 @@ class Index(Node):
 
 
 @interned
-class Field(Node):
+class Field(ExpressionNode):
     """The field ``base.name`` of a struct."""
 
     base: Expr
@@ -293,7 +293,7 @@ class Field(Node):
 
 
 @interned
-class Construct(Node):
+class Construct(ExpressionNode):
     """A struct built from its fields in order, or an array built from its elements."""
 
     parts: tuple[Expr, ...]
@@ -302,7 +302,7 @@ class Construct(Node):
 
 
 @interned
-class Cast(Node):
+class Cast(ExpressionNode):
     """A scalar or vector with its components converted to another kind.
 
     float to int or uint truncates and saturates, and NaN gives 0; conversions between int and uint
@@ -315,7 +315,7 @@ class Cast(Node):
 
 
 @interned
-class Builtin(Node):
+class Builtin(ExpressionNode):
     """A call of an intrinsic of ``distal.ir.intrinsics``."""
 
     name: str
@@ -325,7 +325,7 @@ class Builtin(Node):
 
 
 @interned
-class Call(Node):
+class Call(ExpressionNode):
     """A call of a module function. Functions have no side effects."""
 
     function: str
@@ -335,7 +335,7 @@ class Call(Node):
 
 
 @interned
-class Apply(Node):
+class Apply(ExpressionNode):
     """A call of a function value (a Read of FunctionType, a FunctionRef). Removed by specialise."""
 
     function: Expr
@@ -345,7 +345,7 @@ class Apply(Node):
 
 
 @interned
-class Gradient(Node):
+class Gradient(ExpressionNode):
     """The exact derivative of a float-valued function value at ``point`` (float, vec2-4).
 
     ``type`` is the point's type; with ``with_value`` it is the tuple (float, gradient), both from
@@ -360,7 +360,7 @@ class Gradient(Node):
 
 
 @interned
-class Sample(Node):
+class Sample(ExpressionNode):
     """A filtered texture value, a vec4. There are no mip maps: every target reads level 0.
 
     2D: (0, 0) is the lower left corner of the picture, (1, 1) the upper right. The filter is
@@ -375,7 +375,7 @@ class Sample(Node):
 
 
 @interned
-class Texel(Node):
+class Texel(ExpressionNode):
     """One unfiltered texel, a vec4, at an ivec2 (2D) or ivec3 (3D; cube: x, y, face); clamped."""
 
     texture: Expr
@@ -385,7 +385,7 @@ class Texel(Node):
 
 
 @interned
-class Size(Node):
+class Size(ExpressionNode):
     """The size of a texture in texels, ivec2 (2D, cube) or ivec3 (3D), or a buffer's int length."""
 
     resource: Expr
