@@ -247,18 +247,37 @@ def test_a_shape_in_several_places_has_one_row():
 def test_a_large_tree_is_measured_where_it_matters():
     shape = Shape.from_function(wobbly, slope=1.2, bounds=BOX, depth=0.05)
     for i in range(40):
-        shape = shape | Sphere(0.1 + 0.001 * i).translate(0.1 * i, 2.0, 0.0)
+        shape = shape & Sphere(3.0 + 0.001 * i).translate(0.01 * i, 0.0, 0.0)
     found = check(shape)
     measured = {row.node.name for row in found.shapes if row.measured is not None}
-    assert measured == {"union", "wobbly"}
+    assert measured == {"intersection", "wobbly"}
     assert codes(found) == [("slope-exceeded", "wobbly")]
+
+
+def test_one_part_of_each_kind_is_checked():
+    wrong = Shape.from_function(wobbly, slope=1.2, bounds=BOX, depth=0.05)
+    dots = [Sphere(0.1 + 0.001 * i).translate(0.1 * i, 2.0, 0.0) for i in range(400)]
+    pegs = [Box(0.1).translate(0.1 * i, -2.0, 0.0).named("peg") for i in range(30)]
+    found = check(dots[0].union([*dots[1:], *pegs, wrong, Plane()]))
+    names = [row.node.name for row in found.shapes]
+    assert names == ["union", "translate", "Sphere", "peg", "Box", "wobbly", "Plane"]
+    assert codes(found) == [("slope-exceeded", "wobbly")]
+    assert found.table is not None and found.table.count == 430
+    assert [(k.name, k.count, k.columns) for k in found.table.kinds] == [
+        ("Sphere", 400, 4),
+        ("peg", 30, 3),
+    ]
+    beside = [(b.name, b.reason) for b in found.table.beside]
+    assert beside == [("wobbly", "its values need a divisor"), ("Plane", "it has no finite box")]
+    assert found.table.kinds[0].place.line == found.shapes[1].node.place.line
+    assert json.loads(json.dumps(found.as_json()))["table"]["parts"] == 430
 
 
 def test_plain_values_are_json_without_infinity():
     found = check(Shape.from_function(wobbly, slope=1.2, depth=0.05) | Plane())
     text = json.dumps(found.as_json(), allow_nan=False)
     made = json.loads(text)
-    assert set(made) == {"version", "holds", "slope_from", "shapes", "findings"}
+    assert set(made) == {"version", "holds", "slope_from", "table", "shapes", "findings"}
     assert made["shapes"][0]["bounds"] == {"low": [None] * 3, "high": [None] * 3}
     own = next(row for row in made["shapes"] if row["name"] == "wobbly")
     assert set(own) == {

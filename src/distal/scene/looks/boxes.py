@@ -84,7 +84,7 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         time: Time in seconds.
     """
     parts = sources = list(parts_of(root))
-    if len(parts) > MOST_FOLDED and (table := rolled(root)).table is not None:
+    if root.parts > MOST_FOLDED and (table := rolled(root)).table is not None:
         parts = list(parts_of(table.node))
         sources = [table.node, *(member.source for member, _ in table.beside)]
     known = list(zip(sources, _boxes(parts, params, time), strict=True))
