@@ -79,7 +79,7 @@ def prove(tape: Tape, low: Any, high: Any) -> Proof:
     starts = np.meshgrid(*(side[:-1] for side in sides), indexing="ij")
     ends = np.meshgrid(*(side[1:] for side in sides), indexing="ij")
     cells = np.stack([np.stack(c, axis=-1).reshape(-1, size) for c in (starts, ends)])
-    looked = _Cells(program, size)
+    looked = _ProvedCells(program, size)
     looked.add(cells)
     for _ in range(_ROUNDS):
         if not looked.cut():
@@ -87,7 +87,7 @@ def prove(tape: Tape, low: Any, high: Any) -> Proof:
     return looked.proof()
 
 
-class _Cells:
+class _ProvedCells:
     """The cells of a region, and what is known of each.
 
     Attributes:

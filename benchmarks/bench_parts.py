@@ -1,0 +1,127 @@
+"""How a scene's cost grows with the number of its parts: objects, first picture, frame, memory.
+
+The parts (boxes, spheres and rings of many colors) stand on a square grid, so that the same share
+of the rays hits them whatever their number is. One sun with shadows, 640x480, one sample, two
+threads. Each count is measured in a fresh process with an empty kernel cache.
+
+    python benchmarks/bench_parts.py [--counts 100 1000 10000 100000] [--plot growth.png]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image, ImageDraw
+
+COUNTS = (100, 1000, 10_000, 100_000)
+COLUMNS = ("objects", "cold", "frame", "memory")
+COLORS = {"objects": "#2a9d8f", "cold": "#e76f51", "frame": "#264653", "memory": "#b08900"}
+
+MEASURED = """
+import json, random, resource, sys
+from time import perf_counter
+import numpy, llvmlite.binding, distal.runtime.executor, distal.devices.cpu
+from distal import Box, Camera, DistantLight, Plane, Scene, Sphere, Torus, union
+
+count, device = int(sys.argv[1]), sys.argv[2]
+random.seed(1)
+begin = perf_counter()
+side = round(count**0.5)
+step = 4.0 / side
+parts = []
+for i in range(count):
+    a = random.uniform(0.25, 0.4) * step
+    part = (Sphere(a), Box(a, 1.4 * a, a), Torus(a, 0.4 * a).rotate(x=random.uniform(0, 3)))[i % 3]
+    place = ((i % side + 0.5) * step - 2.0, 0.5 * step, (i // side + 0.5) * step - 2.0)
+    parts.append(part.translate(place).paint([random.uniform(0.1, 0.9) for _ in range(3)]))
+whole = union(parts)
+objects = perf_counter() - begin
+scene = Scene(
+    whole | Plane(),
+    lights=DistantLight((1, 2, 1.5), angle=0.01),
+    camera=Camera((3, 3, 4), target=(0, 0, 0)),
+    ambient_occlusion=0.0,
+)
+scene.render(size=(640, 480), samples=1, device=device)
+cold = perf_counter() - begin
+frames = []
+for _ in range(5):
+    begin = perf_counter()
+    scene.render(size=(640, 480), samples=1, device=device)
+    frames.append(perf_counter() - begin)
+memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+print(json.dumps({"objects": objects, "cold": cold, "frame": min(frames), "memory": memory}))
+"""
+
+
+def measured(count: int, device: str) -> dict[str, float]:
+    """Return seconds and megabytes for a number of parts."""
+    with tempfile.TemporaryDirectory() as cache:
+        environment = {**os.environ, "DISTAL_CACHE_DIR": cache}
+        command = [sys.executable, "-c", MEASURED, str(count), device]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    found: dict[str, float] = json.loads(done.stdout)
+    return found
+
+
+def exponent(rows: dict[int, dict[str, float]], column: str) -> float:
+    """Return how a column grows with the count between the last two counts."""
+    (a, first), (b, last) = list(rows.items())[-2:]
+    return math.log(last[column] / first[column]) / math.log(b / a)
+
+
+def plot(rows: dict[int, dict[str, float]], path: Path) -> None:
+    """Draw all columns over the count, both logarithmic, each from its first value."""
+    width, height, margin = 720, 480, 60
+    image = Image.new("RGB", (width, height), "white")
+    draw = ImageDraw.Draw(image)
+    low, high = math.log10(min(rows)), math.log10(max(rows))
+    decades = max(1.0, max(math.log10(r[c] / rows[min(rows)][c]) for r in rows.values() for c in r))
+
+    def place(count: int, ratio: float) -> tuple[float, float]:
+        x = margin + (math.log10(count) - low) / (high - low) * (width - 3 * margin)
+        return x, height - margin - max(math.log10(ratio), 0.0) / decades * (height - 2 * margin)
+
+    for count in rows:
+        draw.line((*place(count, 1.0), *place(count, 10.0**decades)), "#dddddd")
+        draw.text((place(count, 1.0)[0] - 20, height - margin + 10), f"{count:,}", "black")
+    for decade in range(math.ceil(decades)):
+        draw.line((*place(min(rows), 10.0**decade), *place(max(rows), 10.0**decade)), "#dddddd")
+        draw.text((10, place(min(rows), 10.0**decade)[1] - 6), f"x{10**decade}", "black")
+    for name in COLUMNS:
+        first = rows[min(rows)][name]
+        points = [place(count, row[name] / first) for count, row in rows.items()]
+        draw.line(points, COLORS[name], 3)
+        draw.text((points[-1][0] + 8, points[-1][1] - 6), name, COLORS[name])
+    image.save(path)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--counts", type=int, nargs="+", default=COUNTS)
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--plot", type=Path)
+    options = parser.parse_args()
+    print("  parts   objects      cold     frame   memory")
+    rows: dict[int, dict[str, float]] = {}
+    for count in options.counts:
+        row = rows[count] = measured(count, options.device)
+        seconds = f"{row['objects']:8.2f} s{row['cold']:8.2f} s{1000 * row['frame']:7.1f} ms"
+        print(f"{count:7,}{seconds}{row['memory']:6.0f} MB", flush=True)
+    if len(rows) > 1:
+        grown = ", ".join(f"{name} {exponent(rows, name):.2f}" for name in COLUMNS)
+        print(f"exponents between the last two: {grown}")
+        if options.plot:
+            plot(rows, options.plot)
+
+
+if __name__ == "__main__":
+    main()
