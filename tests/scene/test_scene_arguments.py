@@ -83,7 +83,8 @@ def program(**changed):
 
 def test_every_argument_is_changed_here():
     named = set(inspect.signature(Scene).parameters)
-    assert named == set(OTHERS) | STRIDES | HALO | {"name"}
+    # With and without acceleration the picture is the same (``tests/parts``).
+    assert named == set(OTHERS) | STRIDES | HALO | {"name", "acceleration"}
     assert Scene(SHAPE, name="pool").name == "pool"
 
 
