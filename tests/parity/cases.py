@@ -111,6 +111,11 @@ def _not_zero(args: Sequence[Numbers], on_cpu: bool) -> Where:
     return np.any(args[0] != 0.0, axis=0)
 
 
+def _true_or_off_cpu(args: Sequence[Numbers], on_cpu: bool) -> Where:
+    """Where no neighbor's condition counts: on the CPU it may be true for theirs."""
+    return np.all(args[0] != 0.0, axis=0) | (not on_cpu)
+
+
 DEFINED: Final[dict[str, Callable[[Sequence[Numbers], bool], Where]]] = {
     "isnan": _finite_off_cpu,
     "isinf": _finite_off_cpu,
@@ -121,6 +126,7 @@ DEFINED: Final[dict[str, Callable[[Sequence[Numbers], bool], Where]]] = {
     "faceforward": _off_right_angles,
     "truncated_quotient": _within_quotients,
     "normalize": _not_zero,
+    "anywhere": _true_or_off_cpu,
 }
 
 
