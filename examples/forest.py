@@ -101,7 +101,7 @@ scene = Scene(
     ),
     ambient_occlusion=0.5,
     fog_density=0.02,
-    steps=400,
-    far=150.0,
+    steps=1000,
+    far=20000.0,
     tone_map="aces",
 )
