@@ -102,6 +102,6 @@ scene = Scene(
     ambient_occlusion=0.5,
     fog_density=0.02,
     steps=1000,
-    far=20000.0,
+    far=1e6,
     tone_map="aces",
 )
