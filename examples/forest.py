@@ -102,6 +102,6 @@ scene = Scene(
     ambient_occlusion=0.5,
     fog_density=0.02,
     steps=1000,
-    far=1e6,
+    far=20000.0,
     tone_map="aces",
 )
