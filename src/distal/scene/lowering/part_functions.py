@@ -24,8 +24,8 @@ from distal.scene.tree.values import StatementList
 if TYPE_CHECKING:
     from distal.scene.lowering.shapes import ShapeComposer
 
-# The parameter of functions of a part: the number of the first vec4 of its row.
 ZERO_CELL: Final = constant_number(0.0, VEC3)  # parts are outside of any repetition
+# The parameters of functions of a part: the number of the first vec4 of its row, the point.
 PART: Final = Read("part", INT)
 POINT: Final = Read("p", VEC3)
 
