@@ -17,7 +17,7 @@ from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
 from distal.ir.build import boolean, builtin, cast, compare, integer, multiply
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Read, Return
+from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Return
 from distal.ir.types import FLOAT, INT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
@@ -128,9 +128,10 @@ class RayFunctions:
         params = [("ray", self._composer.assembly.struct(Ray))]
         if self._table is None:
             return self._first_of_others(body, params, given, hybrid=hybrid)
-        others = self._bound(part_tree.nothing_else, params, given, {})
-        if self._planes or self._others:
+        if self._beside:
             others = self._first_of_others(body, params, given, hybrid=hybrid)
+        else:
+            others = self._bound(part_tree.nothing_else, params, given, {})
         functions = {"others": others, "others_field": self._beside_field()}
         return self._bound(part_tree.first_of_parts, params, given, functions)
 
@@ -138,11 +139,13 @@ class RayFunctions:
         self, body: StatementList, params: Params, given: Mapping[str, Expr], *, hybrid: bool
     ) -> FunctionRef:
         """Return the function ``(ray) -> Hit`` of all shapes but those of the table."""
-        if hybrid or not self._planes:
-            field = self._field(self._root) if hybrid else self._others_field()
-            values = given if self._table is None else {**given, **self._without_planes(body)}
-            return self._bound(trace.first_surface, params, values, {"field": field})
+        if self._table is None and (hybrid or not self._planes):
+            field = self._field(self._root) if hybrid else self._safe_field(self._root)
+            return self._bound(trace.first_surface, params, given, {"field": field})
         values = {**given, **self._without_planes(body)}
+        if not self._planes:
+            functions = {"field": self._others_field()}
+            return self._bound(trace.first_surface, params, values, functions)
         functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
         return self._bound(trace.first_surface_or_plane, params, values, functions)
 
@@ -309,9 +312,6 @@ class RayFunctions:
             here = {name: _with_captures(f, name, given) for name, f in functions.items()}
             return self._composer.call(function, {**constants, **here, **given})
 
-        # Local values that the functions capture are parameters of the same names.
-        inner = [c for ref in functions.values() for c in ref.captures if isinstance(c, Read)]
-        captured |= {value.name: value for value in inner if value.name not in captured}
         every = [*params, *((name, value.type) for name, value in captured.items())]
         return self._define(function.name, every, make, list(captured.values()))
 
