@@ -104,7 +104,11 @@ def rolled(root: Node) -> Rolled:
     """Return a tree with a table of the parts that its root unites, if there are many."""
     found = _rolled.get(root)
     if found is None:
-        found = _rolled[root] = _roll(root)
+        try:
+            found = _roll(root)
+        except RecursionError:
+            found = Rolled(root, None, ())  # lowering reports a tree that is too deep
+        _rolled[root] = found
     return found
 
 
