@@ -106,16 +106,12 @@ def _table(report: ValidationReport) -> Iterator[str]:
     parts = f"{table.count:,} parts of {kinds}"
     yield f"{parts} are drawn through a tree of boxes; one of each is shown"
     for kind in table.kinds[:MOST_ROWS]:
-        numbers = f"{kind.columns} numbers each{_place(kind.place)}"
-        yield f"  {kind.count:,} {kind.name}, {numbers}"
-    gathered = Counter((b.name, b.reason, _place(b.place)) for b in table.beside)
+        numbers = f"{kind.columns} numbers each"
+        yield f"  {kind.count:,} {kind.name}, {numbers}  {_line(kind.place)}".rstrip()
+    gathered = Counter((b.name, b.reason, _line(b.place)) for b in table.beside)
     for (name, reason, line), count in list(gathered.items())[:MOST_ROWS]:
         times = f" ({count} times)" if count > 1 else ""
-        yield f"  beside it: {name}{times}: {reason}{line}"
-
-
-def _place(place: Span | None) -> str:
-    return "" if place is None else f"  {place.file}:{place.line}"
+        yield f"  beside it: {name}{times}: {reason}  {line}".rstrip()
 
 
 def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
@@ -133,7 +129,7 @@ def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
             "  " * depth + row.node.name,
             f"slope {row.promised.slope:.3g}" + (" (estimate)" if row.node.estimate else ""),
             _claims(row),
-            f"{_box(row)}  {_line(row)}".rstrip(),
+            f"{_box(row)}  {_line(row.node.place)}".rstrip(),
         )
 
 
@@ -158,8 +154,7 @@ def _corner(corner: Sequence[float]) -> str:
     return f"({', '.join(f'{c:.3g}' for c in corner)})"
 
 
-def _line(row: ShapeReport) -> str:
-    place = row.node.place
+def _line(place: Span | None) -> str:
     return "" if place is None else f"{place.file}:{place.line}"
 
 
@@ -171,7 +166,7 @@ def _slope(report: ValidationReport) -> Iterator[str]:
     yield f"slope of '{whole.node.name}': {whole.promised.slope:.3g}"
     for i in reversed(report.slope_from):
         row = report.shapes[i]
-        where = f" at {_line(row)}" if row.node.place else ""
+        where = f" at {_line(row.node.place)}" if row.node.place else ""
         if row.children:
             yield (
                 f"  {described(row.node)} raises the slope from {row.raised:.3g} "

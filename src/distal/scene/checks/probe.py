@@ -19,7 +19,8 @@ from distal.lang.render_options import place_of_pixel
 from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
 from distal.render.march import OUT_OF_STEPS, PASSED
-from distal.scene.checks.validation import guarantee_names, place_json
+from distal.scene.checks.place_json import place_json
+from distal.scene.checks.validation import guarantee_names
 from distal.scene.lowering.attributes import ListedMaterial, Part
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.scene import Scene

@@ -19,7 +19,7 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.render_options import RenderOptions, place_of_pixel
 from distal.lang.runtime_access import executor
-from distal.scene.checks.validation import place_json
+from distal.scene.checks.place_json import place_json
 from distal.scene.lowering.local_views import Local, kept_values, locals_of, watched
 
 TYPES: Final[frozenset[Type]] = frozenset(

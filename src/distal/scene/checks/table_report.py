@@ -11,6 +11,7 @@ from typing import Any
 
 from distal.diagnostics import Span
 from distal.fields.combine.joins import UNION
+from distal.scene.checks.place_json import place_json
 from distal.scene.lowering.parts.kinds import leaves_of
 from distal.scene.lowering.parts.table import rolled
 from distal.scene.tree.node import Node
@@ -65,17 +66,19 @@ class TableReport:
         return {
             "parts": self.count,
             "kinds": [
-                {"name": k.name, "count": k.count, "columns": k.columns, "place": _place(k.place)}
+                {
+                    "name": k.name,
+                    "count": k.count,
+                    "columns": k.columns,
+                    "place": place_json(k.place),
+                }
                 for k in self.kinds
             ],
             "beside": [
-                {"name": b.name, "reason": b.reason, "place": _place(b.place)} for b in self.beside
+                {"name": b.name, "reason": b.reason, "place": place_json(b.place)}
+                for b in self.beside
             ],
         }
-
-
-def _place(place: Span | None) -> dict[str, Any] | None:
-    return None if place is None else {"file": place.file, "line": place.line}
 
 
 def _name(node: Node) -> str:

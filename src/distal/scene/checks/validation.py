@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Final
 
-from distal.diagnostics import Diagnostic, Span
+from distal.diagnostics import Diagnostic
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, Region, measure
+from distal.scene.checks.place_json import place_json
 from distal.scene.checks.table_report import TableReport, table_of
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
@@ -380,19 +381,6 @@ def _rounded_up(slope: float) -> str:
 
 
 # Plain values
-
-
-def place_json(span: Span | None) -> dict[str, Any] | None:
-    """Return a place with lines and columns counted from 1, as in editors."""
-    if span is None:
-        return None
-    return {
-        "file": span.file,
-        "line": span.line,
-        "column": span.col + 1,
-        "end_line": span.end_line or span.line,
-        "end_column": span.end_col + 1,
-    }
 
 
 def _shape_json(i: int, row: ShapeReport) -> dict[str, Any]:

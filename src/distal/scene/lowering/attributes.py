@@ -7,7 +7,7 @@ expression. Each attribute is computed once per hit, so subtrees do not share fu
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 from distal.fields.guarantees import Operator, Primitive
@@ -173,7 +173,7 @@ def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) 
     if site.footprint is not None:
         given["footprint"] = site.footprint
 
-    def make(inner: StatementList, _: int, of: PartKind) -> Expr:
+    def make(inner: StatementList, of: PartKind) -> Expr:
         footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
         here = AttributePoint(POINT, site.cell, composer.values.all(of.node), footprint)
         return kind.in_row(of, functions.ordinal, lambda: attribute(inner, kind, of.node, here))
@@ -347,6 +347,33 @@ class SurfaceAttribute(Attribute):
         return body.let("shown", surface)
 
 
+def _listed_for_each(
+    listed: list[Any],
+    make: Callable[[], Expr],
+    of_kind: Sequence[Any],
+    of_parts: Iterable[Sequence[Any]],
+    ordinal: Expr,
+) -> Expr:
+    """Return the place in a list, where what a kind's tree adds stands once for each part.
+
+    Args:
+        listed: The list.
+        make: Adds what the kind's tree shows, and returns its place.
+        of_kind: What the kind's tree consists of.
+        of_parts: What the trees of the parts consist of, in the same order.
+        ordinal: The number of the part among those of the kind, as a float.
+    """
+    first = len(listed)
+    found = make()
+    shown = listed[first:]
+    del listed[first:]
+    places = {id(each): i for i, each in enumerate(of_kind)}
+    for own in of_parts:
+        # The default material is in no tree.
+        listed += [own[places[id(e)]] if id(e) in places else e for e in shown]
+    return add(found, multiply(ordinal, number(float(len(shown)))))
+
+
 class ListedMaterial(SurfaceAttribute):
     """The material of a place, as its number in a list of all materials that are shown somewhere.
 
@@ -379,15 +406,8 @@ class ListedMaterial(SurfaceAttribute):
 
     def in_row(self, kind: PartKind, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own material."""
-        first = len(self.materials)
-        found = make()
-        shown = self.materials[first:]
-        del self.materials[first:]
-        places = {id(m): i for i, m in enumerate(materials_in(kind.node))}
-        for member in kind.members:
-            own = list(materials_in(member.part))
-            self.materials += [own[places[id(m)]] if id(m) in places else m for m in shown]
-        return add(found, multiply(ordinal, number(float(len(shown)))))
+        own = (list(materials_in(member.part)) for member in kind.members)
+        return _listed_for_each(self.materials, make, list(materials_in(kind.node)), own, ordinal)
 
 
 class MaterialNumber(ListedMaterial):
@@ -435,12 +455,5 @@ class Part(Attribute):
 
     def in_row(self, kind: PartKind, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own leaf."""
-        first = len(self.nodes)
-        found = make()
-        shown = self.nodes[first:]
-        del self.nodes[first:]
-        places = {id(leaf): i for i, leaf in enumerate(leaves_of(kind.node))}
-        for member in kind.members:
-            own = list(leaves_of(member.source))
-            self.nodes += [own[places[id(leaf)]] for leaf in shown]
-        return add(found, multiply(ordinal, number(float(len(shown)))))
+        own = (list(leaves_of(member.source)) for member in kind.members)
+        return _listed_for_each(self.nodes, make, list(leaves_of(kind.node)), own, ordinal)

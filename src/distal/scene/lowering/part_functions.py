@@ -30,7 +30,7 @@ PART: Final = Read("part", INT)
 POINT: Final = Read("p", VEC3)
 
 # Adds the statements of one kind, and returns its value.
-OfKind: TypeAlias = "Callable[[StatementList, int, PartKind], Expr]"
+OfKind: TypeAlias = "Callable[[StatementList, PartKind], Expr]"
 
 
 class PartFunctions:
@@ -64,7 +64,7 @@ class PartFunctions:
         """The number of ``PART`` among the parts of its kind, as a float."""
         return self._head("y")
 
-    def _distance(self, body: StatementList, number: int, kind: PartKind) -> Expr:
+    def _distance(self, body: StatementList, kind: PartKind) -> Expr:
         composer = self._composer
         return composer.distance(body, kind.node, POINT, ZERO_CELL, composer.values.all(kind.node))
 
@@ -96,7 +96,7 @@ class PartFunctions:
         known = known if len(kinds) == 1 else body.let("kind", known)
         for k, kind in enumerate(kinds):
             inner = StatementList(taken={n for n, _ in params})
-            inner.statements.append(Return(make(inner, k, kind)))
+            inner.statements.append(Return(make(inner, kind)))
             stem = f"{name}_{k}"
             own = assembly.define(stem, declared, result, inner.statements, kind.node.place)
             call = Return(Call(own, arguments, result))
