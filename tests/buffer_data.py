@@ -1,4 +1,4 @@
-"""What a host puts into a buffer: the text's own tables, else what the caller has."""
+"""Texts of the program that the CPU runs, and what a host puts into their buffers."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.backends import Artifact, emit, get_target
+from distal.compiler.driver import run_passes
 from distal.frontend import lower
 from distal.ir.types import Buffer
+from distal.lang.composed import Composed
 
 
 def buffer_data(entry: dict[str, Any], buffers: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
@@ -28,3 +31,15 @@ def buffers_of(image: Any) -> dict[str, NDArray[Any]]:
     """The author's buffers of a picture, and the tables of its parts, by name."""
     resources = lower(image).resources
     return {r.name: np.asarray(r.source.data) for r in resources if isinstance(r.type, Buffer)}
+
+
+def text_of(image: Any, target: str) -> Artifact:
+    """The text of the program that the CPU runs: with a table of parts where that has one.
+
+    ``distal.compile`` leaves out the tables of fewer than 256 parts: another program, whose
+    silhouettes may differ by a pixel.
+    """
+    whole = image.text() if isinstance(image, Composed) else image
+    description = get_target(target)
+    table = {} if description.buffers else {"table_from": None}
+    return emit(run_passes(lower(whole, **table), description), description)

@@ -72,8 +72,16 @@ def cell(tmp_path, widget):
         yield looked
 
 
-def received(looked, widget):
-    """What the browser said, told to Python; all of it at once."""
+def received(looked, widget, *, any_at_all=True):
+    """What the browser said, told to Python; all of it at once.
+
+    Args:
+        looked: The page.
+        widget: Python's side.
+        any_at_all: Wait until it said something, however slow it is.
+    """
+    if any_at_all:
+        looked.page.wait_for_function("sent.length > 0")
     looked.page.wait_for_timeout(250)
     said = {}
     for message in looked.page.evaluate("sent.splice(0)"):
@@ -101,7 +109,7 @@ def test_a_slider_reaches_python_and_python_the_slider(tmp_path):
         assert handle.input_value() == "100"
         assert looked.beside(viewable(scene)).is_agreement
         # What Python said is not said back to it.
-        assert received(looked, widget) == {}
+        assert received(looked, widget, any_at_all=False) == {}
 
 
 def test_a_hand_on_the_picture_moves_pythons_camera(tmp_path):

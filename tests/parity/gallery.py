@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import distal
-from distal.backends.base import Artifact
+from distal.backends import Artifact
 from tests import webgl
-from tests.buffer_data import buffers_of
+from tests.buffer_data import buffers_of, text_of
 from tests.pictures.comparison import MOST_FAR_OFF, MOST_MEAN, as_bytes, difference
 
 TIMES: Final = (0.0, 2.9, 11.3)
@@ -100,7 +100,7 @@ def is_function_of_a_pixel(example: str) -> bool:
 @cache
 def program(example: str, target: str = "glsl-es300") -> Artifact:
     """The text for a target."""
-    return distal.compile(image(example), target=target)
+    return text_of(image(example), target)
 
 
 @cache

@@ -12,7 +12,7 @@ from functools import cache
 import pytest
 
 import distal
-from tests.buffer_data import buffers_of
+from tests.buffer_data import buffers_of, text_of
 from tests.pictures.comparison import difference
 
 SIZE = (160, 120)
@@ -70,7 +70,7 @@ def image(example):
 
 @cache
 def artifact(example, target):
-    return distal.compile(image(example), target=target)
+    return text_of(image(example), target)
 
 
 @cache
