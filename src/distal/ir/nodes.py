@@ -535,8 +535,8 @@ class Function:
         native: The built-in, with the same arguments, that this function replaces on a target with
             inaccurate built-ins (``Target.rough``). A shader text may let its host select the
             driver's own function instead. None: it replaces no built-in.
-        apart: Whether the function is a piece of a longer function that was cut; a backend must not
-            inline it again.
+        apart: Whether the function is never inlined, and called for each vector: a piece of a
+            longer function that was cut, or a long function that few pixels need.
         span: The place in the author's code.
     """
 

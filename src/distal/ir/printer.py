@@ -140,6 +140,7 @@ def _function_lines(function: Function) -> list[str]:
     writer.block(1, function.body)
     name = function.name
     said = "" if function.source_name == name else f" of {function.source_name}"
+    said += " apart" if function.apart else ""
     return [f"fn {name}({params}) -> {function.result}{said}", *writer.lines]
 
 

@@ -62,8 +62,8 @@ DEEPEST = 200
 # The passes in order (``distal.passes.pipeline``), and what is absent after each of them.
 _STAGES = (
     *("entry", "specialise", "gradient", "decompose", "specialise-prelude", "bounds"),
-    *("fold", "frequency", "inline", "fold-inlined", "tables", "share", "predicate"),
-    *("outline", "one-way"),
+    *("fold", "frequency", "inline", "fold-inlined", "tables", "share"),
+    *("split-structs", "predicate", "outline", "one-way"),
 )
 _NO_FRAME = frozenset(_STAGES)
 _NO_FUNCTION_VALUES = frozenset(_STAGES[1:])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -31,11 +31,13 @@ class Overload:
         source: Its source text.
         enclosing: A copy of the locals of the function that it was defined in: a type that is
             used only in an annotation is not in the closure.
+        apart: Whether it is compiled apart from its callers; see ``apart``.
     """
 
     python: FunctionType
     source: Source
     enclosing: Mapping[str, Any]
+    apart: bool = False
 
 
 class Func:
@@ -146,6 +148,15 @@ class Image(Func, Presentable):
 def func(function: Callable[..., Any]) -> Func:
     """Record a Python function as scene code."""
     return Func(_record(function, "@func", sys._getframe(1)))
+
+
+def apart(function: Func) -> Func:
+    """Mark a long function that few of the pixels computed together need, as ``@apart``.
+
+    The CPU calls it for each vector of pixels, and skips vectors that do not need it.
+    """
+    function.overloads = [replace(o, apart=True) for o in function.overloads]
+    return function
 
 
 def image(function: Callable[..., Any]) -> Image:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from distal.ir.nodes import Module
-from distal.passes import bounds, entry, one_way, outline, predicate
+from distal.passes import bounds, entry, one_way, outline, predicate, split_structs
 from distal.passes.context import Context
 from distal.passes.decompose import decompose
 from distal.passes.fold import fold
@@ -36,6 +36,7 @@ PIPELINE: Final[tuple[tuple[str, Pass], ...]] = (
     ("fold-inlined", fold.run),
     ("tables", tables.run),
     ("share", share.run),
+    ("split-structs", split_structs.run),
     ("predicate", predicate.run),
     ("outline", outline.run),
     ("one-way", one_way.run),

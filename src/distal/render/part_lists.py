@@ -39,32 +39,38 @@ from distal.render.part_tree import (
 from distal.render.shadow_ray import NEARLY, OPEN
 
 # The most parts that a list has; where more are near, the whole tree is searched.
-MOST_LISTED = 16
+MOST_LISTED = 32
 
 
 @struct
 class PartList:
-    """The parts near a ray or a point.
-
-    There are two lists, because the CPU computes many pixels together: the parts that are near any
-    of their rays, which all pixels read at once, and those near this ray. The second one is used
-    where the first has no room.
+    """The parts near any of the rays or points that are computed together.
 
     Attributes:
-        count: How many parts are near any ray.
+        count: How many there are.
         boxes: The numbers of their boxes in the tree, of ``MOST_LISTED`` at most.
-        own: The bits of those that are near this ray.
-        own_count: How many are near this ray.
-        own_parts: The parts near this ray, ``MOST_LISTED`` at most.
+    """
+
+    count: int
+    boxes: array[int, 32]  # type: ignore[valid-type]
+
+
+@struct
+class NearParts:
+    """The parts near a ray or a point.
+
+    The list is that of all rays that the CPU computes together, so that all read the same rows; a
+    ray's own parts are bits, so that its result does not depend on the others.
+
+    Attributes:
+        listed: The parts near any ray.
+        own: The bits of those in the list that are near this ray.
         bounds: The box around them.
         hidden: Whether one part alone hides all of a cone.
     """
 
-    count: int
-    boxes: array[int, 16]  # type: ignore[valid-type]
+    listed: PartList
     own: int
-    own_count: int
-    own_parts: array[int, 16]  # type: ignore[valid-type]
     bounds: Bounds
     hidden: bool = False
 
@@ -112,7 +118,7 @@ def parts_along(
     start: float,
     end: float,
     steps: int,
-) -> PartList:
+) -> NearParts:
     """Return the parts that may hide a part of a cone.
 
     Args:
@@ -126,10 +132,8 @@ def parts_along(
     """
     inverse = inverse_of(ray.direction)
     listed = [0] * MOST_LISTED
-    own_parts = [0] * MOST_LISTED
     count = 0
     own = 0
-    own_count = 0
     hidden = False
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
@@ -161,19 +165,13 @@ def parts_along(
                     if count < MOST_LISTED:
                         listed[count] = box
                         own = select(beside, own | (1 << count), own)
-                    if beside:
-                        if own_count < MOST_LISTED:
-                            own_parts[own_count] = part
-                        own_count += 1
                     count += 1
         box = following
-    return PartList(
-        count, listed, own, own_count, own_parts, Bounds(around_low, around_high), hidden
-    )
+    return NearParts(PartList(count, listed), own, Bounds(around_low, around_high), hidden)
 
 
 @func
-def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
+def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> NearParts:
     """Return the parts whose boxes are near a point.
 
     Args:
@@ -182,10 +180,8 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
         reach: The largest distance.
     """
     listed = [0] * MOST_LISTED
-    own_parts = [0] * MOST_LISTED
     count = 0
     own = 0
-    own_count = 0
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
     box = 0
@@ -205,20 +201,17 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> PartList:
                 if count < MOST_LISTED:
                     listed[count] = box
                     own = select(meets, own | (1 << count), own)
-                if meets:
-                    if own_count < MOST_LISTED:
-                        own_parts[own_count] = int(high.w)
-                    own_count += 1
                 count += 1
         box = following
-    return PartList(count, listed, own, own_count, own_parts, Bounds(around_low, around_high))
+    return NearParts(PartList(count, listed), own, Bounds(around_low, around_high))
 
 
 @func
 def distance_to_listed(
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
-    near: PartList,
+    listed: PartList,
+    own: int,
     p: vec3,
     most: float,
 ) -> float:
@@ -227,24 +220,19 @@ def distance_to_listed(
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
-        near: The list; if it is not complete, all parts count.
+        listed: The list; if it is not complete, all parts count.
+        own: The bits of the parts that count.
         p: The point.
         most: The largest distance that is of interest.
     """
     best = most
-    if near.count <= MOST_LISTED:
-        for i in range(near.count):
-            box = near.boxes[i]
-            high = boxes[2 * box + 1]
-            is_own = (near.own >> i & 1) == 1
-            if anywhere(is_own and beyond_box(p, boxes[2 * box], high) <= squared(best)):
-                best = select(is_own, min(best, distance(p, int(high.w))), best)
-    elif anywhere(near.own_count > MOST_LISTED):
+    if listed.count > MOST_LISTED:
         best = nearest_part(boxes, distance, p, NearestPart(best, -1)).distance
     else:
-        for i in range(MOST_LISTED):
-            if not anywhere(i < near.own_count):
-                break
-            if i < near.own_count:
-                best = min(best, distance(p, near.own_parts[i]))
+        for i in range(listed.count):
+            box = listed.boxes[i]
+            high = boxes[2 * box + 1]
+            is_own = (own >> i & 1) == 1
+            if anywhere(is_own and beyond_box(p, boxes[2 * box], high) <= squared(best)):
+                best = select(is_own, min(best, distance(p, int(high.w))), best)
     return best

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from distal.fields.boxes import hull
 from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import Buffer, func, length, max, min, vec3, vec4
-from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
@@ -64,16 +63,18 @@ def edge_of_parts(
     near = parts_along(boxes, distance, ray, width, numbers.threshold, end, steps)
     if near.hidden:
         return Edge(-OPEN, True, False)
-    if near.count == 0 and not has_others:
+    listed = near.listed
+    own = near.own
+    if own == 0 and listed.count <= MOST_LISTED and not has_others:
         return Edge(OPEN, True, False)
-    if near.count > 0 and not needs_offset:
+    if own != 0 and not needs_offset:
         return Edge(0.0, False, False)
 
     def nearest(p: vec3) -> float:
         most = UNBOUNDED
-        if anywhere(near.own_count > MOST_LISTED):
+        if listed.count > MOST_LISTED:
             most = distance(p, near_leaf(boxes, p))
-        d = distance_to_listed(boxes, distance, near, p, most)
+        d = distance_to_listed(boxes, distance, listed, own, p, most)
         if has_others:
             d = min(d, others(p))
         return d
@@ -181,11 +182,13 @@ def occlusion_of_parts(
     """
     reach = look.occlusion * max(slope, 1.0)
     near = parts_around(boxes, p, reach)
+    listed = near.listed
+    own = near.own
 
     def nearest(q: vec3) -> float:
         # The surface at p is not farther away.
         most = max(slope, 1.0) * length(q - p)
-        d = distance_to_listed(boxes, distance, near, q, most)
+        d = distance_to_listed(boxes, distance, listed, own, q, most)
         if has_others:
             d = min(d, others(q))
         return d

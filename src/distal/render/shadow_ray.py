@@ -25,6 +25,7 @@ from distal.lang import (
     vec2,
     vec3,
 )
+from distal.lang.functions import apart
 from distal.render.camera import Ray
 from distal.render.march import MOST_STEPS, March, crossing
 
@@ -299,6 +300,7 @@ def pass_surfaces(
     return Passage(share, closest, chord, t)
 
 
+@apart
 @func
 def find_edge(
     field: Field3,

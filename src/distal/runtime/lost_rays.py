@@ -44,10 +44,15 @@ class LostRays:
             pixels: Linear light, (height, width, 4); changed in place.
         """
         alpha = pixels[..., 3]
-        lost = np.floor((np.nan_to_num(alpha) + lost_rays.LOWEST) / lost_rays.MARK)
-        alpha -= np.float32(lost_rays.MARK) * lost
-        self.marks += np.bincount(lost.astype(np.int64).ravel() & 15, minlength=_COMBINATIONS)
-        self.pixels += lost.size
+        low, mark = np.float32(-lost_rays.LOWEST), np.float32(lost_rays.MARK)
+        # Few pixels have marks.
+        where = np.nonzero(~((alpha >= low) & (alpha < mark + low)))
+        lost = np.floor((np.nan_to_num(alpha[where]) - low) / mark)
+        alpha[where] -= mark * lost
+        counts = np.bincount(lost.astype(np.int64) & 15, minlength=_COMBINATIONS)
+        counts[0] += alpha.size - lost.size
+        self.marks += counts
+        self.pixels += alpha.size
 
     @property
     def shares(self) -> dict[str, float]:

@@ -182,7 +182,13 @@ def lower_function(
     instance.result = result
     compilation.functions.append(
         Function(
-            instance.name, tuple(params), result, statements, signature.name, span=signature.span
+            instance.name,
+            tuple(params),
+            result,
+            statements,
+            signature.name,
+            apart=signature.overload.apart,
+            span=signature.span,
         )
     )
 

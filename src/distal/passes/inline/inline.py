@@ -72,7 +72,7 @@ def run(module: Module, context: Context) -> Module:
         functions.append(inlined)
         costs[function.name] = block_cost(inlined.body, costs)
         straight = straighten(inlined, FreshNames(local_names(inlined)).fresh(RESULT), Costs(costs))
-        if straight is not None:
+        if straight is not None and not function.apart:
             callees[function.name] = _Callee(inlined, straight, costs[function.name])
     return drop_unused(replace(module, functions=tuple(functions)))
 
