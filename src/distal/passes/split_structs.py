@@ -23,13 +23,14 @@ from distal.ir.walk import (
 from distal.passes.context import Context
 from distal.passes.dead_code import remove_dead
 from distal.passes.naming import FreshNames, local_names
+from distal.passes.reachable import drop_unused
 
 
 def run(module: Module, context: Context) -> Module:
     """Split the structs of every function, if the target computes pixels in lockstep."""
     if not context.target.predicated:
         return module
-    return replace(module, functions=tuple(map(split, module.functions)))
+    return drop_unused(replace(module, functions=tuple(map(split, module.functions))))
 
 
 def split(function: Function) -> Function:

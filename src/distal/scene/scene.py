@@ -8,6 +8,7 @@ that encodes light for display. The cheapest renderer that supports all material
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from distal.fields.guarantees import Limit
@@ -231,14 +232,13 @@ class Scene(Composed, Presentable):
             raise AttributeError("a scene does not change; make another: Scene(shape, …)")
         object.__setattr__(self, name, value)
 
-    @property
+    @cached_property
     def renderer(self) -> str:
         """The name of the cheapest renderer that supports all materials."""
-        found = [n.material for n in self.shape.node.walk() if n.material is not None]
-        found += [n.cut_material for n in self.shape.node.walk() if n.cut_material is not None]
-        found.append(self.material)
         if self.bounces == 0:
             return "plain"
+        given = (m for n in self.shape.node.walk() for m in (n.material, n.cut_material))
+        found = [self.material, *(m for m in given if m is not None)]
         if any(m.refracts for m in found):
             return "refracted"
         return "mirrored" if any(m.reflects for m in found) else "plain"

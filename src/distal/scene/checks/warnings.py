@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from typing import Any, Final
-from weakref import WeakSet
+from typing import Any, Final, NamedTuple
+from weakref import WeakKeyDictionary, WeakSet, ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,41 @@ LOOSE: Final = 1.5
 # The largest share of pixels with lost rays that gives no warning.
 MOST_LOST: Final = 1e-3
 
+
+
+class _Suspects(NamedTuple):
+    """The nodes of a tree that are checked before a picture.
+
+    Attributes:
+        own: The author's functions without a known slope.
+        endless: Moving operators that have a slope only for some children.
+    """
+
+    own: tuple[ref[Node], ...]
+    endless: tuple[ref[Node], ...]
+
+
 _looked_at: WeakSet[Node] = WeakSet()
+# Trees do not change, and a tree of 100,000 parts takes longer to walk than to draw.
+_suspects: WeakKeyDictionary[Node, _Suspects] = WeakKeyDictionary()
+
+
+def _suspects_of(root: Node) -> _Suspects:
+    found = _suspects.get(root)
+    if found is None:
+        own: list[ref[Node]] = []
+        endless: list[ref[Node]] = []
+        for node in root.walk():
+            if isinstance(node.rule, Primitive) and node.rule.slope is given_slope:
+                own.append(ref(node))
+            if may_be_endless(node) and _moves(node):
+                endless.append(ref(node))
+        found = _suspects[root] = _Suspects(tuple(own), tuple(endless))
+    return found
+
+
+def _alive(nodes: tuple[ref[Node], ...]) -> list[Node]:
+    return [node for at in nodes if (node := at()) is not None]
 
 
 def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
@@ -63,9 +97,8 @@ def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) 
     Raises:
         SceneValueError: A function returns NaN at all points.
     """
-    for node in shape.node.walk():
-        own = isinstance(node.rule, Primitive) and node.rule.slope is given_slope
-        if own and node not in _looked_at:
+    for node in _alive(_suspects_of(shape.node).own):
+        if node not in _looked_at:
             _look(node, params, time)
             _looked_at.add(node)
 
@@ -83,7 +116,7 @@ def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> No
     Raises:
         SceneValueError: At the line of the first operator whose children still have a bound.
     """
-    risky = [n for n in shape.node.walk() if may_be_endless(n) and _moves(n)]
+    risky = _alive(_suspects_of(shape.node).endless)
     if not risky:
         return
     promised = bounds_of_nodes(shape.node, _read(shape, params), time)
