@@ -36,7 +36,7 @@ def walk(tree, box, inside):
 def test_every_part_is_below_boxes_around_it(count, seed):
     low, high = boxes(count, seed)
     parts = 7 + 3 * np.arange(count)
-    tree = box_tree(low, high, parts)
+    tree = box_tree(low, high, parts).filled(low, high)
     assert tree.shape == (2 * (2 * count - 1), 4) and tree.dtype == np.float32
     everywhere = (np.full(3, -np.inf), np.full(3, np.inf))
     assert sorted(walk(tree, 0, everywhere)) == parts.tolist()
@@ -48,7 +48,7 @@ def test_every_part_is_below_boxes_around_it(count, seed):
 
 def test_the_depth_grows_with_the_logarithm():
     low, high = boxes(5000, 1)
-    tree = box_tree(low, high, np.arange(5000))
+    tree = box_tree(low, high, np.arange(5000)).filled(low, high)
 
     def depth(box):
         if tree[2 * box + 1, 3] >= 0:
@@ -61,6 +61,7 @@ def test_the_depth_grows_with_the_logarithm():
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_a_box_is_halved_where_it_is_longest(count):
     middles = np.array([[0.0, 5.0, 0.1], [0.1, 0.0, 0.0], [0.0, 9.0, 0.2]])[:count]
-    tree = box_tree(middles - 0.1, middles + 0.1, np.arange(count))
+    low, high = middles - 0.1, middles + 0.1
+    tree = box_tree(low, high, np.arange(count)).filled(low, high)
     order = [int(part) for part in tree[1::2, 3] if part >= 0]
     assert order == {1: [0], 2: [1, 0], 3: [1, 0, 2]}[count]

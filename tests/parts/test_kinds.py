@@ -8,9 +8,15 @@ import pytest
 from distal import Box, Material, Plane, Shape, Sphere, Torus, stripes, time
 from distal.lang import func, length, slider, vec3
 from distal.scene.lowering.parts.flatten import members_of
-from distal.scene.lowering.parts.kind_boxes import boxes_of, columns_of
+from distal.scene.lowering.parts.kind_boxes import bounds_of, columns_of
 from distal.scene.lowering.parts.kinds import HEAD, kinds_of
-from distal.scene.lowering.parts.table import INFINITE, LEAST_PARTS, MOVING, RARE, UNSAFE, rolled
+from distal.scene.lowering.parts.table import (
+    ENDLESS_MOTION,
+    INFINITE,
+    LEAST_PARTS,
+    RARE,
+    rolled,
+)
 
 
 def kinds(*shapes):
@@ -91,18 +97,12 @@ def test_fewer_parts_have_no_table():
 
 
 def test_what_cannot_be_in_a_table_stays_beside_it_in_order():
-    wave = Shape.from_function(ripples, slope=2.0, bounds=((-1, -1, -1), (1, 1, 1)))
-    others = [Plane(y=-1), Sphere(0.2 + 0.1 * time), wave]
+    others = [Plane(y=-1), Sphere(0.2 + 0.1 * time), Sphere(0.1).translate(y=-3.0 * time)]
     found = rolled(row()[0].union([*row()[1:8], *others, *row()[8:]]).node)
     assert found.table is not None and found.table.count == LEAST_PARTS
     names = [(m.source.rule.name, why) for m, why in found.beside]
-    assert names == [("Plane", INFINITE), ("Sphere", MOVING), ("ripples", UNSAFE)]
-    assert [c.rule.name for c in found.node.children] == ["parts", "Plane", "Sphere", "ripples"]
-
-
-@func
-def ripples(p: vec3) -> float:
-    return 2.0 * (length(p) - 0.5)
+    assert names == [("Plane", INFINITE), ("Sphere", ENDLESS_MOTION), ("translate", ENDLESS_MOTION)]
+    assert [c.rule.name for c in found.node.children] == ["parts", *(name for name, _ in names)]
 
 
 def test_of_many_kinds_the_most_frequent_are_in_the_table():
@@ -126,8 +126,9 @@ def test_boxes_hold_their_parts():
         for a, b in rng.uniform(-3, 3, (20, 2))
     ]
     (kind,) = kinds(*shapes)
-    low, high, slope = boxes_of(kind)
-    assert slope == 1.0
+    found = bounds_of(kind)
+    low, high = found.low, found.high
+    assert (found.slope == 1.0).all() and (found.divisor == 1.0).all()
     points = rng.uniform(-3, 3, (20000, 3))
     for shape, a, b in zip(shapes, low, high, strict=True):
         inside = points[shape(points) <= 0.0]

@@ -152,7 +152,7 @@ def test_distances_are_those_of_the_parts():
     assert high == pytest.approx(np.max([s.bounds()[1] for s in shapes], axis=0), abs=1e-5)
 
 
-def test_a_part_that_a_slider_moves_is_beside_the_table():
+def test_a_slider_moves_a_part_of_the_table():
     ball = Sphere(0.3).translate(slider("x", 0.0, low=-2.0, high=2.0), 1.0, 0.0).paint("red")
     dots = [Sphere(0.1).translate(0.3 * i - 2.0, 0.0, 0.0) for i in range(16)]
     scene = Scene(dots[0].union([*dots[1:], ball]), camera=EYE, lights=SUN)

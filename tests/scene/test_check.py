@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from distal import Box, Hexagon, Plane, Scene, Shape, Sphere
+from distal import Box, Hexagon, Plane, Scene, Shape, Sphere, time
 from distal.lang import func, length, max, sin, slider, vec3
 from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.checks.measuring import measure
@@ -262,15 +262,32 @@ def test_one_part_of_each_kind_is_checked():
     names = [row.node.name for row in found.shapes]
     assert names == ["union", "translate", "Sphere", "peg", "Box", "wobbly", "Plane"]
     assert codes(found) == [("slope-exceeded", "wobbly")]
-    assert found.table is not None and found.table.count == 430
+    assert found.table is not None and found.table.count == 431
     assert [(k.name, k.count, k.columns) for k in found.table.kinds] == [
         ("Sphere", 400, 4),
         ("peg", 30, 3),
+        ("wobbly", 1, 0),
     ]
     beside = [(b.name, b.reason) for b in found.table.beside]
-    assert beside == [("wobbly", "its values need a divisor"), ("Plane", "it has no finite box")]
+    assert beside == [("Plane", "it has no finite box")]
     assert found.table.kinds[0].place.line == found.shapes[1].node.place.line
-    assert json.loads(json.dumps(found.as_json()))["table"]["parts"] == 430
+    assert json.loads(json.dumps(found.as_json()))["table"]["parts"] == 431
+
+
+def test_parts_that_move_are_in_the_table_if_a_box_holds_them():
+    waves = [Sphere(0.1).translate(0.3 * i, 0.1 * sin(time + 0.1 * i), 0.0) for i in range(20)]
+    falling = Sphere(0.1).translate(0.0, -2.0 * time, 0.0).named("drop")
+    speed = Shape.from_function(half_a_ball, slope=2.0 + time, bounds=BOX)
+    found = check(waves[0].union([*waves[1:], falling, speed]))
+    assert found.table is not None
+    assert [(k.name, k.count, k.columns) for k in found.table.kinds] == [("Sphere", 20, 2)]
+    assert [(b.name, b.reason) for b in found.table.beside] == [
+        ("drop", "no finite box holds it at all times and for all values of its parameters"),
+        (
+            "half_a_ball",
+            "no divisor of its values is known for all times and values of its parameters",
+        ),
+    ]
 
 
 def test_plain_values_are_json_without_infinity():

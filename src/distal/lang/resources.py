@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, ClassVar
@@ -99,6 +99,22 @@ class Buffer:
     def __class_getitem__(cls, item: Any) -> BufferAnnotation:
         """Return the annotation for a buffer parameter."""
         return BufferAnnotation(item)
+
+
+class MovingBuffer(Buffer):
+    """A buffer whose numbers a host may compute for each picture.
+
+    Its own ``data`` are right for all pictures, so a host that computes nothing reads them.
+    """
+
+    def at(self, params: Mapping[str, Any], time: float) -> Any:
+        """Return the numbers of one picture, an array like ``data``.
+
+        Args:
+            params: Values of parameters by name; the others have their defaults.
+            time: Seconds.
+        """
+        raise NotImplementedError
 
 
 def _element(data: Any) -> Type:

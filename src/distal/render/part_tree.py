@@ -175,16 +175,20 @@ def part_at(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3
 
 @func
 def distance_to_parts(
-    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    field: Callable[[vec3, int], float],
+    p: vec3,
 ) -> float:
-    """Return the signed distance of a point to the nearest part.
+    """Return the value of the field of the part nearest to a point.
 
     Args:
         boxes: The tree.
-        distance: The signed distance of a point to a part.
+        distance: The signed distance of a point to a part, by which the part is found.
+        field: The field of a part; the same as ``distance`` if its values are distances.
         p: The point.
     """
-    return distance(p, part_at(boxes, distance, p))
+    return field(p, part_at(boxes, distance, p))
 
 
 @func
@@ -307,7 +311,7 @@ def first_of_parts(
     if other.side < 0.0 or contains(boxes, distance, ray.origin):
 
         def field(p: vec3) -> float:
-            return min(distance_to_parts(boxes, distance, p), others_field(p))
+            return min(distance_to_parts(boxes, distance, distance, p), others_field(p))
 
         way = march(field, ray, everywhere(), numbers, steps)
         end = ray.origin + way.t * ray.direction

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -32,6 +32,7 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
 from distal.lang.render_options import Progress, RenderOptions, checked_time
+from distal.lang.resources import MovingBuffer
 from distal.loading import loaded_from
 from distal.render import film
 from distal.runtime import glow, sampling
@@ -44,11 +45,17 @@ from distal.runtime.lowered import Lowered, Types
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 if TYPE_CHECKING:
+    from distal.devices.cpu import CpuKernel
     from distal.devices.gpu import GpuKernel
-    from distal.runtime import fills
+    from distal.runtime import fills, sweeps
     from distal.tape.proofs import Proof
 else:
     fills = LazyModule("distal.runtime.fills")
+    sweeps = LazyModule("distal.runtime.sweeps")
+
+
+# The fewest rows of ``PythonExecutor.evaluate`` that several threads evaluate.
+_ROWS_OF_A_THREAD: Final = 16384
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +142,8 @@ class PythonExecutor:
             kept = film.PASS_NUMBERS if adaptive else ()
             parts = tuple(part.frozen(numbers, kept) for part in parts)
         kernels = [self.kernels.kernel(part, device, 32) for part in parts]
-        passes = _Passes(kernels, parts, run.declared, (values, others), options)
+        moved = _moved(parts[0].resources, values, options.time)
+        passes = _Passes(kernels, parts, run.declared, (values, others), options, moved)
         contrast = self._contrast(device) if adaptive else None
         compiled = time.perf_counter()
         linear: NDArray[np.float32] | None = None
@@ -211,7 +219,8 @@ class PythonExecutor:
         """
         run = self._parts(image)
         assert len(run.parts) == 1, "a window shows display values"
-        uniforms = run.declared.for_kernel(0, *_uniforms(run.declared, options))
+        values, others = _uniforms(run.declared, options)
+        uniforms = run.declared.for_kernel(0, values, others)
         device = GPU_FRAGMENT if target.adapter is None else f"{GPU_FRAGMENT}:{target.adapter}"
         kernel = cast("GpuKernel", self.kernels.kernel(run.parts[0], device, 32))
         kernel.draw(
@@ -219,7 +228,7 @@ class PythonExecutor:
             target.format,
             *options.size,
             uniforms,
-            run.parts[0].resources,
+            _moved(run.parts[0].resources, values, options.time),
             samples=(options.settings or {}).get(film.SAMPLES, 1),
             progress=options.progress,
             cancel=options.cancel,
@@ -267,6 +276,44 @@ class PythonExecutor:
             kernel = self.kernels.kernel(lowered, REFERENCE, 64)
         result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
+
+    def evaluate(
+        self,
+        function: Composed,
+        columns: Sequence[NDArray[Any]],
+        params: Mapping[str, Any],
+        time: float,
+    ) -> Any:
+        """Return the values of a function for many rows, by compiled code of the CPU.
+
+        Args:
+            function: The function.
+            columns: The values of each of its parameters, one row each.
+            params: Values of parameters by name; those that it does not read are left out.
+            time: Seconds.
+        """
+        lowered = self._lower(function, None)
+        kernel = cast("CpuKernel", self.kernels.kernel(lowered, CPU, 32))
+        declared = DeclaredUniforms([lowered.module])
+        known = {p.name: params[p.name] for p in declared.parameters if p.name in params}
+        values = _all_values(declared, known, time)
+        # To start a thread takes longer than to evaluate a few rows.
+        few = len(columns) > 0 and len(columns[0]) < _ROWS_OF_A_THREAD
+        return kernel.evaluate(columns, values, lowered.resources, here=few)
+
+    def sweep(
+        self, function: Composed, columns: Sequence[NDArray[np.float64]]
+    ) -> list[sweeps.Ends]:
+        """Return the ends of each float of a function's result at all times.
+
+        They hold for all values of parameters in their declared ranges, too; an end that is not
+        known is infinite.
+
+        Args:
+            function: The function.
+            columns: The values of each of its parameters, one row each.
+        """
+        return sweeps.sweep(self._lower(function, None), columns)
 
     def fill(
         self,
@@ -383,6 +430,7 @@ class _Passes:
     declared: DeclaredUniforms
     values: tuple[Mapping[str, Any], Mapping[str, Any]]
     options: RenderOptions
+    resources: Mapping[str, Any]
     lost: LostRays = field(default_factory=LostRays)
 
     def light(
@@ -398,11 +446,11 @@ class _Passes:
         """
         parameters, others = self.values
         changed = {**others, **numbers, "resolution": (float(size[0]), float(size[1]))}
-        resources = self.parts[0].resources
+        own = self.parts[0].resources
         pixels = self.kernels[0].render(
             *size,
             self.declared.for_kernel(0, parameters, changed),
-            {name: buffers.get(source, source) for name, source in resources.items()},
+            {name: buffers.get(own[name], now) for name, now in self.resources.items()},
             threads=self.options.threads,
             progress=progress,
             cancel=self.options.cancel,
@@ -427,6 +475,16 @@ class _Passes:
         """Return the contrast of each pixel of display values with its neighbours."""
         height, width, _ = shown.shape
         return _over(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
+
+
+def _moved(
+    resources: Mapping[str, Any], params: Mapping[str, Any], seconds: float
+) -> dict[str, Any]:
+    """Return resources in which buffers of what moves have the numbers of one picture."""
+    return {
+        name: source.at(params, seconds) if isinstance(source, MovingBuffer) else source
+        for name, source in resources.items()
+    }
 
 
 def _over(

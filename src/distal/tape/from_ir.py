@@ -98,17 +98,46 @@ def tape_of(
     return walker.scalars.builder.tape(walker.scalars.value(result))
 
 
+def followed(
+    module: Module,
+    args: Sequence[Scalars_],
+    uniforms: Mapping[str, Scalars_],
+    resources: Mapping[str, Any],
+    scalars: Scalars,
+) -> Scalars_:
+    """Return the scalars of a function's result.
+
+    Args:
+        module: The module.
+        args: The scalars of each parameter of its entry.
+        uniforms: The scalars of uniforms by name; the others have their defaults.
+        resources: Buffers by name: arrays with one row for each element.
+        scalars: Computes with scalars.
+
+    Raises:
+        TapeError: The function has something that cannot be followed; see ``tape_of``.
+    """
+    walker = _CallFollower(module, {}, resources, scalars, uniforms)
+    return walker.function(module.function(module.entry), args)
+
+
 class _CallFollower:
     """Follows a function from its entry."""
 
     def __init__(
-        self, module: Module, uniforms: Mapping[str, Any], resources: Mapping[str, Any]
+        self,
+        module: Module,
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        scalars: Scalars | None = None,
+        known: Mapping[str, Scalars_] | None = None,
     ) -> None:
-        self.scalars = Scalars()
+        self.scalars = scalars or Scalars()
         self._functions = {f.name: f for f in module.functions}
         self._uniforms = {
             u.name: _flat(uniforms.get(u.name, u.default), u.type) for u in module.uniforms
         }
+        self._uniforms |= known or {}
         self._resources = resources
         self._constant_resources = {r.name: r.values for r in module.resources if r.values}
         self._frame: Environment = {}

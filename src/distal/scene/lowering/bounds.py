@@ -175,8 +175,9 @@ class BoundsComposer:
             self._values.fixed("parts_high", VEC3, table.high),
         )
         slope = constant_number(table.slope)
+        divisor = constant_number(table.divisor) if table.needs_factors else ONE
         box = Construct(corners, self._values.assembly.struct(Bounds))
-        return ShapeBounds(slope, ONE, box, UNKNOWN, UNKNOWN)
+        return ShapeBounds(slope, divisor, box, UNKNOWN, UNKNOWN)
 
     def of_operator(
         self,

@@ -10,15 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from distal.ir.build import add, cast, compare, index, integer, swizzle
+from distal.ir.build import add, cast, compare, index, integer, multiply, swizzle
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Param, Read, Return
-from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Kind, Type, Vector
+from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Kind, Type
 from distal.render import part_tree
-from distal.scene.lowering.parts.kinds import PartKind, numbers_in
+from distal.scene.lowering.parts.kinds import Column, PartKind
 from distal.scene.lowering.parts.table import PartTable
-from distal.scene.tree.calls import COLUMN
-from distal.scene.tree.conversion import Number
 from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
@@ -43,18 +41,19 @@ class PartFunctions:
         self._rows = assembly.resource(table.rows, "part_rows")
         self.given: dict[str, Expr] = {"boxes": assembly.resource(table.boxes, "part_boxes")}
         for kind in table.kinds:
-            numbers = {id(n): n for n in _columns(kind)}
-            for number, column in kind.columns.items():
-                assembly.made[COLUMN, number] = self._read(numbers[number], column)
+            kind.read(assembly, [self._read(column) for column in kind.columns])
         params = (("p", VEC3), ("part", INT))
         self.distance_of = self.of_part("part_distance", params, FLOAT, self._distance)
         self.given["distance"] = self.distance_of
+        self._field_of = self.distance_of
+        if table.needs_factors:
+            self._field_of = self.of_part("part_field", params, FLOAT, self._field)
 
-    def _read(self, number: Number, column: int) -> Expr:
+    def _read(self, column: Column) -> Expr:
         """Return the numbers of a column, in the row of ``PART``."""
-        size = number.type.size if isinstance(number.type, Vector) else 1
-        row = add(PART, integer(column // 4)) if column >= 4 else PART
-        return swizzle(index(self._rows, row), "xyzw"[column % 4 : column % 4 + size])
+        first = column.first
+        row = add(PART, integer(first // 4)) if first >= 4 else PART
+        return swizzle(index(self._rows, row), "xyzw"[first % 4 : first % 4 + column.floats])
 
     def _head(self, lane: str) -> Expr:
         return swizzle(index(self._rows, PART), lane)
@@ -64,13 +63,22 @@ class PartFunctions:
         """The number of ``PART`` among the parts of its kind, as a float."""
         return self._head("y")
 
-    def _distance(self, body: StatementList, kind: PartKind) -> Expr:
+    def _field(self, body: StatementList, kind: PartKind) -> Expr:
+        """Return the value of the author's field."""
         composer = self._composer
         return composer.distance(body, kind.node, POINT, ZERO_CELL, composer.values.all(kind.node))
 
+    def _distance(self, body: StatementList, kind: PartKind) -> Expr:
+        """Return a value that is never more than the distance."""
+        value = self._field(body, kind)
+        if kind.factor is None:
+            return value
+        return body.let("d", multiply(value, self._read(Column(kind.factor, FLOAT))))
+
     def distance(self, p: Expr) -> Expr:
-        """Return the distance of a point to the nearest part."""
-        return self._composer.call(part_tree.distance_to_parts, {**self.given, "p": p})
+        """Return the value of the author's field of the part nearest to a point."""
+        given = {**self.given, "p": p, "field": self._field_of}
+        return self._composer.call(part_tree.distance_to_parts, given)
 
     def nearest(self, body: StatementList, p: Expr) -> Expr:
         """Return the part nearest to a point."""
@@ -107,8 +115,3 @@ class PartFunctions:
                 body.statements.append(If(is_kind, (call,), ()))
         defined = assembly.define(name, declared, result, body.statements)
         return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result))
-
-
-def _columns(kind: PartKind) -> list[Number]:
-    """Return the numbers of a kind's tree that are columns."""
-    return [n for n in numbers_in(kind.node) if id(n) in kind.columns]

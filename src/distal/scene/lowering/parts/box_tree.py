@@ -1,13 +1,15 @@
 """A tree of boxes, in the form that ``render.part_tree`` walks.
 
-Input: boxes. Output: an array with two rows of four numbers for each box of the tree, parents
-first. The boxes of a parent's two children are the halves of its parts, divided where its box is
-longest.
+Input: boxes. Output: an order of the tree, and an array with two rows of four numbers for each box
+of it, parents first. The boxes of a parent's two children are the halves of its parts, divided
+where its box is longest. Boxes of parts that move fill the same order again.
 """
 
 from __future__ import annotations
 
-from typing import Any, Final
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,35 +23,89 @@ OF_PLACE: Final = 2e-6
 OF_SIZE: Final = 1e-4
 
 
-def box_tree(low: Floats, high: Floats, parts: Whole) -> NDArray[np.float32]:
-    """Return the tree of boxes around parts.
+@dataclass(frozen=True, slots=True)
+class BoxTree:
+    """The order of a tree of boxes, which other boxes of the same parts may fill.
+
+    Boxes have numbers in which the two boxes in a parent are neighbors, the lowest boxes last.
+
+    Attributes:
+        leaves: The number of each part's own box (n,).
+        parents: From the lowest boxes to the first: the numbers of boxes with two others in them,
+            and the number of the first of these others.
+        order: The number of the box at each place of the tree.
+        links: Of the box at each place, the place of the one that follows if it is skipped, and
+            its part or -1.
+    """
+
+    leaves: Whole
+    parents: Sequence[tuple[Whole | slice, int]]
+    order: Whole
+    links: NDArray[np.float32]
+
+    def filled(self, low: Floats, high: Floats) -> NDArray[np.float32]:
+        """Return the tree around boxes.
+
+        Args:
+            low: The low corners (n, 3).
+            high: The high corners (n, 3).
+
+        Returns:
+            An array (2 * (2n - 1), 4): (low corner, box that follows), (high corner, part or -1).
+        """
+        margin = OF_SIZE * (high - low) + OF_PLACE * np.maximum(np.abs(low), np.abs(high))
+        own = np.zeros((len(low), 8), np.float32)
+        # One operation for both corners: the larger of high is the smaller of -high.
+        own[:, 0:3] = low - margin
+        own[:, 4:7] = -(high + margin)
+        boxes = np.empty((len(self.order), 8), np.float32)
+        boxes[self.leaves] = own
+        end = len(boxes)
+        for numbers, begin in self.parents:
+            boxes[numbers] = np.minimum(boxes[begin:end:2], boxes[begin + 1 : end : 2])
+            end = begin
+        made = boxes[self.order]
+        np.negative(made[:, 4:7], out=made[:, 4:7])
+        made[:, 3], made[:, 7] = self.links
+        return made.reshape(-1, 4)
+
+
+def box_tree(low: Floats, high: Floats, parts: Whole) -> BoxTree:
+    """Return the order of a tree of boxes around parts.
 
     Args:
         low: The low corners (n, 3).
         high: The high corners (n, 3).
         parts: The number of each part (n,), exact as a 32-bit float.
-
-    Returns:
-        An array (2 * (2n - 1), 4): (low corner, box that follows), (high corner, part or -1).
     """
     count = len(low)
-    margin = OF_SIZE * (high - low) + OF_PLACE * np.maximum(np.abs(low), np.abs(high))
-    low, high = low - margin, high + margin
     middles = 0.5 * (low + high)
-    made = np.empty((2 * count - 1, 2, 4))
+    links = np.full((2, 2 * count - 1), -1.0)
+    parents: list[tuple[Whole | slice, int]] = []
+    at = np.empty(2 * count - 1, np.int64)
     order = np.arange(count)
     first, size, place = np.array([0]), np.array([count]), np.array([0])
+    at[0], made = 0, 1
     while True:
-        made[place, 0, :3] = np.minimum.reduceat(low[order], first)
-        made[place, 1, :3] = np.maximum.reduceat(high[order], first)
-        made[place, 0, 3] = place + 2 * size - 1
-        made[place, 1, 3] = -1.0
+        links[0, place] = place + 2 * size - 1
         if size.max() == 1:
             break
+        apart = size > 1
+        above = at[place[apart]]
+        whole = slice(int(above[0]), int(above[-1]) + 1)
+        is_whole = whole.stop - whole.start == len(above)
+        parents.append((whole if is_whole else above, made))
         order = _sorted_within(middles, order, first, size)
-        first, size, place = _halves(first, size, place)
-    made[place, 1, 3] = parts[order]
-    return _rounded_out(made.reshape(-1, 4))
+        first, size, inner = _halves(first, size, place)
+        is_new = np.repeat(apart, 1 + apart)
+        fresh = inner[is_new]
+        at[fresh] = made + np.arange(len(fresh))
+        made += len(fresh)
+        place = inner
+    links[1, place] = parts[order]
+    leaves = np.empty(count, np.int64)
+    leaves[order] = at[place]
+    return BoxTree(leaves, parents[::-1], at, links.astype(np.float32))
 
 
 def _sorted_within(middles: Floats, order: Whole, first: Whole, size: Whole) -> Whole:
@@ -73,9 +129,3 @@ def _halves(first: Whole, size: Whole, place: Whole) -> tuple[Whole, Whole, Whol
     lower_place = np.where(is_leaf, place, place + 1)
     places = np.stack([lower_place, place + 2 * lower], axis=1).ravel()[pairs]
     return firsts, sizes, places
-
-
-def _rounded_out(rows: Any) -> NDArray[np.float32]:
-    """Return the rows in 32 bits; the margin is larger than the rounding."""
-    found: NDArray[np.float32] = rows.astype(np.float32)
-    return found

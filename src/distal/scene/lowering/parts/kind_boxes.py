@@ -1,9 +1,13 @@
 """The boxes of all parts of a kind, computed together.
 
-Input: a kind of parts. Output: arrays of corners, one row for each part.
+Input: a kind of parts. Output: arrays of corners, one row for each part: at a time, or around all
+places where a part may be at any time and for any values of the parameters.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,45 +20,83 @@ from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.parts.kinds import PartKind
-from distal.scene.tree.calls import COLUMN
 from distal.scene.tree.values import StatementList, Values
 
 Floats = NDArray[np.float64]
 
 
-def boxes_of(kind: PartKind) -> tuple[Floats, Floats, float]:
-    """Return the low and the high corners of the parts of a kind, each (n, 3), and their slope."""
-    found = executor().call(BoxOfKind(kind), tuple(columns_of(kind)), {}, device="reference")
-    size = (len(kind.members), 3)
-    low, high, slope = (np.asarray(part, np.float64) for part in found)
-    return np.broadcast_to(low, size), np.broadcast_to(high, size), float(slope.max())
+@dataclass(frozen=True, slots=True)
+class KindBounds:
+    """What bounds the parts of a kind.
+
+    Attributes:
+        low: The low corners of their boxes (n, 3).
+        high: The high corners (n, 3).
+        slope: Lipschitz bound (slope) of each (n,).
+        divisor: The number that makes distances of the values of each (n,).
+    """
+
+    low: Floats
+    high: Floats
+    slope: Floats
+    divisor: Floats
+
+    @staticmethod
+    def of(kind: PartKind, found: Any) -> KindBounds:
+        """Return what a function of a kind's columns found; one row stands for all parts."""
+        count = len(kind.members)
+        low, high, slope, divisor = (np.asarray(part, np.float64) for part in found)
+        corners = (np.broadcast_to(corner, (count, 3)) for corner in (low, high))
+        return KindBounds(*corners, *(np.broadcast_to(n, (count,)) for n in (slope, divisor)))
+
+    def chosen(self, fits: NDArray[np.bool_]) -> KindBounds:
+        """Return the bounds of some of the parts."""
+        parts = (self.low, self.high, self.slope, self.divisor)
+        return KindBounds(*(part[fits] for part in parts))
+
+
+def bounds_of(kind: PartKind) -> KindBounds:
+    """Return the bounds of the parts of a kind, for the defaults of parameters at time 0."""
+    boxes, columns = BoxOfKind(kind), tuple(columns_of(kind))
+    return KindBounds.of(kind, executor().call(boxes, columns, {}, device="reference"))
+
+
+def swept_bounds_of(kind: PartKind) -> KindBounds:
+    """Return bounds that hold at all times and for all values of the parameters.
+
+    Where none are known, they are infinite.
+    """
+    if not kind.moving:
+        return bounds_of(kind)
+    ends = executor().sweep(BoxOfKind(kind), columns_of(kind))
+    low = np.stack([np.broadcast_to(a, len(kind.members)) for a, _ in ends[:3]], axis=1)
+    high = np.stack([np.broadcast_to(b, len(kind.members)) for _, b in ends[3:6]], axis=1)
+    return KindBounds.of(kind, (low, high, ends[6][1], ends[7][1]))
 
 
 def columns_of(kind: PartKind) -> list[Floats]:
     """Return the columns of a kind's table: arrays (n,) or (n, components)."""
-    return [np.array([n.value for n in column]) for column in zip(*kind.numbers, strict=True)]
+    return [np.array(column, np.float64) for column in zip(*kind.values, strict=True)]
 
 
 class BoxOfKind(Composed):
-    """The box and the slope of a part of a kind, from the numbers of its row."""
+    """The box, the slope and the divisor of a part of a kind, from the numbers of its row."""
 
     def __init__(self, kind: PartKind) -> None:
         self.name = f"boxes of {kind.node.name}"
         self._kind = kind
-        numbers = kind.numbers[0]
-        self.signature = tuple((f"column_{i}", n.type) for i, n in enumerate(numbers))
-        self.result: Type = tuple_type((VEC3, VEC3, FLOAT))
+        self.signature = tuple((f"column_{i}", c.type) for i, c in enumerate(kind.columns))
+        self.result: Type = tuple_type((VEC3, VEC3, FLOAT, FLOAT))
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""
-        for number, (name, type) in zip(self._kind.columns, self.signature, strict=True):
-            assembly.made[COLUMN, number] = Read(name, type)
+        self._kind.read(assembly, [Read(name, type) for name, type in self.signature])
         values = Values(assembly)
         body = StatementList(taken={name for name, _ in self.signature})
         node = self._kind.node
         found = BoundsComposer(values).of(body, node, values.all(node))
         box = body.let("box", found.bounds)
-        corners = Construct((field(box, "low"), field(box, "high"), found.slope), self.result)
-        body.statements.append(Return(corners))
+        parts = (field(box, "low"), field(box, "high"), found.slope, found.divisor)
+        body.statements.append(Return(Construct(parts, self.result)))
         params = [Param(name, type) for name, type in self.signature]
         return assembly.define("box", params, self.result, body.statements)

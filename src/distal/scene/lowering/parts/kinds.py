@@ -1,8 +1,9 @@
 """Kinds of parts: parts of equal structure, which differ in numbers only.
 
 Input: the parts of a union. Output: kinds, each with one tree for all its parts; the numbers that
-differ from part to part are columns of a table. Numbers that are the same in all parts stay
-numbers of the scene, so that a parameter can change them.
+differ from part to part are columns of a table, also the constants of expressions of parameters
+and time. Numbers that are the same in all parts stay numbers of the scene, so that a parameter can
+change them.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from distal.fields.guarantees import Operator, Primitive
-from distal.ir.types import Vector
+from distal.frontend import Assembly
+from distal.ir.nodes import Expr
+from distal.ir.types import FLOAT, Type, Vector
 from distal.lang.expressions import Expression
 from distal.scene.lowering.parts.flatten import UnionMember
-from distal.scene.tree.calls import FunctionCall
-from distal.scene.tree.conversion import Number
+from distal.scene.lowering.parts.lifted import ConstantLifter, with_values
+from distal.scene.tree.calls import COLUMN, FunctionCall
+from distal.scene.tree.conversion import Number, Plain
 from distal.scene.tree.node import Node
 
 # A row begins with the number of its kind and that of the part among those of the kind.
@@ -24,33 +28,89 @@ HEAD: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
+class Column:
+    """A number that differs from part to part.
+
+    Attributes:
+        first: The place of its first float in a row.
+        type: float, or a vector of floats.
+    """
+
+    first: int
+    type: Type
+
+    @property
+    def floats(self) -> int:
+        """The number of its floats."""
+        return self.type.size if isinstance(self.type, Vector) else 1
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnNumber:
+    """A number of a kind's tree that has columns: one of its own, or some of its expression.
+
+    Attributes:
+        number: The number.
+        places: The column of each constant of its expression, None for one that all parts share;
+            for a plain number its own column alone.
+    """
+
+    number: Number
+    places: Sequence[int | None]
+
+
+@dataclass(frozen=True, slots=True)
 class PartKind:
     """Parts of equal structure.
 
     Attributes:
-        node: A tree like those of the parts. Its numbers that are columns are its own objects.
+        node: A tree like those of the parts. Its numbers that have columns are its own objects.
         members: The parts.
-        columns: The first component of each number that differs, by the number's id.
-        width: The number of components of a row, with its head.
-        numbers: The numbers of each part that are columns, in the order of ``columns``.
+        columns: The numbers that differ.
+        numbers: The numbers of the tree that have columns.
+        width: The number of floats of a row, with its head.
+        values: The values of each part, one for each column.
+        factor: The place in a row of a number that makes distances of the part's values, if they
+            need a divisor.
+        moving: Whether the shapes depend on parameters or time.
     """
 
     node: Node
     members: Sequence[UnionMember]
-    columns: Mapping[int, int]
+    columns: Sequence[Column]
+    numbers: Sequence[ColumnNumber]
     width: int
-    numbers: Sequence[Sequence[Number]]
+    values: Sequence[Sequence[Plain]]
+    factor: int | None = None
+    moving: bool = False
 
     @property
     def floats(self) -> int:
         """The number of floats that differ from part to part."""
-        sizes = (n.type.size if isinstance(n.type, Vector) else 1 for n in self.numbers[0])
-        return sum(sizes)
+        return sum(column.floats for column in self.columns)
 
     @property
     def stride(self) -> int:
         """The number of vec4 of a row."""
         return -(-self.width // 4)
+
+    def with_factor(self) -> PartKind:
+        """Return the kind with one more float in its rows, the factor."""
+        return replace(self, factor=self.width, width=self.width + 1)
+
+    def read(self, assembly: Assembly, columns: Sequence[Expr]) -> None:
+        """Let a program read the numbers that differ from these expressions, one each column."""
+        lifter = ConstantLifter()
+        for of in self.numbers:
+            value = of.number.value
+            if isinstance(value, Expression):
+                reads = iter([None if i is None else columns[i] for i in of.places])
+                found = with_values(assembly.expression(value), reads, lifter)
+            else:
+                (place,) = of.places
+                assert place is not None
+                found = columns[place]
+            assembly.made[COLUMN, id(of.number)] = found
 
 
 def kinds_of(members: Sequence[UnionMember]) -> list[PartKind]:
@@ -68,6 +128,7 @@ class _Structures:
     def __init__(self) -> None:
         self._known: dict[Hashable, int] = {}
         self._of_object: dict[int, int] = {}
+        self._lifter = ConstantLifter()
 
     def key(self, value: Any) -> int:
         """Return the number of the structure of a node, a material or one of its values."""
@@ -101,9 +162,10 @@ class _Structures:
         return _constant(value) if isinstance(value, bool | int) else self.key(value)
 
     def _number(self, number: Number) -> Hashable:
-        """Return the type of a plain number; an expression is of its own kind."""
+        """Return the type of a plain number, with the structure of an expression."""
         if isinstance(number.value, Expression):
-            return (number.type, number.value.node)
+            structure = self._lifter.split(number.value.node)[0]
+            return (number.type, structure, number.value.parameters)
         return number.type
 
 
@@ -129,28 +191,55 @@ def _constant(value: Any) -> Hashable:
 
 
 def _kind(members: Sequence[UnionMember]) -> PartKind:
+    lifter = ConstantLifter()
     every = [list(numbers_in(member.part)) for member in members]
-    first = every[0]
-    differs = [
-        any(row[i] is not one and row[i].value != one.value for row in every)
-        for i, one in enumerate(first)
-    ]
-    columns: dict[int, int] = {}
+    columns: list[Column] = []
+    numbers: dict[int, ColumnNumber] = {}
+    values: list[Sequence[Plain]] = []
     width = HEAD
-    copies: dict[int, Number] = {}
-    taken: list[int] = []
-    for i, number in enumerate(first):
-        if differs[i]:
-            size = number.type.size if isinstance(number.type, Vector) else 1
+    for i, first in enumerate(every[0]):
+        own = [row[i] for row in every]
+        places: list[int | None] = []
+        for type, found in _candidates(own, lifter):
+            if all(value == found[0] for value in found):
+                places.append(None)
+                continue
+            size = type.size if isinstance(type, Vector) else 1
             # A vector lies within one vec4.
             width += -width % 4 if width % 4 + size > 4 else 0
-            copies[i] = Number(number.type, number.value)
-            columns[id(copies[i])] = width
+            places.append(len(columns))
+            columns.append(Column(width, type))
+            values.append(found)
             width += size
-            taken.append(i)
-    node = _Copying(copies).node(members[0].part) if copies else members[0].part
-    numbers = [[row[i] for i in taken] for row in every]
-    return PartKind(node, members, columns, width, numbers)
+        if any(place is not None for place in places):
+            numbers[i] = ColumnNumber(_largest(own), places)
+    node = members[0].part
+    if numbers:
+        node = _Copying({i: of.number for i, of in numbers.items()}).node(node)
+    rows = list(zip(*values, strict=True)) if values else [()] * len(members)
+    made = tuple(numbers.values())
+    return PartKind(node, members, columns, made, width, rows, moving=is_moving(node))
+
+
+def _largest(numbers: Sequence[Number]) -> Number:
+    """Return a new number for those of all parts: what it may exceed, one of them may exceed."""
+    first = numbers[0]
+    if first.type is FLOAT and not isinstance(first.value, Expression):
+        return Number(FLOAT, max([n.value for n in numbers]))  # type: ignore[type-var]
+    return Number(first.type, first.value)
+
+
+def _candidates(
+    numbers: Sequence[Number], lifter: ConstantLifter
+) -> Iterator[tuple[Type, Sequence[Plain]]]:
+    """Yield the values of one number of all parts that may be a column: type, one value a part."""
+    first = numbers[0]
+    if not isinstance(first.value, Expression):
+        yield first.type, [n.value for n in numbers]  # type: ignore[misc]  # all are plain
+    elif any(n is not first and n.value.node is not first.value.node for n in numbers):  # type: ignore[union-attr]
+        constants = [lifter.split(n.value.node)[1] for n in numbers]  # type: ignore[union-attr]
+        for values in zip(*constants, strict=True):
+            yield FLOAT, values
 
 
 def numbers_in(value: Any) -> Iterator[Number]:

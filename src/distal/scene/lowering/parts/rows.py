@@ -6,7 +6,7 @@ part among those of its kind, then the columns.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,73 +15,117 @@ from numpy.typing import NDArray
 from distal.fields.guarantees import ENDLESS
 from distal.lang.resources import Buffer
 from distal.scene.lowering.parts.box_tree import box_tree
-from distal.scene.lowering.parts.flatten import UnionMember
-from distal.scene.lowering.parts.kind_boxes import boxes_of, columns_of
+from distal.scene.lowering.parts.kind_boxes import (
+    Floats,
+    KindBounds,
+    bounds_of,
+    columns_of,
+    swept_bounds_of,
+)
 from distal.scene.lowering.parts.kinds import PartKind
-from distal.scene.lowering.parts.table import PartTable
+from distal.scene.lowering.parts.moving_boxes import MovingBoxes, is_refitted
+from distal.scene.lowering.parts.table import (
+    ENDLESS_MOTION,
+    ENDLESS_SLOPE,
+    INFINITE,
+    PartTable,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """The parts with finite boxes.
+    """The parts that a table can hold.
 
     Attributes:
-        kinds: The kinds, without their infinite parts.
-        low: The low corners of the boxes, kind after kind.
-        high: The high corners.
-        slope: Lipschitz bound (slope) of all parts.
-        infinite: The other parts.
+        kinds: The kinds, without their other parts.
+        first: The bounds of the parts of each kind, for the defaults of parameters at time 0.
+        swept: Bounds that hold at all times and for all values of the parameters.
+        refused: The other parts, with the reason.
     """
 
     kinds: Sequence[PartKind]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
-    slope: float
-    infinite: Sequence[UnionMember]
+    first: Sequence[KindBounds]
+    swept: Sequence[KindBounds]
+    refused: Mapping[int, str]
 
     @property
     def count(self) -> int:
-        """The number of parts with finite boxes."""
-        return len(self.low)
+        """The number of parts."""
+        return sum(len(kind.members) for kind in self.kinds)
 
     def table(self) -> PartTable:
-        """Return the table of the parts with finite boxes."""
-        rows, places = _rows(self.kinds)
-        tree = box_tree(self.low, self.high, places)
-        low, high = self.low.min(axis=0), self.high.max(axis=0)
-        corners = tuple(map(float, low)), tuple(map(float, high))
-        return PartTable(self.kinds, Buffer(tree), Buffer(rows), *corners, self.slope)
+        """Return the table of the parts."""
+        factors = [1.0 / np.maximum(swept.divisor, 1.0) for swept in self.swept]
+        rows, places = _rows(self.kinds, factors)
+        order = box_tree(*_corners(self.first), places)
+        low, high = _corners(self.swept)
+        boxes = Buffer(order.filled(low, high))
+        if any(map(is_refitted, self.kinds)):
+            boxes = MovingBoxes(boxes.data, self.kinds, self.swept, order)
+        lowest, highest = low.min(axis=0).tolist(), high.max(axis=0).tolist()
+        corners = tuple(lowest), tuple(highest)
+        slope, divisor = (
+            max(float(getattr(swept, name).max()) for swept in self.swept)
+            for name in ("slope", "divisor")
+        )
+        return PartTable(self.kinds, boxes, Buffer(rows), *corners, slope, divisor)
+
+
+def _corners(bounds: Sequence[KindBounds]) -> tuple[Floats, Floats]:
+    low, high = ([getattr(b, name) for b in bounds] for name in ("low", "high"))
+    return np.concatenate(low), np.concatenate(high)
 
 
 def rows_of(kinds: Sequence[PartKind]) -> Rows:
-    """Return the parts of several kinds that have finite boxes."""
-    finite: list[PartKind] = []
-    infinite: list[UnionMember] = []
-    steepest = 0.0
-    lows, highs = [np.zeros((0, 3))], [np.zeros((0, 3))]
+    """Return the parts of several kinds that a table can hold.
+
+    A table holds a part if it has a finite box at all times and for all values of the parameters,
+    and a number that makes distances of its values.
+    """
+    held: list[PartKind] = []
+    firsts: list[KindBounds] = []
+    swepts: list[KindBounds] = []
+    refused: dict[int, str] = {}
     for kind in kinds:
-        low, high, slope = boxes_of(kind)
-        farthest = np.maximum(np.abs(low), np.abs(high)).max(axis=1)
-        is_finite = np.asarray(farthest < ENDLESS)  # False for NaN
-        infinite += [m for m, found in zip(kind.members, is_finite, strict=True) if not found]
-        if is_finite.any():
-            finite.append(_chosen(kind, is_finite))
-            lows.append(low[is_finite])
-            highs.append(high[is_finite])
-            steepest = max(steepest, slope)
-    return Rows(finite, np.concatenate(lows), np.concatenate(highs), steepest, infinite)
+        first = bounds_of(kind)
+        swept = swept_bounds_of(kind) if kind.moving else first
+        rules = (
+            (INFINITE, _is_finite(first)),
+            (ENDLESS_MOTION, _is_finite(swept)),
+            (ENDLESS_SLOPE, np.asarray(swept.divisor < ENDLESS)),  # False for NaN
+        )
+        fits = np.ones(len(kind.members), bool)
+        for reason, keeps in rules:
+            lost = [m for m, ok in zip(kind.members, keeps | ~fits, strict=True) if not ok]
+            refused |= {id(member): reason for member in lost}
+            fits &= keeps
+        if fits.any():
+            held.append(_chosen(kind, fits))
+            firsts.append(first.chosen(fits))
+            swepts.append(swept.chosen(fits))
+    return Rows(held, firsts, swepts, refused)
+
+
+def _is_finite(bounds: KindBounds) -> NDArray[np.bool_]:
+    farthest = np.maximum(np.abs(bounds.low), np.abs(bounds.high)).max(axis=1)
+    return np.asarray(farthest < ENDLESS)  # False for NaN
 
 
 def _chosen(kind: PartKind, chosen: NDArray[np.bool_]) -> PartKind:
     if chosen.all():
         return kind
     members = [m for m, keep in zip(kind.members, chosen, strict=True) if keep]
-    numbers = [row for row, keep in zip(kind.numbers, chosen, strict=True) if keep]
-    return replace(kind, members=members, numbers=numbers)
+    values = [row for row, keep in zip(kind.values, chosen, strict=True) if keep]
+    return replace(kind, members=members, values=values)
 
 
-def _rows(kinds: Sequence[PartKind]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
-    """Return the rows of all parts, and the number of each part's first vec4."""
+def _rows(
+    kinds: Sequence[PartKind], factors: Sequence[Floats]
+) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Return the rows of all parts, and the number of each part's first vec4.
+
+    ``factors`` are the numbers that make distances of the parts' values, by kind.
+    """
     rows: list[NDArray[np.float32]] = []
     places: list[NDArray[np.int64]] = []
     begin = 0
@@ -90,9 +134,10 @@ def _rows(kinds: Sequence[PartKind]) -> tuple[NDArray[np.float32], NDArray[np.in
         made = np.zeros((count, 4 * kind.stride), np.float32)
         made[:, 0] = k
         made[:, 1] = np.arange(count)
-        for first, column in zip(kind.columns.values(), columns_of(kind), strict=True):
-            values = column.reshape(count, -1)
-            made[:, first : first + values.shape[1]] = values
+        for column, values in zip(kind.columns, columns_of(kind), strict=True):
+            made[:, column.first : column.first + column.floats] = values.reshape(count, -1)
+        if kind.factor is not None:
+            made[:, kind.factor] = factors[k]
         rows.append(made.reshape(-1, 4))
         places.append(begin + kind.stride * np.arange(count))
         begin += kind.stride * count

@@ -20,7 +20,7 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
 from distal.packages import PackageError
 from distal.scene.lowering.parts.flatten import UnionMember, members_of
-from distal.scene.lowering.parts.kinds import PartKind, is_moving, kinds_of
+from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.tree.node import Node
 
@@ -36,8 +36,10 @@ MOST_KINDS: Final = 64
 MOST_WITHOUT: Final = 2048
 
 INFINITE: Final = "it has no finite box"
-MOVING: Final = "its shape depends on parameters or time"
-UNSAFE: Final = "its values need a divisor"
+ENDLESS_MOTION: Final = "no finite box holds it at all times and for all values of its parameters"
+ENDLESS_SLOPE: Final = (
+    "no divisor of its values is known for all times and values of its parameters"
+)
 RARE: Final = f"there are more than {MOST_KINDS} kinds of parts"
 
 # The rule of a node that stands for all parts of a table; its children are one tree of each kind.
@@ -55,6 +57,7 @@ class PartTable:
         low: The low corner of the box around all parts.
         high: The high corner.
         slope: Lipschitz bound (slope) of all parts.
+        divisor: The largest number that a part's values are divided by to make distances.
     """
 
     kinds: Sequence[PartKind]
@@ -63,6 +66,12 @@ class PartTable:
     low: tuple[float, ...]
     high: tuple[float, ...]
     slope: float
+    divisor: float
+
+    @property
+    def needs_factors(self) -> bool:
+        """Whether values of some parts are not distances before they get their factors."""
+        return any(kind.factor is not None for kind in self.kinds)
 
     @property
     def count(self) -> int:
@@ -147,17 +156,17 @@ def _roll(root: Node) -> Rolled:
     members = members_of(root)
     if len(members) < LEAST_PARTS:
         return nothing
-    reasons: dict[int, str] = {}
-    fit = _fit(members, reasons)
-    kinds = sorted(kinds_of(fit), key=lambda kind: -len(kind.members))
-    reasons |= {id(m): RARE for kind in kinds[MOST_KINDS:] for m in kind.members}
+    kinds = sorted(kinds_of(members), key=lambda kind: -len(kind.members))
+    reasons = {id(m): RARE for kind in kinds[MOST_KINDS:] for m in kind.members}
+    safe = SafeParts()
+    kinds = [k if safe.has_safe_values(k.node) else k.with_factor() for k in kinds[:MOST_KINDS]]
     try:
-        found = rows.rows_of(kinds[:MOST_KINDS])
+        found = rows.rows_of(kinds)
     except PackageError:
         if root.parts > MOST_WITHOUT:
             raise
         return nothing  # texts are compiled without NumPy too
-    reasons |= dict.fromkeys(map(id, found.infinite), INFINITE)
+    reasons |= found.refused
     if found.count < LEAST_PARTS:
         return nothing
     table = found.table()
@@ -167,14 +176,3 @@ def _roll(root: Node) -> Rolled:
     if beside:
         node = Node(UNION, root.flat, (node, *(m.part for m, _ in beside)), place=root.place)
     return Rolled(node, table, beside)
-
-
-def _fit(members: Sequence[UnionMember], reasons: dict[int, str]) -> list[UnionMember]:
-    """Return the members that a table can hold; add why it cannot hold the others."""
-    safe = SafeParts()
-    for member in members:
-        if is_moving(member.part):
-            reasons[id(member)] = MOVING
-        elif not safe.has_safe_values(member.part):
-            reasons[id(member)] = UNSAFE
-    return [member for member in members if id(member) not in reasons]
