@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import distal
-from distal import Box, Camera, CompileError, DistantLight, Plane, Scene, Sphere
+from distal import Box, Camera, CompileError, DistantLight, Plane, Scene, Sphere, time, union
+from distal.lang import slider
+from distal.scene.lowering.parts.moving_boxes import MovingBoxes
 from distal.scene.viewing.viewable import viewable
 from tests.page.looking import looked_at
 
@@ -49,3 +51,21 @@ def test_targets_without_buffers_refuse_many(target):
     (found,) = caught.value.diagnostics
     assert found.message == ("3,001 parts of 'union' need a table, and this target has no buffers")
     assert found.hint == "take a target with buffers; 2,048 parts are possible without"
+
+
+def test_a_page_of_parts_that_move(tmp_path, monkeypatch):
+    # A page has boxes of all times: a ray that grazes a part may stop at another place.
+    monkeypatch.setattr(MovingBoxes, "at", lambda self, params, time: self.data)
+    rng = np.random.default_rng(5)
+    swing = slider("Swing", 0.5, low=0.0, high=1.0)
+    boats = [
+        Box(0.1, 0.04, 0.06).rotate(y=time + x).translate(x, swing * np.sin(time + 2.0 * z), z)
+        for x, z in rng.uniform(-1.5, 1.5, (300, 2)).tolist()
+    ]
+    camera = Camera((3.0, 2.0, 4.0), target=(0.0, -0.2, 0.0), fov_deg=30.0)
+    scene = Scene(union(boats) | Plane(y=-0.6), camera=camera, lights=DistantLight((1.0, 2.0, 1.5)))
+    assert "part_boxes" in distal.compile(scene, target="glsl-es300").text
+    file = tmp_path / "boats.html"
+    scene.export(file)
+    with looked_at(file) as looked:
+        assert looked.beside(viewable(scene)).is_agreement

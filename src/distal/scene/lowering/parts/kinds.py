@@ -197,7 +197,7 @@ def _kind(members: Sequence[UnionMember]) -> PartKind:
     numbers: dict[int, ColumnNumber] = {}
     values: list[Sequence[Plain]] = []
     width = HEAD
-    for i, first in enumerate(every[0]):
+    for i in range(len(every[0])):
         own = [row[i] for row in every]
         places: list[int | None] = []
         for type, found in _candidates(own, lifter):
