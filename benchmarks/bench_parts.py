@@ -4,7 +4,11 @@ The parts (boxes, spheres and rings of many colors) stand on a square grid, so t
 of the rays hits them whatever their number is. One sun with shadows, 640x480, one sample, two
 threads. Each count is measured in a fresh process with an empty kernel cache.
 
-    python benchmarks/bench_parts.py [--counts 100 1000 10000 100000] [--plot growth.png]
+With ``--moving``, each part rises and falls and turns by expressions of the time. The same parts
+that stand still are drawn in turn with them, and the time to compute the boxes of a picture and to
+refit their tree is measured.
+
+    python benchmarks/bench_parts.py [--counts 100 1000 10000 100000] [--plot growth.png] [--moving]
 """
 
 from __future__ import annotations
@@ -60,12 +64,69 @@ memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 print(json.dumps({"objects": objects, "cold": cold, "frame": min(frames), "memory": memory}))
 """
 
+MOVING = """
+import json, random, sys
+from time import perf_counter
+import numpy
+from distal import Box, Camera, DistantLight, Plane, Scene, Sphere, Torus, time, union
+from distal.scene.lowering.parts.table import rolled
 
-def measured(count: int, device: str) -> dict[str, float]:
+count, device = int(sys.argv[1]), sys.argv[2]
+
+
+def parts(now):
+    random.seed(1)
+    side = round(count**0.5)
+    step = 4.0 / side
+    for i in range(count):
+        a, phase = random.uniform(0.25, 0.4) * step, random.uniform(0.0, 6.0)
+        part = (
+            Sphere(a), Box(a, 1.4 * a, a).rotate(y=now + phase), Torus(a, 0.4 * a).rotate(x=phase)
+        )[i % 3]
+        height = 0.5 * step + 0.3 * step * numpy.sin(2.0 * now + phase)
+        place = ((i % side + 0.5) * step - 2.0, height, (i // side + 0.5) * step - 2.0)
+        yield part.translate(place).paint([random.uniform(0.1, 0.9) for _ in range(3)])
+
+
+def least(work):
+    found = []
+    for _ in range(7):
+        begin = perf_counter()
+        work()
+        found.append(perf_counter() - begin)
+    return min(found)
+
+
+begin = perf_counter()
+moving = union(parts(time))
+result = {"objects": perf_counter() - begin}
+lights = DistantLight((1, 2, 1.5), angle=0.01)
+camera = Camera((3, 3, 4), target=(0, 0, 0))
+frame = {"size": (640, 480), "samples": 1, "device": device, "time": 0.7}
+scenes = {}
+for name, whole in (("still", union(parts(0.7))), ("moving", moving)):
+    scenes[name] = Scene(whole | Plane(), lights=lights, camera=camera, ambient_occlusion=0.0)
+    begin = perf_counter()
+    scenes[name].render(**frame)
+    result["cold"] = perf_counter() - begin
+times = {name: [] for name in scenes}
+for _ in range(7):
+    for name, scene in scenes.items():
+        begin = perf_counter()
+        scene.render(**frame)
+        times[name].append(perf_counter() - begin)
+result |= {name: min(found) for name, found in times.items()}
+boxes = rolled(scenes["moving"].shape.node).table.boxes
+result["refit"] = least(lambda: boxes.at({}, 0.7))
+print(json.dumps(result))
+"""
+
+
+def measured(count: int, device: str, program: str = MEASURED) -> dict[str, float]:
     """Return seconds and megabytes for a number of parts."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "DISTAL_CACHE_DIR": cache}
-        command = [sys.executable, "-c", MEASURED, str(count), device]
+        command = [sys.executable, "-c", program, str(count), device]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     found: dict[str, float] = json.loads(done.stdout)
     return found
@@ -109,7 +170,16 @@ def main() -> None:
     parser.add_argument("--counts", type=int, nargs="+", default=COUNTS)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--plot", type=Path)
+    parser.add_argument("--moving", action="store_true")
     options = parser.parse_args()
+    if options.moving:
+        print("  parts   objects      cold     still    moving     refit")
+        for count in options.counts:
+            row = measured(count, options.device, MOVING)
+            seconds = f"{row['objects']:8.2f} s{row['cold']:8.2f} s"
+            frames = "".join(f"{1000 * row[n]:7.1f} ms" for n in ("still", "moving", "refit"))
+            print(f"{count:7,}{seconds}{frames}", flush=True)
+        return
     print("  parts   objects      cold     frame   memory")
     rows: dict[int, dict[str, float]] = {}
     for count in options.counts:

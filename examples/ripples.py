@@ -1,7 +1,7 @@
-"""Two stones have fallen into a pond of 1,681 columns: each rises and falls on its own.
+"""Two stones have fallen into a pond of 1,225 cubes: each cube rises and falls on its own.
 
-The height and the color of a column are expressions of the time that differ only in numbers, so
-all columns are one kind of part. Try: ``--set Height=0.2``.
+The height and the color of a cube are expressions of the time that differ only in numbers, so all
+cubes are one kind of part. Try: ``--set Height=0.5``.
 """
 
 import numpy as np
@@ -9,33 +9,37 @@ import numpy as np
 from distal import Box, Camera, DistantLight, HemisphereLight, Scene, plastic, time, union
 from distal.lang import slider
 
-SIDE = 41  # columns along each side
+SIDE = 35  # cubes along each side
 STONES = ((-0.9, -0.5), (1.1, 0.8))  # where they fell
-CREST = np.array((1.0, 0.62, 0.28))
-TROUGH = np.array((0.015, 0.12, 0.24))
+CREST, TROUGH = (1.0, 0.62, 0.28), (0.015, 0.12, 0.24)  # colors
 
 height = slider("Height", 0.3, low=0.0, high=0.6)
 speed = slider("Speed", 2.0, low=0.0, high=5.0)
+clock = speed * time
 
 
-def column(x, z):
-    """A column that rises and falls with the waves of both stones."""
-    lift = 0.0
-    for stone in STONES:
-        distance = float(np.hypot(x - stone[0], z - stone[1]))
-        lift = lift + 0.5 * np.exp(-0.35 * distance) * np.sin(5.0 * distance - speed * time)
-    share = 0.48 + 0.8 * lift
-    color = [t + (c - t) * share * share for c, t in zip(CREST, TROUGH, strict=True)]
-    block = Box(0.094, 0.6, 0.094).round(0.012).paint(plastic(color, roughness=0.35))
-    return block.translate(x, height * lift - 0.3, z)
+def wave(x, z, stone):
+    """A wave that runs away from where a stone fell, and becomes lower."""
+    distance = float(np.hypot(x - stone[0], z - stone[1]))
+    return 0.5 * float(np.exp(-0.35 * distance)) * np.sin(5.0 * distance - clock)
+
+
+def cube(x, z):
+    """A cube that rises and falls with the waves of both stones."""
+    lift = wave(x, z, STONES[0]) + wave(x, z, STONES[1])
+    share = 0.48 + 0.7 * lift
+    share = share * share
+    color = [low + (high - low) * share for low, high in zip(TROUGH, CREST, strict=True)]
+    block = Box(0.1).round(0.016).paint(plastic(color, roughness=0.35))
+    return block.translate(x, height * lift, z)
 
 
 places = np.linspace(-2.2, 2.2, SIDE).tolist()
 scene = Scene(
-    union(column(x, z) for x in places for z in places),
-    camera=Camera((3.6, 3.0, 4.4), target=(0.0, -0.15, 0.0), fov_deg=38.0),
+    union(cube(x, z) for x in places for z in places),
+    camera=Camera((3.6, 3.0, 4.4), target=(0.0, -0.15, 0.0), fov_deg=36.0),
     lights=[
-        DistantLight((-0.8, 0.75, 0.5), color="#ffe2bd", intensity=2.6, angle=0.03),
+        DistantLight((-0.8, 0.9, 0.5), color="#ffe2bd", intensity=2.6, angle=0.02),
         HemisphereLight("#9dbbe0", "#30281f", intensity=0.5),
     ],
     background="#101a26",

@@ -276,6 +276,17 @@ def test_boxes_of_all_times_are_not_much_larger_than_they_must_be():
     assert bounds_of(kind).high[:, 1] == pytest.approx([0.1 + 0.3 * np.sin(i) for i in range(3)])
 
 
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_a_part_that_turns_is_as_long_along_its_axis_as_ever(axis):
+    (kind,) = kinds(*(Box(0.2, 0.4, 0.6).rotate(**{axis: time + i}) for i in range(2)))
+    swept, i = swept_bounds_of(kind), "xyz".index(axis)
+    half = (0.1, 0.2, 0.3)[i]
+    assert swept.low[:, i] == pytest.approx(-half, abs=1e-4)
+    assert swept.high[:, i] == pytest.approx(half, abs=1e-4)
+    around = sum((0.1, 0.2, 0.3)) - half
+    assert np.delete(swept.high, i, axis=1) == pytest.approx(around, abs=1e-3)
+
+
 @pytest.mark.parametrize(
     "make",
     [

@@ -69,7 +69,7 @@ class _IntervalScalars(Scalars):
 
     def operation(self, name: str, *operands: Scalar) -> Varying:
         """Return the interval of an operation."""
-        known = _remainder(name, operands)
+        known = _related(name, operands)
         if known is not None:
             return known
         ends = [_ends(operand) for operand in operands]
@@ -92,8 +92,16 @@ def _ends(scalar: Scalar) -> Ends:
     return np.float64(scalar), np.float64(scalar)  # type: ignore[return-value]
 
 
-def _remainder(name: str, operands: Sequence[Scalar]) -> Varying | None:
-    """Return the interval of ``a - b * floor(a / b)``, from 0 to b; None for other operations."""
+def _related(name: str, operands: Sequence[Scalar]) -> Varying | None:
+    """Return the interval of an operation on operands that depend on each other; else None.
+
+    They are ``a - b * floor(a / b)``, which is from 0 to b, and ``(a - b) + b``, as in the matrix
+    of a rotation about an axis.
+    """
+    if name == "add":
+        for parts, b in ((_made_by(operands[i], "sub"), operands[1 - i]) for i in (0, 1)):
+            if parts and parts[1] is b:
+                return swept(*_ends(parts[0]))
     if name != "sub":
         return None
     a, taken = operands
