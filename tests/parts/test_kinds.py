@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from distal import Box, Material, Plane, Shape, Sphere, Torus, stripes, time
+from distal import Box, Material, Plane, Shape, Sphere, Torus, by_cell, stripes, time
 from distal.lang import func, length, slider, vec3
 from distal.scene.lowering.parts.flatten import members_of
 from distal.scene.lowering.parts.kind_boxes import bounds_of, columns_of
@@ -139,3 +139,38 @@ def test_a_material_is_not_shared_with_another_kind():
     red = Material((1.0, 0.0, 0.0))
     found = kinds(Sphere(1.0).paint(red), Sphere(2.0).paint(red), Box(1.0, 1.0, 1.0).paint(red))
     assert [len(k.columns) for k in found] == [1, 0]
+
+
+PLACES = [(0.3 * i, 0.1 * i, 0.0) for i in range(20)]
+
+
+def test_copies_at_positions_are_parts():
+    balls = (Sphere(0.1).paint("red").array(PLACES) | Plane(y=-1)).rotate(y=0.3).scale(2.0)
+    found = rolled(balls.node)
+    (kind,) = found.table.kinds
+    assert len(kind.members) == 20 and [why for _, why in found.beside] == [INFINITE]
+    (offset,) = columns_of(kind)
+    assert offset == pytest.approx(np.array(PLACES))
+    points = np.random.default_rng(1).uniform(-3, 3, (200, 3))
+    expected = Sphere(0.1).array(PLACES).rotate(y=0.3).scale(2.0)
+    alone = type(balls)._of(found.node.children[0])(points)
+    centers = np.array(PLACES) @ np.array(
+        [[np.cos(0.3), 0, -np.sin(0.3)], [0, 1, 0], [np.sin(0.3), 0, np.cos(0.3)]]
+    )
+    least = np.linalg.norm(points[:, None] - 2.0 * centers, axis=-1).min(axis=1) - 0.2
+    assert alone == pytest.approx(least, abs=1e-5)
+    assert expected(points) == pytest.approx(least, abs=1e-5)
+
+
+def test_copies_that_know_their_index_and_a_few_copies_are_no_parts():
+    ball = Sphere(0.1)
+    assert len(members_of(ball.array(PLACES).node)) == 20
+    assert len(members_of(ball.array(PLACES[:15]).node)) == 1
+    assert len(members_of(ball.paint(by_cell()).array(PLACES).node)) == 1
+
+
+def test_copies_without_a_box_stay_one_repetition():
+    slabs = Plane(y=-1).array(PLACES)
+    found = rolled(row()[0].union([*row()[1:], slabs]).node)
+    assert found.table.count == LEAST_PARTS
+    assert [(m.part.rule.name, why) for m, why in found.beside] == [("repeat at", INFINITE)]

@@ -220,3 +220,9 @@ def test_a_thousand_parts_of_a_loop():
     centers = np.random.default_rng(1).uniform(-1, 1, (1000, 3))
     expected = np.linalg.norm(points[:, None] - centers, axis=-1).min(axis=1) - 0.03
     assert shape(points) == pytest.approx(expected, abs=1e-5)
+
+
+def test_copies_at_positions_have_the_same_picture():
+    places = np.random.default_rng(6).uniform((-2, -0.5, -2), (2, 0.5, 2), (60, 3))
+    a, b = both(Torus(0.2, 0.06).paint("tomato").array(places).rotate(y=0.4) | Plane(y=-0.8))
+    assert far_off(a, b) < 0.01

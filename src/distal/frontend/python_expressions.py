@@ -115,7 +115,8 @@ def _of_floats(operation: str, operands: Sequence[Any]) -> Expression | None:
             nodes.append(Const(float(operand), FLOAT))
         else:
             return None
-    return Expression(Binary(op, *nodes, FLOAT), tuple(parameters))
+    lhs, rhs = nodes
+    return Expression(Binary(op, lhs, rhs, FLOAT), tuple(parameters))
 
 
 def _depth(node: Expr) -> int:

@@ -2,12 +2,12 @@
 
 Input: a tree. Output: trees whose union is the same shape with the same materials, in the author's
 order. Moves, rotations and uniform scales of a union become those of each member, and a union's
-material that of each member.
+material that of each member. A repetition at given positions is a union of its copies.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -15,9 +15,16 @@ from distal.fields.combine.joins import UNION
 from distal.fields.deform.offsets import OFFSET, ROUND
 from distal.fields.guarantees import Guarantee, Operator
 from distal.fields.place.flat import SCALE_FLAT
-from distal.fields.place.solid import SCALE
+from distal.fields.place.solid import SCALE, TRANSLATE
+from distal.fields.repeat.along import REPEAT_AT
+from distal.ir.types import VEC3
+from distal.scene.tree.arguments import slots_of
+from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
 
+# The fewest copies of a repetition that are parts of their own.
+LEAST_COPIES: Final = 16
+CELL: Final = "cell"
 # Operators that change the values of a shape by a function that never decreases.
 RISING: Final = frozenset((SCALE, SCALE_FLAT, ROUND, OFFSET))
 
@@ -29,10 +36,12 @@ class UnionMember:
     Attributes:
         part: The member with what is above it.
         source: The member itself, a node of the author's tree.
+        repetition: The repetition that the part is a copy of, with what is above it.
     """
 
     part: Node
     source: Node
+    repetition: Node | None = None
 
 
 def members_of(root: Node) -> list[UnionMember]:
@@ -46,6 +55,9 @@ def members_of(root: Node) -> list[UnionMember]:
             stack.extend((child, inner) for child in reversed(node.children))
         elif _passes(node) and _unites(node):
             stack.append((node.children[0], _wrapped(node, above)))
+        elif copies_of(node) > 1:
+            whole = above(node)
+            found.extend(UnionMember(above(copy), node, whole) for copy in _copies(node))
         else:
             found.append(UnionMember(above(node), node))
     return found
@@ -90,4 +102,42 @@ def _unites(node: Node) -> bool:
     inner = node.children[0]
     while _passes(inner):
         inner = inner.children[0]
-    return inner.rule is UNION
+    return inner.rule is UNION or copies_of(inner) > 1
+
+
+def member_count(root: Node) -> int:
+    """Return about how many parts a tree has: its own, and the copies of repetitions."""
+    count, stack = root.parts, [root]
+    while stack:
+        node = stack.pop()
+        if node.rule is UNION or _passes(node):
+            stack.extend(node.children)
+        else:
+            count += copies_of(node) - 1
+    return count
+
+
+def copies_of(node: Node) -> int:
+    """Return how many copies a repetition has that may be parts of their own; 1 for other nodes.
+
+    The copies differ if something in them reads the index of the repetition.
+    """
+    if node.rule is not REPEAT_AT:
+        return 1
+    count = len(node.constants["positions"].data)
+    return 1 if count < LEAST_COPIES or _reads_cell(node.children[0]) else count
+
+
+def _reads_cell(root: Node) -> bool:
+    materials = (m for n in root.walk() for m in (n.material, n.cut_material) if m is not None)
+    return any(CELL in material.uses for material in materials) or any(
+        slot.name == CELL for function in root.functions() for slot in slots_of(function)
+    )
+
+
+def _copies(repetition: Node) -> Iterator[Node]:
+    """Yield the copies of a repetition, each moved by itself."""
+    positions = repetition.constants["positions"].data
+    for position in positions:
+        offset = Number(VEC3, tuple(map(float, position)))
+        yield replace(repetition, rule=TRANSLATE, constants={}, numbers={"offset": offset})

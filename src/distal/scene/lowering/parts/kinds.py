@@ -233,12 +233,11 @@ def _candidates(
     numbers: Sequence[Number], lifter: ConstantLifter
 ) -> Iterator[tuple[Type, Sequence[Plain]]]:
     """Yield the values of one number of all parts that may be a column: type, one value a part."""
-    first = numbers[0]
-    if not isinstance(first.value, Expression):
-        yield first.type, [n.value for n in numbers]  # type: ignore[misc]  # all are plain
-    elif any(n is not first and n.value.node is not first.value.node for n in numbers):  # type: ignore[union-attr]
-        constants = [lifter.split(n.value.node)[1] for n in numbers]  # type: ignore[union-attr]
-        for values in zip(*constants, strict=True):
+    nodes = [n.value.node for n in numbers if isinstance(n.value, Expression)]
+    if not nodes:
+        yield numbers[0].type, [n.value for n in numbers if not isinstance(n.value, Expression)]
+    elif any(node is not nodes[0] for node in nodes):
+        for values in zip(*(lifter.split(node)[1] for node in nodes), strict=True):
             yield FLOAT, values
 
 

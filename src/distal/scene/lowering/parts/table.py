@@ -19,7 +19,7 @@ from distal.frontend import Assembly
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
 from distal.packages import PackageError
-from distal.scene.lowering.parts.flatten import UnionMember, members_of
+from distal.scene.lowering.parts.flatten import UnionMember, member_count, members_of
 from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.tree.node import Node
@@ -128,7 +128,7 @@ def rolled_for(assembly: Assembly, root: Node) -> Node:
         CompileError: The target has no buffers for a table, and the parts are too many without one.
     """
     if assembly.table_from is not None:
-        return rolled(root).node if root.parts >= assembly.table_from else root
+        return rolled(root).node if member_count(root) >= assembly.table_from else root
     if root.parts > MOST_WITHOUT:
         raise CompileError.at(
             f"{root.parts:,} parts of '{root.name}' need a table, and this target has no buffers",
@@ -151,7 +151,7 @@ def split_table(root: Node) -> tuple[TableNode | None, Node | None]:
 
 def _roll(root: Node) -> Rolled:
     nothing = Rolled(root, None, ())
-    if root.flat or root.parts < LEAST_PARTS:
+    if root.flat or member_count(root) < LEAST_PARTS:
         return nothing
     members = members_of(root)
     if len(members) < LEAST_PARTS:
@@ -170,9 +170,21 @@ def _roll(root: Node) -> Rolled:
     if found.count < LEAST_PARTS:
         return nothing
     table = found.table()
-    beside = [(m, reasons[id(m)]) for m in members if id(m) in reasons]
+    beside = _whole([(m, reasons[id(m)]) for m in members if id(m) in reasons])
     made: dict[str, Any] = {"children": tuple(k.node for k in table.kinds), "table": table}
     node: Node = TableNode(PARTS, root.flat, place=root.place, **made)
     if beside:
         node = Node(UNION, root.flat, (node, *(m.part for m, _ in beside)), place=root.place)
     return Rolled(node, table, beside)
+
+
+def _whole(beside: Sequence[tuple[UnionMember, str]]) -> list[tuple[UnionMember, str]]:
+    """Return the members beside a table, with a repetition in place of its copies."""
+    found: dict[int, tuple[UnionMember, str]] = {}
+    for member, reason in beside:
+        if member.repetition is None:
+            found[id(member)] = (member, reason)
+        else:
+            whole = UnionMember(member.repetition, member.source)
+            found.setdefault(id(member.repetition), (whole, reason))
+    return list(found.values())
