@@ -225,7 +225,7 @@ def _largest(numbers: Sequence[Number]) -> Number:
     """Return a new number for those of all parts: what it may exceed, one of them may exceed."""
     first = numbers[0]
     if first.type is FLOAT and not isinstance(first.value, Expression):
-        return Number(FLOAT, max([n.value for n in numbers]))  # type: ignore[type-var]
+        return Number(FLOAT, max([n.value for n in numbers]))
     return Number(first.type, first.value)
 
 
