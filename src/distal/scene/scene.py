@@ -92,7 +92,8 @@ class Scene(Composed, Presentable):
         steps: The maximum number of steps of a ray. None: 160, and more where the Lipschitz bound
             (slope) of a field is above 1.
         acceleration: Whether many parts (16 or more members of a union) are drawn through a tree of
-            boxes. False evaluates every part at every step, which shows the same picture.
+            boxes, and smooth unions of 48 or more through lists for the cells of a grid. False
+            evaluates every part at every step, which shows the same picture.
         near: The distance at which rays begin, in scene units.
         far: The distance at which rays end, in scene units. None: rays end beyond the last surface;
             in an infinite scene at 40 times the distance to the camera's target, at least 200.

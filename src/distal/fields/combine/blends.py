@@ -35,6 +35,8 @@ class Blend:
         local: Whether it is the hard minimum if the two distances differ enough.
         steep: Whether its slope may be sqrt(slope_a^2 + slope_b^2) instead of the larger of the
             two.
+        width: It equals the hard minimum where the distances differ by ``width * k`` or more. None
+            if the difference alone does not say where.
         intersection: A separate intersection, if it does not follow from the union.
     """
 
@@ -43,14 +45,15 @@ class Blend:
     counted: bool = False
     local: bool = True
     steep: bool = False
+    width: float | None = None
     intersection: Func[..., Any] | None = None
 
 
 BLENDS: Final[dict[str, Blend]] = {
-    "quadratic": Blend(smooth.quadratic, smooth.quadratic_mix),
-    "cubic": Blend(smooth.cubic, smooth.cubic_mix),
-    "quartic": Blend(smooth.quartic, smooth.quartic_mix),
-    "circular": Blend(smooth.circular, smooth.circular_mix),
+    "quadratic": Blend(smooth.quadratic, smooth.quadratic_mix, width=4.0),
+    "cubic": Blend(smooth.cubic, smooth.cubic_mix, width=6.0),
+    "quartic": Blend(smooth.quartic, smooth.quartic_mix, width=16.0 / 3.0),
+    "circular": Blend(smooth.circular, smooth.circular_mix, width=1.0 / smooth.CORNER),
     "circular_geometric": Blend(
         smooth.circular_geometric, smooth.circular_geometric_mix, steep=True
     ),
@@ -66,8 +69,8 @@ BLENDS: Final[dict[str, Blend]] = {
         steep=True,
         intersection=edge_profiles.columns_intersection,
     ),
-    "stairs": Blend(edge_profiles.stairs, edge_profiles.counted_edge_mix, counted=True),
-    "soft": Blend(edge_profiles.soft, edge_profiles.soft_mix),
+    "stairs": Blend(edge_profiles.stairs, edge_profiles.counted_edge_mix, counted=True, width=1.0),
+    "soft": Blend(edge_profiles.soft, edge_profiles.soft_mix, width=1.0),
 }
 
 
@@ -231,6 +234,10 @@ def _declare(name: str, blend: Blend) -> None:
 COMBINATIONS: Final[dict[tuple[str, str], Operator]] = {}
 for _name, _blend in BLENDS.items():
     _declare(_name, _blend)
+# The blends of the unions.
+UNION_BLENDS: Final[dict[Operator, Blend]] = {
+    COMBINATIONS["union", name]: blend for name, blend in BLENDS.items()
+}
 
 PIPE = operator(
     "pipe",

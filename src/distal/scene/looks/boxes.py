@@ -26,6 +26,7 @@ from distal.lang.runtime_access import executor
 from distal.packages import PackageError
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.parts.table import rolled
+from distal.scene.lowering.smooth.cells import celled
 from distal.scene.lowering.union_parts import parts_of
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
@@ -83,6 +84,8 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
     """
+    if root.parts > MOST_FOLDED:
+        root = celled(root).node
     parts = sources = list(parts_of(root))
     if root.parts > MOST_FOLDED and (table := rolled(root)).table is not None:
         parts = list(parts_of(table.node))

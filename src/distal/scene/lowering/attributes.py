@@ -22,6 +22,7 @@ from distal.scene.lowering.part_functions import POINT
 from distal.scene.lowering.parts.kinds import PartKind, leaves_of, materials_in
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ShapeComposer
+from distal.scene.lowering.smooth.cells import CellNode
 from distal.scene.tree.calls import FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
@@ -129,6 +130,10 @@ def _visit(
     if isinstance(node, TableNode) and whole is None:
         d = composer.table(node).distance(site.p) if measured else None
         return d, _of_table(body, kind, node, site)
+    if isinstance(node, CellNode) and whole is None:
+        members = composer.members(node.grid)
+        d = members.distance(site.p, exact=node.exact) if measured else None
+        return d, _of_members(kind, node, site)
     if whole is not None:
         d = composer.distance(body, node, site.p, site.cell, site.values) if measured else None
         return d, whole
@@ -156,6 +161,23 @@ def _of_table(body: StatementList, kind: Attribute, node: TableNode, site: Attri
     """Return the attribute of the part of a table that is nearest to a point."""
     part = kind.composer.table(node).nearest(body, site.p)
     return of_part(kind, node, site, part)
+
+
+def _of_members(kind: Attribute, node: CellNode, site: AttributePoint) -> Expr:
+    """Return the attribute of a smooth union with a grid."""
+    composer = kind.composer
+    given: dict[str, Expr] = {"cell": site.cell}
+    if site.footprint is not None:
+        given["footprint"] = site.footprint
+    members = composer.members(node.grid)
+
+    def make(inner: StatementList, of: PartKind) -> Expr:
+        footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
+        values, cell = composer.values.all(of.node), Read("cell", VEC3)
+        here = AttributePoint(POINT, cell, values, footprint)
+        return kind.in_row(of, members.ordinal, lambda: attribute(inner, kind, of.node, here))
+
+    return members.attribute(kind.name, kind.result, site.p, given, make)
 
 
 def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) -> Expr:

@@ -31,6 +31,7 @@ from distal.ir.nodes import Call, Const, Construct, Expr, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
 from distal.scene.lowering.parts.table import PartTable, TableNode
+from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 
@@ -108,6 +109,8 @@ class BoundsComposer:
         """
         if isinstance(node, TableNode):
             return self._of_table(node.table)
+        if isinstance(node, CellNode):
+            return self._of_grid(node.grid)
         own, shares = self._values.split(node, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -178,6 +181,17 @@ class BoundsComposer:
         divisor = constant_number(table.divisor) if table.needs_factors else ONE
         box = Construct(corners, self._values.assembly.struct(Bounds))
         return ShapeBounds(slope, divisor, box, UNKNOWN, UNKNOWN)
+
+    def _of_grid(self, grid: MemberGrid) -> ShapeBounds:
+        low, high = grid.box
+        corners = (
+            self._values.fixed("smooth_low", VEC3, low),
+            self._values.fixed("smooth_high", VEC3, high),
+        )
+        slope = constant_number(grid.slope)
+        growth, side_growth = map(constant_number, grid.growth)
+        box = Construct(corners, self._values.assembly.struct(Bounds))
+        return ShapeBounds(slope, slope, box, growth, side_growth)
 
     def of_operator(
         self,

@@ -47,7 +47,7 @@ class GradientOf(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""
-        node = rolled_for(assembly, self._node)
+        node = rolled_for(assembly, self._node, exact=True)
         composer = ShapeComposer(assembly, [node])
         field = composer.field(node, composer.values.all(node), ZERO_CELL)
         p = Read("p", self.result)

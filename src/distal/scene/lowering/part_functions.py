@@ -39,7 +39,9 @@ class PartFunctions:
         self._table = table
         assembly = composer.assembly
         self._rows = assembly.resource(table.rows, "part_rows")
-        self.given: dict[str, Expr] = {"boxes": assembly.resource(table.boxes, "part_boxes")}
+        self.given: dict[str, Expr] = {}
+        if table.boxes is not None:
+            self.given["boxes"] = assembly.resource(table.boxes, "part_boxes")
         for kind in table.kinds:
             kind.read(assembly, [self._read(column) for column in kind.columns])
         params = (("p", VEC3), ("part", INT))

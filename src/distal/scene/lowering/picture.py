@@ -92,6 +92,10 @@ class SceneLowering:
         self._scene = scene
         rolls = scene.acceleration and not self._hybrid
         self.node = rolled_for(assembly, scene.shape.node) if rolls else scene.shape.node
+        # Views show the author's values; rays need only bounds far from surfaces.
+        self._shown_node = self.node
+        if rolls:
+            self._shown_node = rolled_for(assembly, scene.shape.node, exact=True)
         self.composer = ShapeComposer(assembly, [self.node])
         self._rays = RayFunctions(self.composer, self.node, self._function)
         self._view_numbers: dict[str, Expr] = {}
@@ -317,6 +321,9 @@ class SceneLowering:
             if shown in RENDERERS.values() and not self._hybrid:
                 values = self.composer.values.all(self.node)
                 asked["field"] = self.composer.safe_field(self.node, values, ZERO_CELL)
+            elif self._shown_node is not self.node:
+                values = self.composer.values.all(self._shown_node)
+                asked["field"] = self.composer.field(self._shown_node, values, ZERO_CELL)
             if shown is VIEWS.get(view):
                 asked |= self._shown_numbers(view, body, asked)
             if shown is layers.layer_material:

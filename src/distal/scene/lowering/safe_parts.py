@@ -77,6 +77,12 @@ class SafeParts:
         return found
 
     def _may_split(self, node: Node) -> bool:
+        if not self.keeps_surfaces(node):
+            return False
+        return len(node.children) > 1 or self.splits(node.children[0])
+
+    def keeps_surfaces(self, node: Node) -> bool:
+        """Return whether the surface of an operator depends only on its children's surfaces."""
         rule = node.rule
         if isinstance(rule, Primitive) or rule.around is not None:
             return False
@@ -84,7 +90,7 @@ class SafeParts:
             return rule in SIGNS_ONLY
         moves_only = rule.slope is None and rule.finish is None and not rule.repeats
         isometry = Guarantee.LOWER_BOUND in rule.keeps and moves_only
-        return (isometry or rule in SCALES_VALUE) and self.splits(node.children[0])
+        return isometry or rule in SCALES_VALUE
 
     def count(self, node: Node) -> int:
         """Return the number of parts of a subtree that have their own divisors."""

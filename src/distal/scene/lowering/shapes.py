@@ -29,6 +29,8 @@ from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.part_functions import PartFunctions
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.safe_parts import SafeParts
+from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
+from distal.scene.lowering.smooth.functions import MemberFunctions
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
@@ -55,6 +57,7 @@ class ShapeComposer:
         self._kinds: dict[int, set[int]] = {}
         self._count_kinds(root_nodes)
         self._tables: dict[int, PartFunctions] = {}
+        self._members: dict[int, MemberFunctions] = {}
 
     # Equality of subtrees
 
@@ -96,6 +99,13 @@ class ShapeComposer:
         found = self._tables.get(id(node))
         if found is None:
             found = self._tables[id(node)] = PartFunctions(self, node.table)
+        return found
+
+    def members(self, grid: MemberGrid) -> MemberFunctions:
+        """Return the functions of the members of a smooth union with a grid."""
+        found = self._members.get(id(grid))
+        if found is None:
+            found = self._members[id(grid)] = MemberFunctions(self, grid)
         return found
 
     # Distances
@@ -238,6 +248,8 @@ class ShapeComposer:
             return self._scaled(body, node, p, cell, values, factors)
         if isinstance(node, TableNode):
             return body.let("d", self.table(node).distance(p))
+        if isinstance(node, CellNode):
+            return body.let("d", self.members(node.grid).distance(p, exact=node.exact))
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):

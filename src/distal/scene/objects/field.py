@@ -87,7 +87,7 @@ class BaseShape(Composed, Presentable):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the distance function to the program, and return its name."""
-        node = rolled_for(assembly, self.node)
+        node = rolled_for(assembly, self.node, exact=True)
         composer = ShapeComposer(assembly, [node])
         found = composer.field(node, composer.values.all(node), ZERO_CELL)
         if not found.captures:

@@ -56,7 +56,7 @@ class Rows:
     def table(self) -> PartTable:
         """Return the table of the parts."""
         factors = [1.0 / np.maximum(swept.divisor, 1.0) for swept in self.swept]
-        rows, places = _rows(self.kinds, factors)
+        rows, places = row_data(self.kinds, factors)
         order = box_tree(*_corners(self.first), places)
         low, high = _corners(self.swept)
         boxes = Buffer(order.filled(low, high))
@@ -119,7 +119,7 @@ def _chosen(kind: PartKind, chosen: NDArray[np.bool_]) -> PartKind:
     return replace(kind, members=members, values=values)
 
 
-def _rows(
+def row_data(
     kinds: Sequence[PartKind], factors: Sequence[Floats]
 ) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
     """Return the rows of all parts, and the number of each part's first vec4.

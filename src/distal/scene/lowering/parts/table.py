@@ -22,6 +22,7 @@ from distal.packages import PackageError
 from distal.scene.lowering.parts.flatten import UnionMember, member_count, members_of
 from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
+from distal.scene.lowering.smooth.cells import celled_for
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ class PartTable:
 
     Attributes:
         kinds: The kinds of parts.
-        boxes: The tree of boxes, a buffer of vec4 (``render.part_tree``).
+        boxes: The tree of boxes, a buffer of vec4 (``render.part_tree``); None for members of a
+            smooth union.
         rows: The numbers of the parts, a buffer of vec4.
         low: The low corner of the box around all parts.
         high: The high corner.
@@ -61,7 +63,7 @@ class PartTable:
     """
 
     kinds: Sequence[PartKind]
-    boxes: Buffer
+    boxes: Buffer | None
     rows: Buffer
     low: tuple[float, ...]
     high: tuple[float, ...]
@@ -121,12 +123,19 @@ def rolled(root: Node) -> Rolled:
     return found
 
 
-def rolled_for(assembly: Assembly, root: Node) -> Node:
-    """Return the tree with a table, if a program can have one; else the tree itself.
+def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
+    """Return the tree with a table and with grids of smooth unions, if a program can have them.
+
+    Args:
+        assembly: The program.
+        root: The tree.
+        exact: Whether values far from smooth unions are those of the shape, not only bounds.
 
     Raises:
-        CompileError: The target has no buffers for a table, and the parts are too many without one.
+        CompileError: The target has no buffers for a table, and the parts are too many without one;
+            or a smooth union has too many members and can have no grid.
     """
+    root = celled_for(assembly.table_from, root, exact=exact)
     if assembly.table_from is not None:
         return rolled(root).node if member_count(root) >= assembly.table_from else root
     if root.parts > MOST_WITHOUT:
