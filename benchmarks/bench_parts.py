@@ -20,6 +20,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from PIL import Image, ImageDraw
@@ -138,13 +139,21 @@ def exponent(rows: dict[int, dict[str, float]], column: str) -> float:
     return math.log(last[column] / first[column]) / math.log(b / a)
 
 
-def plot(rows: dict[int, dict[str, float]], path: Path) -> None:
-    """Draw all columns over the count, both logarithmic, each from its first value."""
+def plot(rows: dict[int, dict[str, float]], path: Path, colors: Mapping[str, str] = COLORS) -> None:
+    """Draw columns over the count, both logarithmic, each from its first value.
+
+    Args:
+        rows: The columns of each count.
+        path: The picture.
+        colors: The names of the columns that are drawn, and their colors.
+    """
     width, height, margin = 720, 480, 60
     image = Image.new("RGB", (width, height), "white")
     draw = ImageDraw.Draw(image)
     low, high = math.log10(min(rows)), math.log10(max(rows))
-    decades = max(1.0, max(math.log10(r[c] / rows[min(rows)][c]) for r in rows.values() for c in r))
+    decades = max(
+        1.0, max(math.log10(r[c] / rows[min(rows)][c]) for r in rows.values() for c in colors)
+    )
 
     def place(count: int, ratio: float) -> tuple[float, float]:
         x = margin + (math.log10(count) - low) / (high - low) * (width - 3 * margin)
@@ -156,11 +165,11 @@ def plot(rows: dict[int, dict[str, float]], path: Path) -> None:
     for decade in range(math.ceil(decades)):
         draw.line((*place(min(rows), 10.0**decade), *place(max(rows), 10.0**decade)), "#dddddd")
         draw.text((10, place(min(rows), 10.0**decade)[1] - 6), f"x{10**decade}", "black")
-    for name in COLUMNS:
+    for name, color in colors.items():
         first = rows[min(rows)][name]
         points = [place(count, row[name] / first) for count, row in rows.items()]
-        draw.line(points, COLORS[name], 3)
-        draw.text((points[-1][0] + 8, points[-1][1] - 6), name, COLORS[name])
+        draw.line(points, color, 3)
+        draw.text((points[-1][0] + 8, points[-1][1] - 6), name, color)
     image.save(path)
 
 

@@ -73,6 +73,7 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     """Yield the lines of the report."""
     yield from _tree(report)
     yield from _table(report)
+    yield from _smooth(report)
     yield ""
     yield from _slope(report)
     yield from _measurements(report)
@@ -112,6 +113,21 @@ def _table(report: ValidationReport) -> Iterator[str]:
     for (name, reason, line), count in list(gathered.items())[:MOST_ROWS]:
         times = f" ({count} times)" if count > 1 else ""
         yield f"  beside it: {name}{times}: {reason}  {line}".rstrip()
+
+
+def _smooth(report: ValidationReport) -> Iterator[str]:
+    """Yield what is known of smooth unions of many shapes."""
+    if report.smooth:
+        yield ""
+    for union in report.smooth[:MOST_ROWS]:
+        many, line = f"{union.count:,} shapes", _line(union.place)
+        if union.reason:
+            asked = f"{many} of a smooth union are asked at each point"
+            yield f"{asked}: {union.reason}  {line}".rstrip()
+            continue
+        lists = f"{union.cells:,} cells with {union.mean:.1f} shapes each, {union.longest} at most"
+        yield f"a smooth union of {many} has {lists}, {union.bytes / 1e6:.1f} MB  {line}".rstrip()
+        yield "  one shape of each kind is shown"
 
 
 def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:

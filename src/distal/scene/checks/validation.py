@@ -18,6 +18,7 @@ from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.place_json import place_json
+from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
 from distal.scene.checks.table_report import TableReport, table_of
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
@@ -81,12 +82,15 @@ class ValidationReport:
         slope_from: Indices of the shapes that increase the slope of the whole, outermost first.
         table: The table of parts, or None. Then the shapes are one of each kind of parts, and those
             beside the table.
+        smooth: The smooth unions of many shapes. The shapes are one of each kind of those with
+            lists for cells.
     """
 
     shapes: tuple[ShapeReport, ...]
     slope_from: tuple[int, ...]
     findings: tuple[CheckFinding, ...]
     table: TableReport | None = None
+    smooth: tuple[SmoothReport, ...] = ()
 
     @property
     def holds(self) -> bool:
@@ -100,6 +104,7 @@ class ValidationReport:
             "holds": self.holds,
             "slope_from": list(self.slope_from),
             "table": None if self.table is None else self.table.as_json(),
+            "smooth": [union.as_json() for union in self.smooth],
             "shapes": [_shape_json(i, row) for i, row in enumerate(self.shapes)],
             "findings": [
                 {
@@ -127,7 +132,8 @@ def check(
         seed: Seed of the random points.
     """
     given = dict(params or {})
-    table, root = table_of(shape.node)
+    smooth, root = smooth_unions_of(shape.node)
+    table, root = table_of(root)
     nodes = list(root.walk())
     numbers = {id(node): i for i, node in enumerate(nodes)}
     promised = bounds_of_nodes(root, given, time)
@@ -144,7 +150,7 @@ def check(
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
-    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table)
+    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth)
 
 
 def _regions(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> dict[int, Region | None]:
