@@ -294,7 +294,9 @@ def test_plain_values_are_json_without_infinity():
     found = check(Shape.from_function(wobbly, slope=1.2, depth=0.05) | Plane())
     text = json.dumps(found.as_json(), allow_nan=False)
     made = json.loads(text)
-    assert set(made) == {"version", "holds", "slope_from", "table", "shapes", "findings"}
+    assert set(made) == {
+        *("version", "holds", "slope_from", "table", "smooth", "shapes", "findings")
+    }
     assert made["shapes"][0]["bounds"] == {"low": [None] * 3, "high": [None] * 3}
     own = next(row for row in made["shapes"] if row["name"] == "wobbly")
     assert set(own) == {
