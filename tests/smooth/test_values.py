@@ -275,6 +275,16 @@ def test_what_moves_is_joined_to_a_grid_of_what_does_not():
     assert values(found.node, points) == pytest.approx(values(whole.node, points), abs=1e-6)
 
 
+def test_dense_members_leave_blocks_undivided(monkeypatch):
+    rng = np.random.default_rng(6)
+    row = [Sphere(0.3).translate(0.01 * i, *rng.uniform(0, 0.01, 2)) for i in range(MANY)]
+    row += [Sphere(0.1).translate(3.0, 0.5 * i, 0.0) for i in range(8)]
+    whole = agree(union(row, smooth=0.1))
+    monkeypatch.setattr(grid, "MOST_PAIRS", 10_000)
+    part = agree(union(row, smooth=0.1))
+    assert whole.cell_count > part.cell_count > np.prod(part.blocks)
+
+
 def test_few_members_and_flat_ones_stay_as_they_are():
     few = union(balls(np.random.default_rng(1), LEAST_MEMBERS - 1), smooth=0.1)
     assert celled(few.node).node is few.node and celled(few.node).linear == []

@@ -144,7 +144,7 @@ def celled(root: Node) -> CelledTree:
     """
     found = _celled.get(root)
     if found is None:
-        rewriting = _Rewriting()
+        rewriting = _GridInsertion()
         try:
             found = CelledTree(rewriting.of(root), rewriting.grids, rewriting.linear)
         except RecursionError:
@@ -199,7 +199,7 @@ def _made_exact(node: Node) -> Node:
     return node if same else replace(node, children=children)
 
 
-class _Rewriting:
+class _GridInsertion:
     """Replaces the large smooth unions of a tree."""
 
     def __init__(self) -> None:

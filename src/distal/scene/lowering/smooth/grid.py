@@ -21,7 +21,7 @@ from distal.lang.resources import Buffer
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.parts.rows import row_data
-from distal.scene.lowering.smooth.cell_lists import HALVES, CellLists, packed_cells
+from distal.scene.lowering.smooth.cell_lists import HALVES, WIDTH, CellLists, packed_cells
 from distal.scene.lowering.smooth.cells import INFINITE, KINDS, MOST_KINDS, MemberGrid
 from distal.scene.lowering.smooth.chain import Link, width_of
 from distal.scene.lowering.smooth.members import BoundsOfKind, DistanceOfKind
@@ -44,6 +44,9 @@ MOST_CELLS: Final = 128**3
 MOST_BLOCKS: Final = 128
 # A block whose list is no longer is not divided into cells.
 SHORT: Final = 2
+# The most pairs of a cell and a member that are computed for the cells of blocks: where members lie
+# dense within the width of their blends, lists are long, and the longest stay those of blocks.
+MOST_PAIRS: Final = 48_000_000
 # Cells of the first level along the longest axis, at most.
 FIRST: Final = 4
 # How much larger a cell counts than it is, for the rounding of 32-bit places.
@@ -139,6 +142,14 @@ def _bounds_of(kinds: Sequence[PartKind]) -> MemberBounds:
     return MemberBounds(np.concatenate(lows), np.concatenate(highs), slope, growth, side_growth)
 
 
+def _worth_dividing(count: Whole) -> Whole:
+    """Return the blocks that are divided into cells, from the lengths of their lists."""
+    order = np.argsort(count, kind="stable")
+    pairs = WIDTH**3 * np.cumsum(count[order])
+    chosen: Whole = np.sort(order[(pairs <= MOST_PAIRS) & (count[order] > SHORT)])
+    return chosen
+
+
 class _Building:
     """The division of a box into cells with lists of members."""
 
@@ -163,11 +174,11 @@ class _Building:
         """Return the grid."""
         blocks = self._blocks_with_lists()
         count = np.diff(blocks.start)
-        long = np.flatnonzero(count > SHORT)
+        long = _worth_dividing(count)
         cells = self._divided(self._divided(blocks.chosen(long), -1), -2)
         members = self._members
         packed = packed_cells(blocks, cells, tuple(self._blocks.tolist()), members.places)
-        lengths = np.concatenate([np.diff(cells.start), count[count <= SHORT]])
+        lengths = np.concatenate([np.diff(cells.start), np.delete(count, long)])
         low, high = (tuple(map(float, corner)) for corner in self._box)
         nx, ny, nz = map(int, self._blocks)
         return MemberGrid(
