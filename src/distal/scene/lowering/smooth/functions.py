@@ -31,7 +31,7 @@ class MemberFunctions:
 
     def __init__(self, composer: ShapeComposer, grid: MemberGrid) -> None:
         self._composer = composer
-        table = PartTable(grid.kinds, None, grid.rows, grid.low, grid.high, grid.slope)
+        table = PartTable(grid.kinds, None, grid.rows, grid.low, grid.high, grid.slope, 1.0)
         self._parts = PartFunctions(composer, table)
         assembly, fixed = composer.assembly, composer.values.fixed
         corners = (

@@ -118,7 +118,7 @@ def grid_of(links: Sequence[Link]) -> MemberGrid | str:
     if not bounds.slope < ENDLESS:
         return STEEP
     order = {id(member): i for i, member in enumerate(made)}
-    rows, row_places = row_data(kinds)
+    rows, row_places = row_data(kinds, ())
     chain = np.array([order[id(m)] for kind in kinds for m in kind.members])
     kind = np.repeat(np.arange(len(kinds)), [len(k.members) for k in kinds])
     ordinal = np.concatenate([np.arange(len(k.members)) for k in kinds])

@@ -6,7 +6,7 @@ Input: a kind of members. Output: functions that the executor runs for many memb
 from __future__ import annotations
 
 from distal.frontend import Assembly
-from distal.ir.build import field
+from distal.ir.build import field, number
 from distal.ir.nodes import Construct, Expr, Param, Read, Return
 from distal.ir.types import FLOAT, VEC3, Type, tuple_type
 from distal.lang.composed import Composed
@@ -14,7 +14,6 @@ from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.parts.kind_boxes import Floats, columns_of
 from distal.scene.lowering.parts.kinds import PartKind
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.tree.calls import COLUMN
 from distal.scene.tree.values import StatementList, Values
 
 
@@ -28,14 +27,16 @@ class _OfKind(Composed):
     def __init__(self, kind: PartKind) -> None:
         self._kind = kind
         of_shape = {id(n) for node in kind.node.walk() for n in node.numbers.values()}
-        columns = list(zip(kind.columns, kind.numbers[0], strict=True))
-        self.shape_columns = [i for i, (key, _) in enumerate(columns) if key in of_shape]
-        self._columns = tuple((f"column_{i}", columns[i][1].type) for i in self.shape_columns)
+        places = {i for n in kind.numbers if id(n.number) in of_shape for i in n.places}
+        self.shape_columns = sorted(i for i in places if i is not None)
+        self._columns = tuple((f"column_{i}", kind.columns[i].type) for i in self.shape_columns)
 
     def _read_columns(self, assembly: Assembly) -> None:
-        keys = list(self._kind.columns)
+        # Materials have columns too, which nothing here reads.
+        columns: list[Expr] = [number(0.0, column.type) for column in self._kind.columns]
         for i, (name, type) in zip(self.shape_columns, self._columns, strict=True):
-            assembly.made[COLUMN, keys[i]] = Read(name, type)
+            columns[i] = Read(name, type)
+        self._kind.read(assembly, columns)
 
     def arguments(self) -> list[Floats]:
         """Return the columns that are parameters, one row for each member."""
