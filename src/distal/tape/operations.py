@@ -1,7 +1,7 @@
 """The operations of a tape: one table row each.
 
 A row says how many operands an operation takes, and whether intervals may decide between its
-operands. What it computes is written in ``interpreters``, once for floats and once for intervals;
+operands. What it computes is written in the interpreters, once for floats and once for intervals;
 elementary functions are the built-ins of scene code, as the table of intrinsics declares them.
 """
 

@@ -13,8 +13,11 @@ from distal.backends.llvm.lanes import Lanes
 from distal.backends.llvm.program import LaneProgram
 from distal.compiler.driver import run_passes
 from distal.frontend import lower
-from distal.tape import driver, interpreters, pruning
+from distal.tape import fill_driver, pruning, value_drivers
 from distal.tape.elementary import elementary
+from distal.tape.elementary_code import elementary_code
+from distal.tape.float_interpreter import float_code
+from distal.tape.interval_interpreter import interval_code
 from distal.tape.layout import LANES
 
 
@@ -30,22 +33,22 @@ def runtime_text(lanes: Lanes) -> str:
     program = LaneProgram(module, replace(lanes, chunks=chunks))
     one = lanes.one_chunk()
     program.define(pruning.shapes_table())
-    program.define(interpreters.elementary_code(program))
+    program.define(elementary_code(program))
     for write in (
-        interpreters.float_code,
-        interpreters.interval_code,
+        float_code,
+        interval_code,
         pruning.liveness_code,
         pruning.writer_code,
         pruning.allocation_code,
-        driver.square_code,
-        driver.pixels_code,
-        driver.tile_code,
-        driver.fill_code,
-        driver.allocate_code,
-        driver.floats_code,
-        driver.intervals_code,
-        driver.prune_code,
-        driver.trace_code,
+        fill_driver.square_code,
+        fill_driver.pixels_code,
+        fill_driver.tile_code,
+        fill_driver.fill_code,
+        value_drivers.allocate_code,
+        value_drivers.floats_code,
+        value_drivers.intervals_code,
+        value_drivers.prune_code,
+        value_drivers.trace_code,
     ):
         program.define(write(one, program.declarations))
     return program.text("tape") + "\n!1 = !{i32 1}\n"

@@ -1,10 +1,8 @@
-"""Write the interpreters of tapes, for floats and for intervals of 64 lanes.
+"""Write the interpreter of tapes for intervals: 64 boxes at once.
 
-Input: the shape of the machine's vectors. Output: the text of three LLVM functions. They do not
-depend on any tape: they read its operations (``layout``) and jump to the code of each.
-
-Floats: a slot holds 64 floats. Intervals: a slot holds 64 lower ends and 64 upper ends. What an
-interval says about the float value of the same operation at any point of the lane's tile:
+Input: the shape of the machine's vectors. Output: the text of one LLVM function. A slot holds 64
+lower ends and 64 upper ends. What an interval says about the float value of the same operation at
+any point of the lane's box:
 
 - If both ends are finite, the value is not NaN and is between them, ends included. Sums, products,
   quotients and roots are rounded correctly and so never decrease where the exact result increases:
@@ -19,23 +17,14 @@ Journal of the ACM 48 (2001).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Final
 
-from distal.backends.llvm.lanes import Lanes, Leaf
-from distal.backends.llvm.program import LaneProgram
-from distal.backends.llvm.writer import LlvmWriter
+from distal.backends.llvm.lanes import Lanes
 from distal.ir.intrinsics import Trend
-from distal.ir.types import Kind
-from distal.tape.layout import (
-    FIELD,
-    FLOAT_SLOT,
-    INTERVAL_SLOT,
-    LANES,
-    OPERATION_BYTES,
-)
-from distal.tape.machine_code import POINTER, WORD, FunctionCode, Value
-from distal.tape.operations import ELEMENTARY, FIRST_ELEMENTARY, NUMBER, OPERATIONS
+from distal.tape.interpreter_loop import ROUNDINGS, Reader, TapeLoop
+from distal.tape.layout import FLOAT_SLOT, INTERVAL_SLOT
+from distal.tape.machine_code import POINTER, WORD, Value
+from distal.tape.operations import FIRST_ELEMENTARY, NUMBER, OPERATIONS
 
 _UPPER: Final = FLOAT_SLOT  # bytes from the lower ends of a slot to its upper ends
 # Twice the largest error of an elementary function on the CPU, with a margin: the values at the
@@ -44,169 +33,9 @@ _UPPER: Final = FLOAT_SLOT  # bytes from the lower ends of a slot to its upper e
 RELATIVE_ERROR: Final = 4e-6
 ABSOLUTE_ERROR: Final = 4e-6
 LARGEST_ANGLE: Final = 1e4  # beyond it, sines are less accurate: their interval is -1 to 1
-_ROUNDINGS: Final = {"floor": "floor", "ceil": "ceil", "round": "rint", "trunc": "trunc"}
-
-Write = Callable[[], None]
 
 
-def vector_type(lanes: Lanes) -> str:
-    """Return LLVM's type of one register of floats."""
-    return lanes.vector(Kind.FLOAT)
-
-
-class Reader:
-    """The operation that an interpreter's loop has reached."""
-
-    def __init__(self, code: FunctionCode, operation: Value) -> None:
-        self.code = code
-        self._operation = operation
-
-    def field(self, name: str) -> Value:
-        """Return a field of the operation: its number, a slot, or a constant's number."""
-        return self.code.load(self._operation.at(FIELD[name]), "i16")
-
-
-class _TapeLoop:
-    """What both interpreters share: the loop over the operations, and access to chunks."""
-
-    def __init__(self, lanes: Lanes, declarations: set[str], slot: int) -> None:
-        self.code = FunctionCode(lanes, declarations)
-        self.lanes = lanes
-        self.vector = vector_type(lanes)
-        self._slot = slot
-        self.operations = self.code.parameter("operations", POINTER)
-        self.length = self.code.parameter("length")
-        self.constants = self.code.parameter("constants", POINTER)
-        self.slots = self.code.parameter("slots", POINTER)
-        self.inputs = self.code.parameter("inputs", POINTER)
-
-    @property
-    def offsets(self) -> range:
-        """The byte offset of each chunk in 64 floats."""
-        return range(0, FLOAT_SLOT, 4 * self.lanes.width)
-
-    def slot(self, reader: Reader, field: str) -> Value:
-        """Return the address of an operand's slot, or of the result's."""
-        return self.slots.at(reader.field(field) * self._slot)
-
-    def load(self, address: Value, offset: int) -> Value:
-        """Load a chunk."""
-        return self.code.load(address.at(offset), self.vector, align=64)
-
-    def store(self, value: Value, address: Value, offset: int) -> None:
-        """Store a chunk."""
-        self.code.store(value, address.at(offset), align=64)
-
-    def constant(self, reader: Reader) -> Value:
-        """Return a constant, broadcast to a chunk."""
-        number = self.code.load(self.constants.at(reader.field("a") * 4), "float")
-        first = f"insertelement {self.vector} poison, float {number.name}, i64 0"
-        spread = self.code.value(self.vector, first).name
-        zeros = f"<{self.lanes.width} x i32> zeroinitializer"
-        both = f"{self.vector} {spread}, {self.vector} poison"
-        return self.code.value(self.vector, f"shufflevector {both}, {zeros}")
-
-    def least(self, a: Value, b: Value) -> Value:
-        """Return ``b if b < a else a``."""
-        return self.code.select(b < a, b, a)
-
-    def most(self, a: Value, b: Value) -> Value:
-        """Return ``b if a < b else a``."""
-        return self.code.select(a < b, b, a)
-
-    def call(self, name: str, *operands: Value) -> Value:
-        """Call an LLVM intrinsic for a chunk."""
-        suffix = f"v{self.lanes.width}f32"
-        return self.code.intrinsic(f"{name}.{suffix}", self.vector, *operands)
-
-    def positive(self, a: Value) -> Value:
-        """Return ``max(a, 0)``, 0 for NaN."""
-        return self.code.select(a > 0.0, a, self.code.literal(0.0, self.vector))
-
-    def loop(self, case: Callable[[str, Reader, Value], None]) -> None:
-        """Write the loop; ``case`` writes the code of one operation at a place of the tape."""
-        code = self.code
-        with code.count(self.length) as index:
-            reader = Reader(code, self.operations.at(index * OPERATION_BYTES))
-            labels = {i: f"op_{row.name}" for i, row in enumerate(OPERATIONS)}
-            with code.switch(reader.field("operation"), labels) as after:
-                for number, row in enumerate(OPERATIONS):
-                    code.writer.begin(labels[number])
-                    case(row.name, reader, index)
-                    code.writer.jump(after)
-
-
-def float_code(lanes: Lanes, declarations: set[str]) -> str:
-    """Return the function that evaluates a tape at 64 points.
-
-    Args:
-        lanes: The shape of the machine's vectors.
-        declarations: Receives the declarations of LLVM intrinsics.
-    """
-    self = _TapeLoop(lanes, declarations, FLOAT_SLOT)
-    code = self.code
-
-    def value(name: str, a: Value, b: Value) -> Value:
-        match name:
-            case "add":
-                return a + b
-            case "sub":
-                return a - b
-            case "mul":
-                return a * b
-            case "div":
-                return a / b
-            case "min":
-                return self.least(a, b)
-            case "max":
-                return self.most(a, b)
-            case "neg":
-                return -a
-            case "abs":
-                return self.call("fabs", a)
-            case "square":
-                return a * a
-            case "sqrt":
-                return self.call("sqrt", self.positive(a))
-            case "less" | "less_equal" | "equal":
-                holds = {"less": a < b, "less_equal": a <= b, "equal": a.same(b)}[name]
-                return code.select(holds, 1.0, code.literal(0.0, self.vector))
-            case _:
-                return self.call(_ROUNDINGS[name], a)
-
-    def case(name: str, reader: Reader, _: Value) -> None:
-        row = OPERATIONS[NUMBER[name]]
-        target = self.slot(reader, "result")
-        if name == "const":
-            constant = self.constant(reader)
-            for offset in self.offsets:
-                self.store(constant, target, offset)
-        elif name in ("x", "y", "z"):
-            source = self.inputs.at("xyz".index(name) * FLOAT_SLOT)
-            for offset in self.offsets:
-                self.store(self.load(source, offset), target, offset)
-        elif name in ELEMENTARY:
-            operands = [self.slot(reader, f) for f in "ab"[: row.operands]]
-            number = code.literal(NUMBER[name] - FIRST_ELEMENTARY)
-            code.call("elementary", target, operands[0], operands[-1], number)
-        elif name == "select":
-            a, b, c = (self.slot(reader, f) for f in "abc")
-            for offset in self.offsets:
-                chosen = self.load(a, offset) > 0.5
-                both = self.load(b, offset), self.load(c, offset)
-                self.store(code.select(chosen, *both), target, offset)
-        else:
-            addresses = [self.slot(reader, f) for f in "ab"[: row.operands]]
-            for offset in self.offsets:
-                chunks = [self.load(address, offset) for address in addresses]
-                self.store(value(name, chunks[0], chunks[-1]), target, offset)
-
-    self.loop(case)
-    params = "ptr %operations, i64 %length, ptr %constants, ptr noalias %slots, ptr %inputs"
-    return code.function("floats", params)
-
-
-class _Intervals(_TapeLoop):
+class _Intervals(TapeLoop):
     """The interval interpreter, which also records the choices of each lane."""
 
     def __init__(self, lanes: Lanes, declarations: set[str]) -> None:
@@ -344,7 +173,7 @@ class _Intervals(_TapeLoop):
             case "less" | "less_equal" | "equal":
                 return self._comparison(name, ends)
             case _:
-                return self.call(_ROUNDINGS[name], low), self.call(_ROUNDINGS[name], high)
+                return self.call(ROUNDINGS[name], low), self.call(ROUNDINGS[name], high)
 
     def _quotient(self, ends: list[Value]) -> tuple[Value, Value]:
         low, high, least, most = ends
@@ -429,45 +258,3 @@ def interval_code(lanes: Lanes, declarations: set[str]) -> str:
         "ptr %first, ptr %second"
     )
     return self.code.function("intervals", params)
-
-
-def elementary_code(program: LaneProgram) -> str:
-    """Return the function that applies an elementary function to 64 floats in memory.
-
-    Args:
-        program: The module of ``elementary.elementary()`` after the passes of the CPU.
-    """
-    lanes, arithmetic = program.lanes, program.arithmetic()
-    writer = arithmetic.writer
-    entry = program.module.function(program.module.entry)
-    # The function uses no uniforms, resources or loops, so the job is never read.
-    writer.line("%job = getelementptr i8, ptr %x, i64 0")
-    number = writer.value("trunc i64 %number to i32")
-    chunk = 4 * lanes.width
-    for start in range(0, LANES, lanes.count):
-        arithmetic.enter()
-        loaded = [
-            tuple(
-                writer.value(f"load {lanes.vector(Kind.FLOAT)}, ptr {at}, align 64")
-                for at in _chunks(writer, source, start, lanes)
-            )
-            for source in ("%x", "%y")
-        ]
-        args = [
-            (Leaf(Kind.INT, (number,), True),),
-            *((Leaf(Kind.FLOAT, names, False),) for names in loaded),
-        ]
-        result = program.run(arithmetic, entry, list(args), (False, True, True), None)
-        (leaf,) = arithmetic.spread_all(result)
-        for name, at in zip(leaf.names, _chunks(writer, "%target", start, lanes), strict=True):
-            writer.line(
-                f"store {lanes.vector(Kind.FLOAT)} {name}, ptr {at}, align {min(64, chunk)}"
-            )
-        arithmetic.leave()
-    params = "ptr %target, ptr %x, ptr %y, i64 %number"
-    return f"define internal void @elementary({params}) #0 {{\n{writer.text()}\n  ret void\n}}"
-
-
-def _chunks(writer: LlvmWriter, base: str, start: int, lanes: Lanes) -> list[str]:
-    offsets = range(start, start + lanes.count, lanes.width)
-    return [writer.value(f"getelementptr i8, ptr {base}, i64 {4 * at}") for at in offsets]
