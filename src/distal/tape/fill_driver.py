@@ -124,6 +124,10 @@ def _write_pixels(job: ThreadJob, coverage: Value, corner: tuple[Value, Value]) 
 class _FillLevel(TileLevel):
     """A level of square tiles of a picture."""
 
+    def __init__(self, job: ThreadJob, lanes: Lanes, level: int, size: int) -> None:
+        super().__init__(job, lanes, level)
+        self.size = size
+
     def place(self, lane: Value, left: Value, top: Value) -> None:
         """Set the interval of a lane to a tile.
 

@@ -69,11 +69,7 @@ class TapeLoop:
     def constant(self, reader: Reader) -> Value:
         """Return a constant, broadcast to a chunk."""
         number = self.code.load(self.constants.at(reader.field("a") * 4), "float")
-        first = f"insertelement {self.vector} poison, float {number.name}, i64 0"
-        spread = self.code.value(self.vector, first).name
-        zeros = f"<{self.lanes.width} x i32> zeroinitializer"
-        both = f"{self.vector} {spread}, {self.vector} poison"
-        return self.code.value(self.vector, f"shufflevector {both}, {zeros}")
+        return self.code.spread(number, self.vector)
 
     def least(self, a: Value, b: Value) -> Value:
         """Return ``b if b < a else a``."""

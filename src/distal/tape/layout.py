@@ -16,6 +16,10 @@ FLOAT_SLOT: Final = 4 * LANES
 INTERVAL_SLOT: Final = 2 * FLOAT_SLOT
 TILE: Final = 64  # pixels: sides of the first tiles
 SMALL_TILE: Final = 8  # pixels: sides of the tiles in a tile; its pixels are one pass
+CELLS: Final = (64, 16, 4)  # samples along the sides of the cells of a volume, at each level
+ACROSS: Final = 4  # cells of the next level along each side of a cell
+POINTS: Final = 16  # the points whose values and gradients one pass computes
+GRADIENT_PLANE: Final = 4 * POINTS  # bytes of the values, then of the derivatives along x, y and z
 
 # A tape of at most this many operations keeps each value in a slot of its own; giving them slots
 # that are reused costs more than it saves.
@@ -29,8 +33,10 @@ JOB_FIELDS: Final = (
     "output",  # pointer: four floats for each pixel
     "width",  # pixels
     "height",  # pixels
+    "depth",  # samples along the rays of a volume
+    "columns",  # of first cells that are a group
     "samples",  # in each direction of a pixel
-    "view",  # pointer to floats: ``VIEW_FIELDS``
+    "view",  # pointer to floats: ``VIEW_FIELDS`` or ``VOLUME_FIELDS``
     "colors",  # pointer to four floats for each number of samples inside, from 0 to all
     "constants",  # pointer to the tape's constants
     "operations",  # pointer: operation i writes value i
@@ -41,15 +47,29 @@ JOB_FIELDS: Final = (
     "offsets",  # pointer to the offset of each part of a thread's memory
 )
 VIEW_FIELDS: Final = ("x", "step_x", "y", "step_y", "z")  # position of the upper left corner
+# For each axis: the position of the first corner, its change from column to column, from row to row
+# and from layer to layer. Then the height of the front, its change from layer to layer, and what is
+# written where nothing is found.
+VOLUME_FIELDS: Final = (
+    *(f"{name}_{axis}" for axis in "xyz" for name in ("first", "column", "row", "layer")),
+    "front",
+    "step",
+    "nothing",
+)
 
 # The memory of a thread, in this order: bytes for each operation of the tape, for each slot, and a
-# fixed number of bytes. Level 0 are tiles, level 1 are small tiles.
+# fixed number of bytes. Levels are those of tiles, or of cells.
 WORKSPACE: Final = {
     "tile_inputs": (0, 0, 3 * INTERVAL_SLOT),
     "pixel_inputs": (0, 0, 3 * FLOAT_SLOT),
     "coverage": (0, 0, FLOAT_SLOT),
     "lengths_0": (0, 0, 8 * LANES),
     "lengths_1": (0, 0, 8 * LANES),
+    "lengths_2": (0, 0, 8 * LANES),
+    "corners": (0, 0, 3 * FLOAT_SLOT),
+    "found": (0, 0, 2 * (TILE // ACROSS) ** 2),
+    "hit_inputs": (0, 0, FLOAT_SLOT),
+    "hits": (0, 0, FLOAT_SLOT),
     "intervals": (0, INTERVAL_SLOT, 0),
     "floats": (0, FLOAT_SLOT, UNALLOCATED * FLOAT_SLOT),
     "first_0": (8, 0, 0),
@@ -58,17 +78,25 @@ WORKSPACE: Final = {
     "first_1": (8, 0, 0),
     "second_1": (8, 0, 0),
     "live_1": (8, 0, 0),
+    "first_2": (8, 0, 0),
+    "second_2": (8, 0, 0),
+    "live_2": (8, 0, 0),
     "allocated_1": (OPERATION_BYTES, 0, 0),
     "allocated_2": (OPERATION_BYTES, 0, 0),
+    "allocated_3": (OPERATION_BYTES, 0, 0),
     "last": (2, 0, 0),
     "slot_of": (2, 0, 0),
     "free": (2, 0, 0),
     "names_0": (2 * LANES, 0, 0),
     "names_1": (2 * LANES, 0, 0),
+    "names_2": (2 * LANES, 0, 0),
     "tapes_0": (OPERATION_BYTES * LANES, 0, 0),
     "tapes_1": (OPERATION_BYTES * LANES, 0, 0),
+    "tapes_2": (OPERATION_BYTES * LANES, 0, 0),
 }
 FILL: Final = "distal_tape_fill"
+HEIGHTS: Final = "distal_tape_heights"
+GRADIENTS: Final = "distal_tape_gradients"
 ALLOCATE: Final = "distal_tape_allocate"
 FLOATS: Final = "distal_tape_floats"
 INTERVALS: Final = "distal_tape_intervals"

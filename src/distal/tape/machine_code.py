@@ -198,6 +198,13 @@ class FunctionCode:
         line = f"store {type} {value.name}, ptr {pointer.name}, align {size}{hint}"
         self.writer.line(line)
 
+    def spread(self, scalar: Value, vector: str) -> Value:
+        """Return a vector with a scalar in all lanes."""
+        first = f"insertelement {vector} poison, {scalar.type} {scalar.name}, i64 0"
+        one = self.value(vector, first).name
+        zeros = f"<{vector[1:].split(' ', maxsplit=1)[0]} x i32> zeroinitializer"
+        return self.value(vector, f"shufflevector {vector} {one}, {vector} poison, {zeros}")
+
     def select(self, condition: Value, yes: Value | int | float, no: Value) -> Value:
         """Return ``yes`` where the condition holds, else ``no``."""
         chosen = self.operand(yes, no.type)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
@@ -25,12 +26,16 @@ from distal.devices.kernel_key import kernel_key
 from distal.devices.pool import PICTURES
 from distal.tape.layout import (
     ALLOCATE,
+    CELLS,
     FILL,
     FLOATS,
+    GRADIENTS,
+    HEIGHTS,
     INTERVAL_SLOT,
     INTERVALS,
     JOB_FIELDS,
     LANES,
+    POINTS,
     PRUNE,
     TILE,
     TRACE,
@@ -41,6 +46,8 @@ from distal.tape.tape import Tape
 Floats = NDArray[np.float32]
 _KEY: Final = "tape runtime"
 _LARGEST_SIDE: Final = 32768  # pixels
+MOST_LAYERS: Final = 4096  # a column of first cells is at most 64 deep
+_GROUPS: Final = 8  # for each thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +67,36 @@ class PlaneView:
     y: float
     step_y: float
     z: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class VolumeView:
+    """Parallel rays through a box of samples.
+
+    The sample in column c, row r and layer l is at ``corner + (c + 0.5) column + (r + 0.5) row +
+    (l + 0.5) layer``. Layers are numbered from the front; l = 0 is passed first.
+
+    Attributes:
+        corner: The upper left corner of the front, in scene units.
+        column: From one column to the next.
+        row: From one row to the next, downwards.
+        layer: From one layer to the next.
+        front: The height of the front: what is written there.
+        step: The change of height from one layer to the next.
+    """
+
+    corner: Sequence[float]
+    column: Sequence[float]
+    row: Sequence[float]
+    layer: Sequence[float]
+    front: float = 0.0
+    step: float = 1.0
+
+    def numbers(self) -> Floats:
+        """Return the numbers as the runtime reads them."""
+        places = np.array([self.corner, self.column, self.row, self.layer], np.float32)
+        rest = np.array([self.front, self.step, np.nan], np.float32)
+        return np.concatenate([places.T.reshape(-1), rest])
 
 
 class TapeProgram:
@@ -128,6 +165,69 @@ class TapeProgram:
             fill = self._code.function(FILL)
             pool.run(work, lambda: fill(job.address()), count, progress, cancel)
         return picture
+
+    def heights(
+        self,
+        size: tuple[int, int, int],
+        view: VolumeView,
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Floats:
+        """Return the first surface along the rays of a picture, (height, width, 4).
+
+        The surface is where the first sample with a negative value is. The four numbers of a pixel
+        are its normal, of length 1 or 0, and its height; 0 and NaN where there is no surface.
+
+        Args:
+            size: Columns, rows and layers; 1 to 32768, the layers to 4096.
+            view: Where the samples are.
+            threads: The number of threads; None uses all processors of this process.
+            progress: Called regularly with the fraction of the work that is done.
+            cancel: Called regularly; True stops the work.
+
+        Raises:
+            ValueError: A size is out of range.
+            Cancelled: ``cancel`` stopped the work.
+        """
+        width, height, depth = size
+        if not (0 < width <= _LARGEST_SIDE and 0 < height <= _LARGEST_SIDE):
+            raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
+        if not 0 < depth <= MOST_LAYERS:
+            raise ValueError(f"there are 1 to {MOST_LAYERS} layers, not {depth}")
+        picture = PICTURES.take((height, width, 4))
+        numbers = view.numbers()
+        side = CELLS[0]
+        columns, deep = -(-width // side) * -(-height // side), -(-depth // side)
+        most = threads or pool.usable_threads()
+        # Groups are small enough that every thread has several.
+        together = max(1, min(LANES // deep, columns // (_GROUPS * most)))
+        groups = -(-columns // together)
+        count = min(most, groups)
+        with self._lock:
+            job = _RuntimeJob(self, count)
+            job.set(output=picture.ctypes.data, width=width, height=height, depth=depth)
+            job.set(view=numbers.ctypes.data, columns=together)
+            work = pool.Work(job.counter, job.stop, groups)
+            heights = self._code.function(HEIGHTS)
+            pool.run(work, lambda: heights(job.address()), count, progress, cancel)
+        return picture
+
+    def gradients(self, points: NDArray[Any]) -> Floats:
+        """Return the tape's values and gradients at points, (n, 4).
+
+        Args:
+            points: An array (n, 3).
+        """
+        rows = np.asarray(points, np.float32)
+        passes = -(-len(rows) // POINTS)
+        padded = np.zeros((passes * POINTS, 3), np.float32)
+        padded[: len(rows)] = rows
+        inputs = np.ascontiguousarray(padded.reshape(passes, POINTS, 3).transpose(0, 2, 1))
+        found = np.empty((passes, 4, POINTS), np.float32)
+        self._run(GRADIENTS, inputs, found, passes)
+        return found.transpose(0, 2, 1).reshape(-1, 4)[: len(rows)]
 
     def values(self, points: NDArray[Any]) -> Floats:
         """Return the tape's values at points.

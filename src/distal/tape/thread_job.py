@@ -9,7 +9,14 @@ from typing import Final
 
 from distal.backends.llvm.lanes import Lanes
 from distal.tape.interpreter_loop import vector_type
-from distal.tape.layout import FIELD, JOB_FIELDS, OPERATION_BYTES, VIEW_FIELDS, WORKSPACE
+from distal.tape.layout import (
+    FIELD,
+    JOB_FIELDS,
+    OPERATION_BYTES,
+    VIEW_FIELDS,
+    VOLUME_FIELDS,
+    WORKSPACE,
+)
 from distal.tape.machine_code import POINTER, WORD, FunctionCode, Value
 
 CHANNELS: Final = "<4 x float>"
@@ -41,6 +48,10 @@ class ThreadJob:
     def view(self, name: str) -> Value:
         """Return a number of the view."""
         return self.code.load(self.pointer("view").at(4 * VIEW_FIELDS.index(name)), "float")
+
+    def volume(self, name: str) -> Value:
+        """Return a number of the view of a volume."""
+        return self.code.load(self.pointer("view").at(4 * VOLUME_FIELDS.index(name)), "float")
 
 
 def as_float(code: FunctionCode, number: Value) -> Value:

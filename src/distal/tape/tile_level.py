@@ -16,9 +16,9 @@ from distal.tape.thread_job import ThreadJob, result_slot
 class TileLevel:
     """One level of tiles: intervals, the decided tiles, and shorter tapes for the others."""
 
-    def __init__(self, job: ThreadJob, lanes: Lanes, level: int, size: int) -> None:
+    def __init__(self, job: ThreadJob, lanes: Lanes, level: int) -> None:
         self.job, self.code, self.lanes = job, job.code, lanes
-        self.level, self.size = level, size
+        self.level = level
 
     def memory(self, name: str) -> Value:
         """Return a part of the memory that each level has for itself."""

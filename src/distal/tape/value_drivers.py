@@ -11,12 +11,13 @@ from distal.tape.layout import (
     ALLOCATE,
     FLOAT_SLOT,
     FLOATS,
+    GRADIENT_PLANE,
+    GRADIENTS,
     INTERVAL_SLOT,
     INTERVALS,
     LANES,
     OPERATION_BYTES,
     PRUNE,
-    TILE,
     TRACE,
 )
 from distal.tape.machine_code import POINTER, WORD, FunctionCode
@@ -65,6 +66,29 @@ def floats_code(lanes: Lanes, declarations: set[str]) -> str:
         target = job.pointer("output").at(index * FLOAT_SLOT)
         copy_slot(code, lanes, result, target, FLOAT_SLOT)
     return code.function(FLOATS, JOB)
+
+
+def gradients_code(lanes: Lanes, declarations: set[str]) -> str:
+    """Return the exported function that evaluates a tape and its gradient at points.
+
+    ``view`` points to 16 x, 16 y and 16 z for each pass, ``height`` is the number of passes, and
+    ``output`` receives 16 values and 16 derivatives along x, y and z for each.
+
+    Args:
+        lanes: The shape of the machine's vectors.
+        declarations: Receives the declarations of LLVM intrinsics.
+    """
+    code = FunctionCode(lanes, declarations)
+    job = thread_job(code)
+    operations, length = job.pointer("allocated"), job.word("length")
+    slots = job.memory("floats")
+    with code.count(job.word("height")) as index:
+        source = job.pointer("view").at(index * (3 * GRADIENT_PLANE))
+        code.call("gradients", operations, length, job.pointer("constants"), slots, source)
+        result = result_slot(code, operations, length, slots, FLOAT_SLOT)
+        target = job.pointer("output").at(index * FLOAT_SLOT)
+        copy_slot(code, lanes, result, target, FLOAT_SLOT)
+    return code.function(GRADIENTS, JOB)
 
 
 def intervals_code(lanes: Lanes, declarations: set[str]) -> str:
@@ -125,7 +149,7 @@ def prune_code(lanes: Lanes, declarations: set[str]) -> str:
     code = FunctionCode(lanes, declarations)
     job = thread_job(code)
     length, stride = job.word("length"), job.word("length") * OPERATION_BYTES
-    level = TileLevel(job, lanes, 0, TILE)
+    level = TileLevel(job, lanes, 0)
     boxes = job.pointer("view")
     code.call(
         "intervals", job.pointer("allocated"), length, job.pointer("constants"),
