@@ -17,6 +17,7 @@ _HAND_WRITTEN = {
     "distal.backends.base": ("Artifact",),
     "distal.compiler.driver": ("compile",),
     "distal.diagnostics": ("CompileError", "LoadError"),
+    "distal.images.height_map": ("HeightMap",),
     "distal.images.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.loading": ("gallery", "load"),

@@ -7,6 +7,7 @@ from distal.backends.base import Artifact as Artifact
 from distal.compiler.driver import compile as compile
 from distal.diagnostics import CompileError as CompileError
 from distal.diagnostics import LoadError as LoadError
+from distal.images.height_map import HeightMap as HeightMap
 from distal.images.picture import Picture as Picture
 from distal.lang.expressions import time as time
 from distal.loading import gallery as gallery
@@ -3224,6 +3225,7 @@ __all__ = [
     "HalfPlane",
     "HalfSpace",
     "Heart",
+    "HeightMap",
     "Heightfield",
     "Helix",
     "HemisphereLight",

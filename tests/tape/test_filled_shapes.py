@@ -12,7 +12,7 @@ from distal import Circle, Rectangle, Shape, VoronoiLines
 from distal.devices.base import Cancelled
 from distal.lang import slider
 from distal.lang.srgb import encode_srgb
-from distal.runtime import fills
+from distal.runtime import function_tapes
 from distal.scene.tree.errors import SceneValueError
 from distal.tape.tape import TapeError
 
@@ -52,7 +52,7 @@ def test_a_shape_without_a_tape_is_evaluated_by_its_kernel(samples, monkeypatch)
     def refuse(*_):
         raise TapeError("it is a test")
 
-    monkeypatch.setattr(fills, "tape_of", refuse)
+    monkeypatch.setattr(function_tapes, "tape_of", refuse)
     slow = other.fill(**options)
     assert slow.stats["no_tape"] == "it is a test"
     # A sample on the edge may be on either side of it by rounding.
@@ -86,7 +86,7 @@ def test_edges_mix_light_not_codes():
 
 
 def test_a_file_is_filled_without_compilation(monkeypatch):
-    monkeypatch.setattr(fills, "run_passes", None)
+    monkeypatch.setattr(function_tapes, "run_passes", None)
     disk = Shape.from_vm("x var-x\ny var-y\na abs x\nb abs y\nc max a b\nr const 0.5\nd sub c r")
     picture = disk.fill((64, 64), samples=1)
     assert picture.array[..., 0].sum() == 32 * 32

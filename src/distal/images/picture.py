@@ -50,7 +50,8 @@ class Picture:
         layers: Other values at the middle of each pixel, by name: "depth" (float32, scene units
             along the ray, infinite if nothing is hit), "normal" (float32, (height, width, 3),
             world space, toward the eye; else 0), "albedo" (float32, (height, width, 3), linear;
-            else 0), "material" (uint32, from 1 in the order of the author's tree; else 0).
+            else 0), "material" (uint32, from 1 in the order of the author's tree; else 0), "height"
+            (of a ``HeightMap``: float32, scene units; NaN if there is nothing).
     """
 
     array: NDArray[np.float32]

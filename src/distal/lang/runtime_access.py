@@ -18,12 +18,14 @@ if TYPE_CHECKING:
     from distal.frontend import python_expressions
     from distal.notebook import widget
     from distal.runtime import executor as runtime_executor
+    from distal.runtime import heights as ray_views
     from distal.runtime.executor import PythonExecutor
     from distal.video import recording
 else:
     constant_evaluation = LazyModule("distal.compiler.constant_evaluation")
     exports = LazyModule("distal.export.registry")
     python_expressions = LazyModule("distal.frontend.python_expressions")
+    ray_views = LazyModule("distal.runtime.heights")
     recording = LazyModule("distal.video.recording")
     runtime_executor = LazyModule("distal.runtime.executor")
     widget = LazyModule("distal.notebook.widget")
@@ -40,6 +42,7 @@ __all__ = [
     "executor",
     "exports",
     "python_expressions",
+    "ray_views",
     "recording",
     "widget",
 ]

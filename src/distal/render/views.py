@@ -179,12 +179,18 @@ def facing_plane(camera: Callable[[vec2], Ray]) -> vec3:
 
 
 @func
+def normal_color(normal: vec3) -> vec3:
+    """Map a normal's x, y, z from -1 to 1 to red, green, blue."""
+    return 0.5 + 0.5 * normal
+
+
+@func
 def view_normal(ray: Ray, first_hit: Callable[[Ray], Hit], field: Field3, numbers: March) -> vec4:
     """Show the normal's x, y, z as red, green, blue."""
     hit = first_hit(ray)
     if not hit.found:
         return vec4(EMPTY, 0.0)
-    return vec4(0.5 + 0.5 * facing_normal(field, ray, hit, numbers, EXACT, 0.0), 1.0)
+    return vec4(normal_color(facing_normal(field, ray, hit, numbers, EXACT, 0.0)), 1.0)
 
 
 @func

@@ -47,10 +47,13 @@ from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 if TYPE_CHECKING:
     from distal.devices.cpu import CpuKernel
     from distal.devices.gpu import GpuKernel
-    from distal.runtime import fills, sweeps
+    from distal.images.height_map import HeightMap
+    from distal.runtime import fills, function_tapes, heights, sweeps
     from distal.tape.proofs import Proof
 else:
     fills = LazyModule("distal.runtime.fills")
+    function_tapes = LazyModule("distal.runtime.function_tapes")
+    heights = LazyModule("distal.runtime.heights")
     sweeps = LazyModule("distal.runtime.sweeps")
 
 
@@ -94,9 +97,9 @@ class PythonExecutor:
         self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
 
     @cached_property
-    def tapes(self) -> fills.FunctionTapes:
-        """The tapes of filled shapes."""
-        return fills.FunctionTapes()
+    def tapes(self) -> function_tapes.FunctionTapes:
+        """The tapes of shapes."""
+        return function_tapes.FunctionTapes()
 
     def parameters(self, function: Func | Composed) -> list[Parameter]:
         """Return the parameters that a function and its callees read, in order of first use."""
@@ -321,7 +324,7 @@ class PythonExecutor:
         view: Sequence[float],
         colors: Sequence[Sequence[float]],
         options: RenderOptions,
-        ready: fills.Ready | None = None,
+        ready: function_tapes.Ready | None = None,
     ) -> Picture:
         """Fill a flat shape with one color, and what is around it with another.
 
@@ -336,6 +339,25 @@ class PythonExecutor:
         shades = np.array(colors, np.float32)
         return fills.fill(self, shape, view, shades, options, ready)
 
+    def heights(
+        self,
+        shape: Composed,
+        gradient: Composed,
+        view: heights.RayView,
+        options: RenderOptions,
+        ready: function_tapes.Ready | None = None,
+    ) -> HeightMap:
+        """Return the first surface of a solid along parallel rays.
+
+        Args:
+            shape: The shape.
+            gradient: Its gradient.
+            view: Where the rays are.
+            options: Size, time, parameters, threads, progress and cancel.
+            ready: Returns the shape's tape, if it has one without compilation.
+        """
+        return heights.heights(self, shape, gradient, view, options, ready)
+
     def prove(self, function: Composed, low: Sequence[float], high: Sequence[float]) -> Proof:
         """Return a bound on the slope of a function of a point, and a box, within a region.
 
@@ -347,7 +369,7 @@ class PythonExecutor:
         Raises:
             TapeError: Nothing can be proved; the message says why.
         """
-        return fills.proof(self.lowered(function), low, high)
+        return function_tapes.proof(self.lowered(function), low, high)
 
     def steepest(
         self, gradient: Composed, points: Sequence[Sequence[float]]

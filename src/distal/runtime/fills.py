@@ -8,129 +8,25 @@ evaluated at every sample by its ordinary kernel. Both ways look at the same poi
 from __future__ import annotations
 
 import math
-import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
-from weakref import WeakKeyDictionary
+from collections.abc import Sequence
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.backends import get_target
-from distal.compiler.driver import run_passes
 from distal.devices.base import Cancelled, cancel_test
-from distal.devices.resources import load
 from distal.images.picture import Picture, Provenance
-from distal.ir.nodes import Module, Origin
-from distal.ir.types import Buffer
 from distal.lang.composed import Composed
 from distal.lang.render_options import RenderOptions
 from distal.loading import loaded_from
-from distal.runtime.lowered import Lowered
+from distal.runtime.function_tapes import Ready
 from distal.runtime.uniform_values import DeclaredUniforms
-from distal.tape.from_ir import LAST_PASS, PRECISION, tape_of
-from distal.tape.proofs import Proof, prove
 from distal.tape.runtime import PlaneView, TapeProgram
-from distal.tape.tape import Tape, TapeError
+from distal.tape.tape import TapeError
 
 Floats = NDArray[np.float32]
-# A function that returns the tape of a shape that has one without compilation.
-Ready: TypeAlias = Callable[[], Tape]
 _ROWS: Final = 64  # of pixels that the ordinary kernel evaluates at a time, to limit the memory
-
-
-@dataclass(slots=True)
-class _Known:
-    """What is kept of one function.
-
-    Attributes:
-        lowered: The function.
-        module: The module after the passes for tapes; the reason if it has none.
-        uniforms: The uniforms of the tape.
-        program: The tape of these uniforms.
-    """
-
-    lowered: Lowered | None
-    module: Module | TapeError | None
-    uniforms: Mapping[str, Any]
-    program: TapeProgram | None = None
-
-
-class FunctionTapes:
-    """The tapes of functions, kept while the functions exist."""
-
-    def __init__(self) -> None:
-        self._known: WeakKeyDictionary[Any, _Known] = WeakKeyDictionary()
-        self._lock = threading.RLock()
-
-    def ready(self, function: Composed, tape: Ready) -> TapeProgram:
-        """Return the tape of a function that has one without compilation."""
-        with self._lock:
-            known = self._known.get(function)
-            if known is None or known.program is None:
-                known = self._known[function] = _Known(None, None, {}, TapeProgram(tape()))
-            assert known.program is not None
-            return known.program
-
-    def program(
-        self, function: Composed, lowered: Lowered, uniforms: Mapping[str, Any]
-    ) -> TapeProgram:
-        """Return the tape of a function for values of its uniforms.
-
-        Args:
-            function: The function.
-            lowered: Its IR.
-            uniforms: Values of the uniforms.
-
-        Raises:
-            TapeError: The function cannot be a tape.
-        """
-        with self._lock:
-            known = self._known.get(function)
-            if known is None or known.lowered is not lowered:
-                known = self._known[function] = _Known(lowered, None, {})
-            if isinstance(known.module, TapeError):
-                raise known.module
-            if known.program is None or known.uniforms != uniforms:
-                try:
-                    known.program = TapeProgram(_tape(known, uniforms))
-                except TapeError as error:
-                    known.module = error
-                    raise
-                known.uniforms = dict(uniforms)
-            return known.program
-
-
-def _tape(known: _Known, uniforms: Mapping[str, Any]) -> Tape:
-    assert known.lowered is not None
-    if known.module is None:
-        target = get_target("llvm")
-        known.module = run_passes(known.lowered.module, target, PRECISION, after=LAST_PASS)
-    assert isinstance(known.module, Module)
-    buffers = {
-        resource.name: load(resource.source, resource.type)
-        for resource in known.module.resources
-        if isinstance(resource.type, Buffer) and resource.source is not None
-    }
-    return tape_of(known.module, uniforms, buffers)
-
-
-def proof(lowered: Lowered, low: Sequence[float], high: Sequence[float]) -> Proof:
-    """Return what can be proved of a function in a region.
-
-    Args:
-        lowered: The function, which reads neither parameters nor the time.
-        low: The lower corner of the region.
-        high: Its upper corner.
-
-    Raises:
-        TapeError: Nothing can be proved.
-    """
-    if any(uniform.origin is not Origin.NUMBER for uniform in lowered.module.uniforms):
-        raise TapeError("it depends on parameters or the time")
-    return prove(_tape(_Known(lowered, None, {}), {}), low, high)
 
 
 def fill(

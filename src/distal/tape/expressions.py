@@ -51,8 +51,8 @@ Scalars_: TypeAlias = tuple[Scalar, ...]
 Environment: TypeAlias = dict[str, Scalars_]
 
 
-class Surroundings(Protocol):
-    """What an expression reads that is not a local.
+class ProgramAround(Protocol):
+    """The program around a function: what an expression reads that is not a local.
 
     Attributes:
         scalars: Collects the operations.
@@ -79,7 +79,7 @@ class Surroundings(Protocol):
 class ExpressionFollower:
     """Follows the expressions of one function, with the values of its locals."""
 
-    def __init__(self, walker: Surroundings, locals: Environment) -> None:
+    def __init__(self, walker: ProgramAround, locals: Environment) -> None:
         self._walker = walker
         self._scalars = walker.scalars
         self._locals = locals

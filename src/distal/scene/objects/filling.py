@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.fields.guarantees import Primitive
 from distal.lang.parameter_values import as_color
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.lang.srgb import encode_srgb
+from distal.scene.objects.shown_box import shown_box
 from distal.scene.objects.vm_shapes import program_of_node
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.scene.objects.field import BaseShape
 
-_MARGIN: Final = 1.1  # around the box of a shape
-_UNBOUNDED: Final = ((-1.0, -1.0), (1.0, 1.0))  # shown of a shape without a finite box
 _MOST_ACROSS: Final = 16
 
 
@@ -43,7 +41,7 @@ def filled(
     if across**2 != samples or not 1 <= across <= _MOST_ACROSS:
         message = f"samples are a square number from 1 to {_MOST_ACROSS**2}, not {samples!r}"
         refuse(message, "1, 4, 9, 16 …", author_place())
-    low, high = _box(shape, box, options)
+    low, high = shown_box(shape, box, options, size=2)
     width, height = options.size
     step = max((high[0] - low[0]) / width, (high[1] - low[1]) / height)
     middle = [(a + b) / 2.0 for a, b in zip(low, high, strict=True)]
@@ -51,32 +49,6 @@ def filled(
     colors = _colors(as_color("outside", outside), as_color("inside", inside), samples)
     program = program_of_node(shape.node)
     return executor().fill(shape, view, colors, options, None if program is None else program.tape)
-
-
-def _box(shape: BaseShape, box: Any, options: RenderOptions) -> tuple[Any, Any]:
-    if box is None:
-        if isinstance(shape.node.rule, Primitive) and shape.node.rule.bounds is None:
-            return _UNBOUNDED
-        low, high = shape.bounds(params=options.params, time=options.time)
-        if not all(map(math.isfinite, (*low, *high))):
-            return _UNBOUNDED
-        middle = [(a + b) / 2.0 for a, b in zip(low, high, strict=True)]
-        half = [_MARGIN * (b - a) / 2.0 for a, b in zip(low, high, strict=True)]
-        return (
-            tuple(m - h for m, h in zip(middle, half, strict=True)),
-            tuple(m + h for m, h in zip(middle, half, strict=True)),
-        )
-    try:
-        low, high = (tuple(float(number) for number in corner) for corner in box)
-        valid = len(low) == len(high) == 2 and all(
-            math.isfinite(b - a) and b > a for a, b in zip(low, high, strict=True)
-        )
-    except (TypeError, ValueError):
-        valid = False
-    if not valid:
-        hint = "box=((-1, -1), (1, 1))"
-        refuse(f"a box is two corners, (low, high), not {box!r:.60}", hint, author_place())
-    return low, high
 
 
 def _colors(

@@ -25,12 +25,14 @@ from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
+from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
+    from distal.images.height_map import HeightMap
     from distal.images.picture import Picture
 
 _ROTATIONS: Final[Mapping[str, Operator]] = {
@@ -360,6 +362,54 @@ class Shape(Placed):
     def project(self, count: int = 32) -> Shape2D:
         """Project onto the xy plane: the union of ``count`` cross-sections along z."""
         return self._flat(lift.PROJECT, count=count)
+
+    def heights(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: Mapping[str, Any] | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+        *,
+        side: str = "+z",
+        box: Any = None,
+    ) -> HeightMap:
+        """Return the heights and normals of the shape, seen along an axis without perspective.
+
+        Heights are coordinates of the surface along the axis ``side``, in scene units, larger
+        toward the viewer; NaN where there is no surface. ``picture()`` of the result shows the
+        normals. Samples along a ray are as far apart as pixels (at most 4096 of them); the surface
+        is where the first of them is inside, corrected by the slope there. A part that is thinner
+        may be missed. Nothing is compiled, unless the shape's function has loops of varying length,
+        textures or noise; always on the CPU.
+
+        Args:
+            size: Width and height in pixels.
+            time: Time in seconds; ``frame.time`` of an ``@image``.
+            params: Values of parameters by name; the others have their defaults.
+            threads: Number of CPU threads; None uses all that the process may use.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            side: The side that the shape is seen from: "+x", "-x", "+y", "-y", "+z" or "-z". Up is
+                +y; seen from "+y" it is -z, from "-y" +z.
+            box: Corners (low, high) of the part of space to show, which is centered; None: the box
+                of the shape with a margin, or from -1 to 1 if it is infinite.
+
+        Raises:
+            CompileError: The shape's scene code has mistakes.
+            TypeError: A value has the wrong type.
+            ValueError: A value is out of range, or there is no such parameter.
+        """
+        options = RenderOptions(
+            size=size,
+            time=time,
+            params=params or {},
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+        )
+        return seen_heights(self, options, side, box)
 
 
 class Shape2D(Placed):
