@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,18 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from distal import Shape
-from distal.lang import atan2, floor, func, length, max, sin, slider, vec2, vec3
+from distal.lang import atan2, floor, func, length, max, sin, slider, tanh, vec2, vec3
 from distal.scene.tree.errors import SceneValueError
+from distal.tape.derivative_bounds import JUMPS, NO_RULE
 from distal.tape.operations import OPERATIONS
-from distal.tape.proofs import _JUMPS, _NO_RULE, prove
+from distal.tape.proofs import prove, refute
 from distal.tape.runtime import TapeProgram
 from distal.tape.tape import Tape, TapeBuilder, TapeError
 
 CUBE = (-2.0, -2.0, -2.0), (2.0, 2.0, 2.0)
 SQUARE = (-2.0, -2.0), (2.0, 2.0)
-_SMOOTH = [
-    row for row in OPERATIONS if row.operands and row.name not in (*_JUMPS, *_NO_RULE, "exp2")
-]
+_SMOOTH = [row for row in OPERATIONS if row.operands and row.name not in (*JUMPS, *NO_RULE, "exp2")]
 
 
 @st.composite
@@ -136,6 +136,68 @@ def test_a_declared_slope_that_is_refuted():
     assert "'wobbly' changes by 1." in text
     assert "more than its declared slope 1.2" in text
     assert "test_proofs.py" in text
+
+
+@func
+def ridged(p: vec3) -> float:
+    """A ball with a step of width 0.004 at x = 0.013, where its slope is 5."""
+    return length(p) - 1.0 + 0.01 * tanh(500.0 * (p.x - 0.013))
+
+
+def test_a_declared_slope_that_is_refuted_between_the_points():
+    """No point of a grid is on the step; the interval of the derivative in a cell is above 2."""
+    for slope in (1.2, 3.0):
+        with pytest.raises(SceneValueError) as error:
+            Shape.from_function(ridged, slope=slope, region=CUBE)
+        (found,) = error.value.diagnostics
+        assert found.message.startswith("'ridged' changes by at least ")
+        near = re.search(r"per unit near \(([0-9.]+), ", found.message)
+        assert near is not None and abs(float(near[1]) - 0.013) < 0.002
+        assert found.message.endswith(f"more than its declared slope {slope:g}")
+        assert found.hint == "leave out slope=, and it is proved"
+    kept = Shape.from_function(ridged, slope=6.1, region=CUBE)
+    assert kept.slope == pytest.approx(6.1)
+
+
+@settings(max_examples=60, deadline=None)
+@given(tape=smooth_tapes(), share=st.floats(0.05, 2.0), seed=st.integers(0, 2**32 - 1))
+def test_what_is_refuted_is_steeper(tape, share, seed):
+    """At the place that is named, and never above the slope that is proved."""
+    try:
+        proof = prove(tape, (-1.0, -1.0), (1.0, 1.0))
+    except TapeError:
+        return
+    found = refute(tape, share * proof.slope, (-1.0, -1.0), (1.0, 1.0))
+    if found is None:
+        return
+    assert share * proof.slope < found.slope <= proof.slope
+    slope = TapeProgram(tape).gradients(np.array([(*found.place, 0.0)], np.float32))[0, 1:3]
+    assert np.linalg.norm(slope.astype(np.float64)) >= 0.999 * found.slope
+
+
+def test_the_rules_of_elementary_functions_are_narrow():
+    """The slope of f(a x) on [low, high], against its largest derivative at 2001 points."""
+    t = np.linspace(0.2, 0.9, 2001)
+    slopes = {
+        "sin": np.cos(t),
+        "cos": np.sin(t),
+        "exp": np.exp(t),
+        "exp2": math.log(2.0) * 2.0**t,
+        "log": 1.0 / t,
+        "log2": 1.0 / (t * math.log(2.0)),
+        "asin": 1.0 / np.sqrt(1.0 - t * t),
+        "acos": 1.0 / np.sqrt(1.0 - t * t),
+        "atan": 1.0 / (1.0 + t * t),
+        "tanh": 1.0 - np.tanh(t) ** 2,
+    }
+    for name, expected in slopes.items():
+        builder = TapeBuilder()
+        tape = builder.tape(builder.operation(name, builder.operation("x")))
+        proof = prove(tape, (0.2, -1.0), (0.9, 1.0))
+        assert expected.max() <= proof.slope < 1.001 * expected.max() + 1e-5, name
+        found = refute(tape, 0.99 * expected.max(), (0.2, -1.0), (0.9, 1.0))
+        assert found is not None and found.slope <= expected.max() * 1.0001, name
+        assert refute(tape, 1.01 * expected.max(), (0.2, -1.0), (0.9, 1.0)) is None, name
 
 
 @func

@@ -49,11 +49,13 @@ if TYPE_CHECKING:
     from distal.devices.gpu import GpuKernel
     from distal.images.height_map import HeightMap
     from distal.runtime import fills, function_tapes, heights, sweeps
-    from distal.tape.proofs import Proof
+    from distal.tape import proofs
+    from distal.tape.proofs import Proof, Refutation
 else:
     fills = LazyModule("distal.runtime.fills")
     function_tapes = LazyModule("distal.runtime.function_tapes")
     heights = LazyModule("distal.runtime.heights")
+    proofs = LazyModule("distal.tape.proofs")
     sweeps = LazyModule("distal.runtime.sweeps")
 
 
@@ -358,18 +360,52 @@ class PythonExecutor:
         """
         return heights.heights(self, shape, gradient, view, options, ready)
 
-    def prove(self, function: Composed, low: Sequence[float], high: Sequence[float]) -> Proof:
+    def prove(
+        self,
+        function: Composed,
+        low: Sequence[float],
+        high: Sequence[float],
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+    ) -> Proof:
         """Return a bound on the slope of a function of a point, and a box, within a region.
 
         Args:
             function: The function; its numbers have their defaults.
             low: The lower corner of the region.
             high: Its upper corner.
+            params: Values of parameters by name. None: the function may depend on none, nor on the
+                time.
+            time: The time in seconds.
 
         Raises:
             TapeError: Nothing can be proved; the message says why.
         """
-        return function_tapes.proof(self.lowered(function), low, high)
+        tape = function_tapes.tape_for(self.lowered(function), params, time)
+        return proofs.prove(tape, low, high)
+
+    def refute(
+        self,
+        function: Composed,
+        slope: float,
+        region: tuple[Sequence[float], Sequence[float]],
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+    ) -> Refutation | None:
+        """Return a place where a function is certainly steeper than a slope, if one is found.
+
+        Args:
+            function: The function; its numbers have their defaults.
+            slope: The slope.
+            region: The corners of the region.
+            params: Values of parameters by name, as for ``prove``.
+            time: The time in seconds.
+
+        Raises:
+            TapeError: Nothing can be said of the function's slope; the message says why.
+        """
+        tape = function_tapes.tape_for(self.lowered(function), params, time)
+        return proofs.refute(tape, slope, *region)
 
     def steepest(
         self, gradient: Composed, points: Sequence[Sequence[float]]

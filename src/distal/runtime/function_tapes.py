@@ -1,13 +1,12 @@
 """The tapes of functions: made once, kept while the function exists.
 
-Input: functions of a point, and values of their uniforms. Output: tapes that are ready to run, and
-what can be proved of a function in a region.
+Input: functions of a point, and values of their uniforms. Output: tapes that are ready to run.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
@@ -19,8 +18,8 @@ from distal.ir.nodes import Module, Origin
 from distal.ir.types import Buffer
 from distal.lang.composed import Composed
 from distal.runtime.lowered import Lowered
+from distal.runtime.uniform_values import DeclaredUniforms
 from distal.tape.from_ir import LAST_PASS, PRECISION, tape_of
-from distal.tape.proofs import Proof, prove
 from distal.tape.runtime import TapeProgram
 from distal.tape.tape import Tape, TapeError
 
@@ -104,17 +103,35 @@ def _tape(known: _Known, uniforms: Mapping[str, Any]) -> Tape:
     return tape_of(known.module, uniforms, buffers)
 
 
-def proof(lowered: Lowered, low: Sequence[float], high: Sequence[float]) -> Proof:
-    """Return what can be proved of a function in a region.
+def tape_for(lowered: Lowered, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Tape:
+    """Return the tape of a function.
 
     Args:
-        lowered: The function, which reads neither parameters nor the time.
-        low: The lower corner of the region.
-        high: Its upper corner.
+        lowered: The function.
+        params: Values of parameters by name; the others have their defaults. None: the function may
+            read neither parameters nor the time.
+        time: The time in seconds.
 
     Raises:
-        TapeError: Nothing can be proved.
+        TapeError: The function cannot be a tape, or depends on parameters or the time.
     """
-    if any(uniform.origin is not Origin.NUMBER for uniform in lowered.module.uniforms):
-        raise TapeError("it depends on parameters or the time")
-    return prove(_tape(_Known(lowered, None, {}), {}), low, high)
+    if params is None:
+        if any(uniform.origin is not Origin.NUMBER for uniform in lowered.module.uniforms):
+            raise TapeError("it depends on parameters or the time")
+        return _tape(_Known(lowered, None, {}), {})
+    return _tape(_Known(lowered, None, {}), uniforms_of(lowered, params, time)[0])
+
+
+def uniforms_of(
+    lowered: Lowered, params: Mapping[str, Any], time: float
+) -> tuple[Mapping[str, Any], dict[str, Any]]:
+    """Return the values of a function's uniforms, and those of its parameters.
+
+    Args:
+        lowered: The function.
+        params: Values of parameters by name; the others have their defaults.
+        time: The time in seconds.
+    """
+    declared = DeclaredUniforms([lowered.module])
+    values = declared.parameter_values(params)
+    return declared.for_kernel(0, values, {**declared.numbers, "time": time}), values

@@ -23,8 +23,7 @@ from distal.lang.composed import Composed
 from distal.lang.render_options import RenderOptions
 from distal.loading import loaded_from
 from distal.render.between_samples import surface_between
-from distal.runtime.function_tapes import Ready
-from distal.runtime.uniform_values import DeclaredUniforms
+from distal.runtime.function_tapes import Ready, uniforms_of
 from distal.tape.runtime import TapeProgram, VolumeView
 from distal.tape.tape import TapeError
 
@@ -81,9 +80,7 @@ def heights(
         program = executor.tapes.ready(function, ready)
     else:
         lowered = executor.lowered(function)
-        declared = DeclaredUniforms([lowered.module])
-        values = declared.parameter_values(options.params)
-        uniforms = declared.for_kernel(0, values, {**declared.numbers, "time": options.time})
+        uniforms, values = uniforms_of(lowered, options.params, options.time)
         try:
             program = executor.tapes.program(function, lowered, uniforms)
         except TapeError as error:

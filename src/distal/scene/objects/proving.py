@@ -11,11 +11,11 @@ from itertools import product
 from typing import Any, Final
 
 from distal.diagnostics import Span
-from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.derived import DistanceOf, GradientOf
 from distal.scene.objects.binding import own_node
 from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node
 from distal.tape.tape import TapeError
 
 _PLACES: Final = 12  # along each side, where a declared slope is compared with the gradient
@@ -48,13 +48,16 @@ def proved(
     node = own_node(function, numbers, place, slope=slope, bounds=region, exact=False, growth=None)
     name = node.name
     low, high = (tuple(float(number) for number in corner) for corner in region)
+    corners = low, high
+    if slope is not None:
+        _compare(node, name, float(slope), corners, place)
+        if bounds is not None:
+            return slope, bounds
     try:
         found = executor().prove(DistanceOf(node), low, high)
     except TapeError as error:
         hint = "leave out region=, and pass slope= and bounds="
         refuse(f"nothing can be proved of '{name}': {error}", hint, place)
-    if slope is not None:
-        _compare(GradientOf(node), name, slope, (low, high), place)
     if bounds is None:
         if found.low is None or found.high is None:
             refuse(f"'{name}' is positive in the whole region", "give a larger region", place)
@@ -66,12 +69,14 @@ def proved(
     return (found.slope if slope is None else slope), bounds
 
 
-def _compare(gradient: Composed, name: str, slope: Any, region: Any, place: Span | None) -> None:
-    """Refuse a declared slope that the function exceeds at some point of the region.
+def _compare(node: Node, name: str, slope: float, region: Any, place: Span | None) -> None:
+    """Refuse a declared slope that the function exceeds somewhere in the region.
+
+    Points are looked at first; then cells, whose intervals also find what is between the points.
 
     Args:
-        gradient: The gradient of the function.
-        name: The name of the function.
+        node: The function.
+        name: Its name.
         slope: The declared slope.
         region: The corners of the region.
         place: The author's line.
@@ -80,10 +85,16 @@ def _compare(gradient: Composed, name: str, slope: Any, region: Any, place: Span
         [a + (b - a) * (i + 0.5) / _PLACES for i in range(_PLACES)]
         for a, b in zip(*region, strict=True)
     ]
-    points = list(product(*sides))
-    steepest, at = executor().steepest(gradient, points)
-    if steepest > _ROUNDING * float(slope):
-        shown = ", ".join(f"{number:.3g}" for number in at)
-        message = f"'{name}' changes by {steepest:.3g} per unit at ({shown}), "
-        message += f"more than its declared slope {float(slope):g}"
-        refuse(message, "leave out slope=, and it is proved", place)
+    steepest, at = executor().steepest(GradientOf(node), list(product(*sides)))
+    by = f"{steepest:.3g} per unit at"
+    if steepest <= _ROUNDING * slope:
+        try:
+            found = executor().refute(DistanceOf(node), _ROUNDING * slope, region)
+        except TapeError:
+            return
+        if found is None:
+            return
+        by, at = f"at least {found.slope:.3g} per unit near", found.place
+    shown = ", ".join(f"{number:.3g}" for number in at)
+    message = f"'{name}' changes by {by} ({shown}), more than its declared slope {slope:g}"
+    refuse(message, "leave out slope=, and it is proved", place)

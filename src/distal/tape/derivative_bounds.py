@@ -1,0 +1,229 @@
+"""Bounds of derivatives: the rules of differentiation, with intervals.
+
+Input: the intervals of the values of a tape's operations in some cells. Output: for each cell, an
+upper and a lower bound on the length of the gradient of the result.
+
+A length ``sqrt(a^2 + b^2 + …)`` has no derivative at 0, but its slope is bounded there too: by the
+largest singular value of the Jacobian of (a, b, …), which the row sums of its Gram matrix bound.
+
+Source: L. B. Rall, "Automatic Differentiation" (1981).
+"""
+
+from __future__ import annotations
+
+from typing import Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.tape.operations import ELEMENTARY, NUMBER, OPERATIONS
+from distal.tape.tape import Tape
+
+Doubles: TypeAlias = NDArray[np.float64]
+
+# Operations that may jump. A slope says nothing of a function that jumps.
+JUMPS: Final = ("floor", "ceil", "round", "trunc", "less", "less_equal", "equal", "select")
+# Elementary functions whose derivative has a rule here.
+_RULES: Final = ("sin", "cos", "exp", "exp2", "log", "log2", "asin", "acos", "atan", "tanh")
+NO_RULE: Final = tuple(name for name in ELEMENTARY if name not in _RULES)
+_LOG_2: Final = float(np.log(2.0))
+_COSINE_ERROR: Final = 1e-9  # more than that of a cosine, and of its argument up to 1e6
+
+
+# Intervals of derivatives: arrays (2, size, n) of ends, by axis and cell.
+
+
+def _times(interval: Doubles, derivative: Doubles) -> Doubles:
+    """Multiply a value's interval (2, n) by a derivative (2, size, n)."""
+    products = interval[:, None, None] * derivative[None]
+    flat = products.reshape(4, *derivative.shape[1:])
+    return np.stack([flat.min(axis=0), flat.max(axis=0)])
+
+
+def _minus(a: Doubles, b: Doubles) -> Doubles:
+    return np.stack([a[0] - b[1], a[1] - b[0]])
+
+
+def _hull(a: Doubles, b: Doubles) -> Doubles:
+    return np.stack([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
+
+
+def _inverse(interval: Doubles) -> Doubles:
+    """Return 1 / interval; NaN where it contains 0."""
+    crosses = (interval[0] <= 0.0) & (interval[1] >= 0.0)
+    ends = 1.0 / np.where(crosses, np.nan, interval)
+    return ends[::-1]
+
+
+def _ordered(a: Doubles, b: Doubles) -> Doubles:
+    """Return the interval between two numbers that are given in any order."""
+    return np.stack([np.minimum(a, b), np.maximum(a, b)])
+
+
+def _cosine(interval: Doubles) -> Doubles:
+    """Return the interval of the cosine."""
+    low, high = interval
+    ends = _ordered(np.cos(low), np.cos(high))
+    turn = 2.0 * np.pi
+    # A multiple of a full turn, or one and a half: the cosine is 1, or -1, in between.
+    ends[1] = np.where(np.floor(high / turn) >= np.ceil(low / turn), 1.0, ends[1])
+    halves = (low - np.pi) / turn, (high - np.pi) / turn
+    ends[0] = np.where(np.floor(halves[1]) >= np.ceil(halves[0]), -1.0, ends[0])
+    return np.clip(ends + np.array([[-_COSINE_ERROR], [_COSINE_ERROR]]), -1.0, 1.0)
+
+
+def _square(interval: Doubles) -> Doubles:
+    """Return the interval of the square."""
+    low = np.maximum(np.maximum(interval[0], -interval[1]), 0.0)
+    return np.stack([low * low, _largest(interval) ** 2])
+
+
+def _largest(interval: Doubles) -> Doubles:
+    found: Doubles = np.abs(interval).max(axis=0)
+    return found
+
+
+class Derivatives:
+    """The derivatives of every operation of a tape in some cells.
+
+    Each has an interval for every axis, and a bound on the length of the gradient, which may be
+    smaller than what the intervals allow.
+    """
+
+    def __init__(self, tape: Tape, values: Doubles, size: int) -> None:
+        self._rows = tape.operations.tolist()
+        self._values = values
+        self._size = size
+        self._intervals: list[Doubles] = []
+        self._lengths: list[Doubles] = []
+
+    def bounds(self) -> tuple[Doubles, Doubles]:
+        """Return bounds on the gradient's length in each cell.
+
+        The lower one is 0, the upper one is not finite, if none is known.
+        """
+        with np.errstate(all="ignore"):
+            for index, (number, _, *operands, _) in enumerate(self._rows):
+                row = OPERATIONS[number]
+                found = self._derivative(row.name, operands[: row.operands], index)
+                interval, length = found
+                of_axes = np.sqrt((_largest(interval) ** 2).sum(axis=0))
+                self._intervals.append(interval)
+                # A bound that is not known is no bound.
+                self._lengths.append(np.fmin(np.where(np.isnan(length), np.inf, length), of_axes))
+        low, high = self._intervals[-1]
+        least = np.maximum(np.maximum(low, -high), 0.0)
+        return np.nan_to_num(np.sqrt((least**2).sum(axis=0)), posinf=0.0), self._lengths[-1]
+
+    def _derivative(self, name: str, operands: list[int], index: int) -> tuple[Doubles, Doubles]:
+        """Return the intervals of an operation's derivatives, and a bound on their length."""
+        shape = (2, self._size, self._values.shape[-1])
+        if not operands:
+            interval = np.zeros(shape)
+            if name in ("x", "y", "z") and "xyz".index(name) < self._size:
+                interval[:, "xyz".index(name)] = 1.0
+            return interval, np.sqrt((interval[0] ** 2).sum(axis=0))
+        a = operands[0]
+        da, la = self._intervals[a], self._lengths[a]
+        if len(operands) == 1:
+            if name == "sqrt":
+                return self._root(a, index)
+            factor = self._factor(name, self._values[a], self._values[index])
+            return _times(factor, da), _largest(factor) * la
+        b = operands[1]
+        db, lb = self._intervals[b], self._lengths[b]
+        va, vb = self._values[a], self._values[b]
+        match name:
+            case "add":
+                return da + db, la + lb
+            case "sub":
+                return _minus(da, db), la + lb
+            case "mul":
+                return _times(vb, da) + _times(va, db), _largest(vb) * la + _largest(va) * lb
+            case "div":
+                quotient, inverse = self._values[index], _inverse(vb)
+                above = _minus(da, _times(quotient, db))
+                length = _largest(inverse) * (la + _largest(quotient) * lb)
+                return _times(inverse, above), length
+            case "min" | "max":
+                order = (va, vb) if name == "min" else (vb, va)
+                first, second = order[0][1] < order[1][0], order[1][1] < order[0][0]
+                both = _hull(da, db)
+                interval = np.where(first, da, np.where(second, db, both))
+                length = np.where(first, la, np.where(second, lb, np.maximum(la, lb)))
+                return interval, length
+            case _:
+                return np.full(shape, np.nan), np.full(shape[-1], np.nan)
+
+    def _factor(self, name: str, value: Doubles, result: Doubles) -> Doubles:
+        """Return the interval of the derivative of a function of one number."""
+        ones = np.ones_like(value)
+        match name:
+            case "neg":
+                return -ones
+            case "abs":
+                low = np.where(value[0] > 0.0, 1.0, -1.0)
+                return np.stack([low, np.where(value[1] < 0.0, -1.0, 1.0)])
+            case "square":
+                return 2.0 * value
+            case "sin":
+                return _cosine(value)
+            case "cos":
+                return _cosine(value + 0.5 * np.pi)
+            case "exp":
+                return result
+            case "exp2":
+                return _LOG_2 * result
+            case "log" | "log2":
+                inverse = np.where(value[0] > 0.0, _inverse(value), np.nan)
+                return inverse / _LOG_2 if name == "log2" else inverse
+            case "asin" | "acos":
+                rest = 1.0 - np.minimum(_square(value), 1.0)[::-1]
+                slope = 1.0 / np.sqrt(rest[::-1])
+                return slope if name == "asin" else -slope[::-1]
+            case "atan":
+                return 1.0 / (1.0 + _square(value)[::-1])
+            case "tanh":
+                return np.clip(1.0 - _square(result)[::-1], 0.0, 1.0)
+            case _:
+                return np.full_like(value, np.nan)
+
+    def _root(self, a: int, index: int) -> tuple[Doubles, Doubles]:
+        """Return the derivative of a square root: by its rule, and as a length where it is one."""
+        inverse = 0.5 * _inverse(self._values[index])
+        plain = _times(inverse, self._intervals[a])
+        by_rule = _largest(inverse) * self._lengths[a]
+        terms = self._squares(a)
+        if terms is None:
+            return plain, by_rule
+        gram = self._row_sums(terms)
+        length = np.fmin(np.where(np.isnan(by_rule), np.inf, by_rule), np.sqrt(gram))
+        # No component of a gradient is larger than its length.
+        low = np.fmax(plain[0], -length)
+        high = np.fmin(plain[1], length)
+        return np.stack([low, high]), length
+
+    def _squares(self, value: int) -> list[int] | None:
+        """Return the values whose squares a value is the sum of; None if it is no such sum."""
+        number, _, a, b, *_ = self._rows[value]
+        if number == NUMBER["square"]:
+            return [a]
+        if number != NUMBER["add"]:
+            return None
+        left, right = self._squares(a), self._squares(b)
+        return None if left is None or right is None else left + right
+
+    def _row_sums(self, terms: list[int]) -> Doubles:
+        """Return the largest row sum of the Gram matrix of some gradients."""
+        sums = []
+        for i in terms:
+            total = np.zeros(self._values.shape[-1])
+            for j in terms:
+                a, b = self._intervals[i], self._intervals[j]
+                products = (a[:, None] * b[None]).reshape(4, *a.shape[1:])
+                low, high = products.min(axis=0).sum(axis=0), products.max(axis=0).sum(axis=0)
+                product = np.maximum(np.abs(low), np.abs(high))
+                total = total + np.fmin(product, self._lengths[i] * self._lengths[j])
+            sums.append(total)
+        found: Doubles = np.maximum.reduce(sums)
+        return found
