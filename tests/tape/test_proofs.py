@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from distal import Shape
 from distal.lang import atan2, floor, func, length, max, sin, slider, tanh, vec2, vec3
 from distal.scene.tree.errors import SceneValueError
-from distal.tape.derivative_bounds import JUMPS, NO_RULE
+from distal.tape.derivative_bounds import JUMPS, NO_RULE, _cosine
 from distal.tape.operations import OPERATIONS
 from distal.tape.proofs import prove, refute
 from distal.tape.runtime import TapeProgram
@@ -136,6 +136,17 @@ def test_a_declared_slope_that_is_refuted():
     assert "'wobbly' changes by 1." in text
     assert "more than its declared slope 1.2" in text
     assert "test_proofs.py" in text
+
+
+def test_intervals_of_the_cosine():
+    rng = np.random.default_rng(4)
+    low = np.concatenate([rng.uniform(-20, 20, 4000), [-0.5, -math.pi, 0.0, math.pi, -7.0]])
+    width = np.concatenate([rng.uniform(0, 4, 4000), [1.0, 2 * math.pi, 0.0, 0.1, 14.0]])
+    bottom, top = _cosine(np.stack([low, low + width]))
+    values = np.cos(low + width * np.linspace(0.0, 1.0, 400)[:, None])
+    assert (values >= bottom).all() and (values <= top).all()
+    # And narrow: at most what 400 points miss of a maximum.
+    assert (top - values.max(axis=0) < 1e-3).all() and (values.min(axis=0) - bottom < 1e-3).all()
 
 
 @func

@@ -149,6 +149,21 @@ Rule: TypeAlias = "float | Func"
 
 
 @dataclass(frozen=True, slots=True)
+class Proven:
+    """What was proved of an author's function, and where.
+
+    Attributes:
+        names: "slope", "box".
+        low: The lower corner of the region.
+        high: Its upper corner.
+    """
+
+    names: tuple[str, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Approximation:
     """What a shape replaces by simpler pieces; its other guarantees are about these pieces.
 
@@ -185,6 +200,7 @@ class Primitive:
         approximates: What the shape replaces by simpler pieces, or None.
         normalize: For an author's function: ``(field, p, …) -> float``, whose value is used instead
             of that of ``distance``, which it receives as ``field``.
+        proved: For an author's function: what was proved of it, or None.
         signed: False for surfaces and curves without an inside.
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
@@ -207,6 +223,7 @@ class Primitive:
     measured: Mapping[str, str] = field(default_factory=dict)
     approximates: Approximation | None = None
     normalize: Func | None = None
+    proved: Proven | None = None
 
     @property
     def flat(self) -> bool:

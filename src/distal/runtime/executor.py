@@ -367,6 +367,7 @@ class PythonExecutor:
         high: Sequence[float],
         params: Mapping[str, Any] | None = None,
         time: float = 0.0,
+        most: int | None = None,
     ) -> Proof:
         """Return a bound on the slope of a function of a point, and a box, within a region.
 
@@ -377,12 +378,13 @@ class PythonExecutor:
             params: Values of parameters by name. None: the function may depend on none, nor on the
                 time.
             time: The time in seconds.
+            most: The largest number of operations of the function; None has no limit.
 
         Raises:
             TapeError: Nothing can be proved; the message says why.
         """
         tape = function_tapes.tape_for(self.lowered(function), params, time)
-        return proofs.prove(tape, low, high)
+        return proofs.prove(tape, low, high, most)
 
     def refute(
         self,

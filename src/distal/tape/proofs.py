@@ -62,17 +62,20 @@ class Refutation:
     place: tuple[float, ...]
 
 
-def prove(tape: Tape, low: Any, high: Any) -> Proof:
+def prove(tape: Tape, low: Any, high: Any, most: int | None = None) -> Proof:
     """Return what holds in a region.
 
     Args:
         tape: The tape.
         low: The lower corner of the region, two or three numbers.
         high: Its upper corner.
+        most: The largest number of operations, to limit the time; None has no limit.
 
     Raises:
         TapeError: No bound can be proved; the message says why.
     """
+    if most is not None and len(tape) > most:
+        raise TapeError(f"it has {len(tape)} operations, more than {most}")
     _check(tape)
     size = len(low)
     program = TapeProgram(tape)

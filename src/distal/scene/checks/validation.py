@@ -7,7 +7,7 @@ place in the author's file; also as plain values for editors (``ValidationReport
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Final
@@ -18,6 +18,7 @@ from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.place_json import place_json
+from distal.scene.checks.proof_report import proof_note
 from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
 from distal.scene.checks.table_report import TableReport, table_of
 from distal.scene.objects.field import BaseShape
@@ -29,6 +30,9 @@ MOST_MEASURED: Final = 24
 ROUNDING: Final = 1e-4
 # Next to creases, some points do not lead to the surface although the distance is exact.
 ON_FOOT: Final = 0.98
+
+# Findings at a point, after which nothing is proved.
+_MEASURED_WRONG: Final = ("slope-exceeded", "undefined")
 
 
 class Severity(Enum):
@@ -148,6 +152,7 @@ def check(
         children = tuple(numbers[id(c)] for c in node.children)
         rows.append(ShapeReport(node, children, own, _raised(node, promised), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
+    found += _proofs(rows, {f.shape for f in found if f.code in _MEASURED_WRONG}, given, time)
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
     return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth)
@@ -257,6 +262,27 @@ def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator
         yield _endless(row, finding)
     if isinstance(row.node.rule, Operator):
         yield from _of_operator(row, [r.node for r in inner], finding)
+
+
+def _proofs(
+    rows: Sequence[ShapeReport], wrong: Container[int], params: Mapping[str, Any], time: float
+) -> Iterator[CheckFinding]:
+    """Yield what is proved or refuted of the author's functions.
+
+    Args:
+        rows: The reports about all shapes.
+        wrong: Those for which a point refutes the slope already.
+        params: Values of parameters by name.
+        time: Time in seconds.
+    """
+    for i, row in enumerate(rows):
+        if row.measured is None or i in wrong or not is_own(row.node):
+            continue
+        note = proof_note(row.node, row.promised, params, time)
+        if note is not None:
+            severity = Severity.ERROR if note.code == "slope-refuted" else Severity.NOTE
+            place = Diagnostic(note.message, row.node.place, note.hint)
+            yield CheckFinding(severity, note.code, i, place)
 
 
 def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[CheckFinding]:

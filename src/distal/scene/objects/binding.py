@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.diagnostics import Span
 from distal.fields import boxes
 from distal.fields import normalize as normalizing
-from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive
+from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive, Proven
 from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
@@ -97,6 +97,7 @@ def own_node(
     exact: bool,
     growth: Any,
     normalize: bool = False,
+    proved: Proven | None = None,
 ) -> Node:
     """Return the node of an author's own function; see ``BaseShape.from_function``.
 
@@ -109,6 +110,7 @@ def own_node(
         exact: Whether the value is the true distance.
         growth: Bound on the growth of the box, or None.
         normalize: Whether values are divided by the gradient.
+        proved: What was proved of the slope and the bounds, or None.
 
     Raises:
         SceneTypeError: The function is not a ``@func`` of a point that returns a float.
@@ -138,7 +140,7 @@ def own_node(
         box = boxes.given_bounds2 if flat else boxes.given_bounds
         corners = _corners(bounds, place)
         found |= arguments(box, corners, {}, what=name, requires=_ordered, place=place)
-    rule = replace(rule, slope=boxes.given_slope, bounds=box)
+    rule = replace(rule, slope=boxes.given_slope, bounds=box, proved=proved)
     if growth is not None:
         found |= arguments(
             boxes.given_growth, (growth,), {}, what=name, requires=_grows, place=place, reserved=()

@@ -359,7 +359,8 @@ class BaseShape(Composed, Presentable):
                 its surface. Pass ``bounds`` too: they also limit the values far away.
             region: Corners (low, high) of a box that contains the whole shape. Then a slope and
                 bounds that are not passed are proved by interval arithmetic, within the region; a
-                slope that is passed is compared with the function.
+                slope that is passed is refused if the function is steeper at a point, or in a
+                whole cell of the region. ``distal check`` says what is proved.
             numbers: Values of the function's other parameters.
 
         Raises:
@@ -368,8 +369,9 @@ class BaseShape(Composed, Presentable):
                 or nothing can be proved in ``region``.
         """
         place = author_place()
+        proof = None
         if region is not None:
-            slope, bounds = proved(
+            slope, bounds, proof = proved(
                 function, numbers, place, region=region, slope=slope, bounds=bounds
             )
         node = own_node(
@@ -381,6 +383,7 @@ class BaseShape(Composed, Presentable):
             exact=exact,
             growth=growth,
             normalize=normalize,
+            proved=proof,
         )
         if normalize:
             check_gradient(node)

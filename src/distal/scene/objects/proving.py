@@ -11,6 +11,7 @@ from itertools import product
 from typing import Any, Final
 
 from distal.diagnostics import Span
+from distal.fields.guarantees import Proven
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.derived import DistanceOf, GradientOf
 from distal.scene.objects.binding import own_node
@@ -30,8 +31,8 @@ def proved(
     region: Any,
     slope: Any,
     bounds: Any,
-) -> tuple[Any, Any]:
-    """Return a slope and bounds: the given ones, or what is proved.
+) -> tuple[Any, Any, Proven | None]:
+    """Return a slope and bounds: the given ones, or what is proved; and what that is.
 
     Args:
         function: The author's ``@func``.
@@ -52,12 +53,13 @@ def proved(
     if slope is not None:
         _compare(node, name, float(slope), corners, place)
         if bounds is not None:
-            return slope, bounds
+            return slope, bounds, None
     try:
         found = executor().prove(DistanceOf(node), low, high)
     except TapeError as error:
         hint = "leave out region=, and pass slope= and bounds="
         refuse(f"nothing can be proved of '{name}': {error}", hint, place)
+    names = (*(("slope",) if slope is None else ()), *(("box",) if bounds is None else ()))
     if bounds is None:
         if found.low is None or found.high is None:
             refuse(f"'{name}' is positive in the whole region", "give a larger region", place)
@@ -66,7 +68,7 @@ def proved(
             message = f"the shape of '{name}' may leave the region"
             refuse(message, "give a larger region", place)
         bounds = found.low, found.high
-    return (found.slope if slope is None else slope), bounds
+    return (found.slope if slope is None else slope), bounds, Proven(names, low, high)
 
 
 def _compare(node: Node, name: str, slope: float, region: Any, place: Span | None) -> None:
