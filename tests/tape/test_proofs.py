@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from distal import Shape
-from distal.lang import atan2, floor, func, length, max, sin, slider, tanh, vec2, vec3
+from distal.lang import atan2, exp, floor, func, length, log, max, sin, slider, tanh, vec2, vec3
 from distal.scene.tree.errors import SceneValueError
 from distal.tape.derivative_bounds import JUMPS, NO_RULE, _cosine
 from distal.tape.operations import OPERATIONS
@@ -138,6 +138,54 @@ def test_a_declared_slope_that_is_refuted():
     assert "test_proofs.py" in text
 
 
+def test_powers_and_angles():
+    """x^y with 2 <= y <= 3 in [0.5, 1.5]: along x y x^(y - 1); and the angle: 1 / r."""
+    builder = TapeBuilder()
+    x, y = builder.operation("x"), builder.operation("y")
+    power = builder.tape(builder.operation("pow", x, builder.constant(2.5)))
+    for low in (0.0, 0.5):
+        proof = prove(power, (low, -1.0), (1.5, 1.0))
+        assert 2.5 * 1.5**1.5 <= proof.slope < 2.5 * 1.5**1.5 * 1.001
+    root = builder.tape(builder.operation("pow", x, builder.constant(0.5)))
+    assert prove(root, (0.25, -1.0), (1.5, 1.0)).slope == pytest.approx(1.0, rel=1e-3)
+    with pytest.raises(TapeError, match="endlessly steep near \\(0"):
+        prove(root, (0.0, -1.0), (1.5, 1.0))
+    exponential = builder.tape(builder.operation("pow", builder.constant(2.0), y))
+    proof = prove(exponential, (0.0, -1.0), (1.0, 2.0))
+    assert proof.slope == pytest.approx(4.0 * math.log(2.0), rel=1e-3)
+    angle = builder.tape(builder.operation("atan2", y, x))
+    assert 2.0 <= prove(angle, (0.5, -1.0), (2.0, 1.0)).slope < 2.3
+    assert 2.0 <= prove(angle, (-1.0, 0.5), (1.0, 2.0)).slope < 2.3
+    with pytest.raises(TapeError, match="endlessly steep near \\(-"):
+        prove(angle, (-1.0, -1.0), (1.0, 1.0))
+
+
+@func
+def twisted(p: vec3) -> float:
+    """A cone of eight waves around z, away from the axis."""
+    angle = atan2(p.y, p.x)
+    return length(p - vec3(3.0, 0.0, 0.0)) - 1.0 - 0.02 * sin(8.0 * angle)
+
+
+def test_an_angle_is_proved_where_it_does_not_jump():
+    shape = Shape.from_function(twisted, region=((1.0, -2.0, -2.0), (5.0, 2.0, 2.0)))
+    # 1 and 0.02 * 8 / r, with r at least 1 in the region.
+    assert 1.0 <= shape.slope <= 1.17
+
+
+def test_a_logarithm_of_exponentials_has_a_slope():
+    """A smooth union far from both shapes, where both exponentials are small."""
+
+    @func
+    def blended(p: vec3) -> float:
+        a = length(p - vec3(0.5, 0.0, 0.0)) - 0.5
+        b = length(p + vec3(0.5, 0.0, 0.0)) - 0.5
+        return -log(exp(-16.0 * a) + exp(-16.0 * b)) / 16.0
+
+    shape = Shape.from_function(blended, region=CUBE)
+    assert 1.0 <= shape.slope < 1.001
+
+
 def test_intervals_of_the_cosine():
     rng = np.random.default_rng(4)
     low = np.concatenate([rng.uniform(-20, 20, 4000), [-0.5, -math.pi, 0.0, math.pi, -7.0]])
@@ -200,6 +248,9 @@ def test_the_rules_of_elementary_functions_are_narrow():
         "acos": 1.0 / np.sqrt(1.0 - t * t),
         "atan": 1.0 / (1.0 + t * t),
         "tanh": 1.0 - np.tanh(t) ** 2,
+        "tan": 1.0 + np.tan(t) ** 2,
+        "sinh": np.cosh(t),
+        "cosh": np.sinh(t),
     }
     for name, expected in slopes.items():
         builder = TapeBuilder()
@@ -246,7 +297,7 @@ def sized(p: vec3) -> float:
 
 WRONG = [
     (jumps, "nothing can be proved of 'jumps': it may jump: it uses floor"),
-    (turns, "nothing can be proved of 'turns': there is no rule for the slope of atan2"),
+    (turns, "nothing can be proved of 'turns': it may be endlessly steep near (-"),
     (steep, "nothing can be proved of 'steep': it may be endlessly steep near (0.3"),
     (far, "'far' is positive in the whole region"),
     (wide, "the shape of 'wide' may leave the region"),

@@ -24,8 +24,12 @@ Doubles: TypeAlias = NDArray[np.float64]
 # Operations that may jump. A slope says nothing of a function that jumps.
 JUMPS: Final = ("floor", "ceil", "round", "trunc", "less", "less_equal", "equal", "select")
 # Elementary functions whose derivative has a rule here.
-_RULES: Final = ("sin", "cos", "exp", "exp2", "log", "log2", "asin", "acos", "atan", "tanh")
+_RULES: Final = (
+    *("sin", "cos", "tan", "asin", "acos", "atan", "atan2"),
+    *("sinh", "cosh", "tanh", "exp", "exp2", "log", "log2", "pow"),
+)
 NO_RULE: Final = tuple(name for name in ELEMENTARY if name not in _RULES)
+_INVERSE: Final = {"log": "exp", "log2": "exp2"}
 _LOG_2: Final = float(np.log(2.0))
 _COSINE_ERROR: Final = 1e-9  # more than that of a cosine, and of its argument up to 1e6
 
@@ -83,6 +87,40 @@ def _largest(interval: Doubles) -> Doubles:
     return found
 
 
+def _power(base: Doubles, exponent: Doubles, slope: Doubles) -> tuple[Doubles, Doubles]:
+    """Return the derivatives of ``pow`` along both arguments; NaN where one is not bounded.
+
+    Args:
+        base: The interval of the base.
+        exponent: The interval of the exponent.
+        slope: The slope of the exponent; if it is 0, the second derivative is not needed.
+    """
+    # One is subtracted from the exponent, so a root has no bounded slope at 0.
+    held = np.maximum(base, 0.0)
+    powers = np.stack([x ** (y - 1.0) for x in held for y in exponent])
+    both = np.stack([powers.min(axis=0), powers.max(axis=0)])
+    products = np.stack([p * y for p in both for y in exponent])
+    along_base = np.stack([products.min(axis=0), products.max(axis=0)])
+    values = np.stack([x**y for x in held for y in exponent])
+    logs = np.log(held)
+    products = np.stack([v * t for v in (values.min(axis=0), values.max(axis=0)) for t in logs])
+    along_exponent = np.stack([products.min(axis=0), products.max(axis=0)])
+    return along_base, np.where(slope == 0.0, 0.0, along_exponent)
+
+
+def _angle(y: Doubles, x: Doubles) -> tuple[Doubles, Doubles]:
+    """Return the derivatives of ``atan2``; NaN where it jumps from -pi to pi, and at (0, 0)."""
+    smooth = (x[0] > 0.0) | (y[0] > 0.0) | (y[1] < 0.0)
+    squares = np.where(smooth, _square(x) + _square(y), np.nan)
+    along_y, along_x = (
+        np.stack([ratios.min(axis=0), ratios.max(axis=0)])
+        for ratios in (np.stack([p / q for p in part for q in squares]) for part in (x, -y))
+    )
+    # No component is larger than one over the distance.
+    most = 1.0 / np.sqrt(squares[0])
+    return np.clip(along_y, -most, most), np.clip(along_x, -most, most)
+
+
 class Derivatives:
     """The derivatives of every operation of a tape in some cells.
 
@@ -113,7 +151,9 @@ class Derivatives:
                 self._lengths.append(np.fmin(np.where(np.isnan(length), np.inf, length), of_axes))
         low, high = self._intervals[-1]
         least = np.maximum(np.maximum(low, -high), 0.0)
-        return np.nan_to_num(np.sqrt((least**2).sum(axis=0)), posinf=0.0), self._lengths[-1]
+        with np.errstate(over="ignore"):
+            below = np.sqrt((least**2).sum(axis=0))
+        return np.nan_to_num(below, posinf=0.0), self._lengths[-1]
 
     def _derivative(self, name: str, operands: list[int], index: int) -> tuple[Doubles, Doubles]:
         """Return the intervals of an operation's derivatives, and a bound on their length."""
@@ -128,6 +168,10 @@ class Derivatives:
         if len(operands) == 1:
             if name == "sqrt":
                 return self._root(a, index)
+            if name in _INVERSE:
+                terms = self._terms(self._clamped(a), _INVERSE[name])
+                if terms is not None:
+                    return self._mean(terms)
             factor = self._factor(name, self._values[a], self._values[index])
             return _times(factor, da), _largest(factor) * la
         b = operands[1]
@@ -152,6 +196,10 @@ class Derivatives:
                 interval = np.where(first, da, np.where(second, db, both))
                 length = np.where(first, la, np.where(second, lb, np.maximum(la, lb)))
                 return interval, length
+            case "pow" | "atan2":
+                factors = _power(va, vb, lb) if name == "pow" else _angle(va, vb)
+                interval = _times(factors[0], da) + _times(factors[1], db)
+                return interval, _largest(factors[0]) * la + _largest(factors[1]) * lb
             case _:
                 return np.full(shape, np.nan), np.full(shape[-1], np.nan)
 
@@ -183,17 +231,36 @@ class Derivatives:
                 return slope if name == "asin" else -slope[::-1]
             case "atan":
                 return 1.0 / (1.0 + _square(value)[::-1])
+            case "tan":
+                return 1.0 + _square(result)
+            case "sinh":
+                nearest = np.maximum(np.maximum(value[0], -value[1]), 0.0)
+                return np.cosh(np.stack([nearest, _largest(value)]))
+            case "cosh":
+                return np.sinh(value)
             case "tanh":
                 return np.clip(1.0 - _square(result)[::-1], 0.0, 1.0)
             case _:
                 return np.full_like(value, np.nan)
+
+    def _mean(self, terms: list[int]) -> tuple[Doubles, Doubles]:
+        """Return the derivative of ``log(exp(a) + exp(b) + …)``, a smooth union.
+
+        It is a mean of those of a, b, … with positive weights, or 0 where the sum is clamped, or
+        exponentials are too small or too large for floats.
+        """
+        interval, length = np.zeros_like(self._intervals[terms[0]]), 0.0 * self._lengths[terms[0]]
+        for term in terms:
+            interval = _hull(interval, self._intervals[term])
+            length = np.maximum(length, self._lengths[term])
+        return interval, length
 
     def _root(self, a: int, index: int) -> tuple[Doubles, Doubles]:
         """Return the derivative of a square root: by its rule, and as a length where it is one."""
         inverse = 0.5 * _inverse(self._values[index])
         plain = _times(inverse, self._intervals[a])
         by_rule = _largest(inverse) * self._lengths[a]
-        terms = self._squares(a)
+        terms = self._terms(a, "square")
         if terms is None:
             return plain, by_rule
         gram = self._row_sums(terms)
@@ -203,14 +270,25 @@ class Derivatives:
         high = np.fmin(plain[1], length)
         return np.stack([low, high]), length
 
-    def _squares(self, value: int) -> list[int] | None:
-        """Return the values whose squares a value is the sum of; None if it is no such sum."""
+    def _clamped(self, value: int) -> int:
+        """Return what a value is the larger one of, beside a constant; else the value."""
         number, _, a, b, *_ = self._rows[value]
-        if number == NUMBER["square"]:
+        is_clamped = number == NUMBER["max"] and self._rows[b][0] == NUMBER["const"]
+        return a if is_clamped else value
+
+    def _terms(self, value: int, name: str) -> list[int] | None:
+        """Return what a value is the sum of functions of; None if it is no such sum.
+
+        Args:
+            value: The value.
+            name: The function: "square", "exp" …
+        """
+        number, _, a, b, *_ = self._rows[value]
+        if number == NUMBER[name]:
             return [a]
         if number != NUMBER["add"]:
             return None
-        left, right = self._squares(a), self._squares(b)
+        left, right = self._terms(a, name), self._terms(b, name)
         return None if left is None or right is None else left + right
 
     def _row_sums(self, terms: list[int]) -> Doubles:

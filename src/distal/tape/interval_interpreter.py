@@ -17,7 +17,8 @@ Journal of the ACM 48 (2001).
 
 from __future__ import annotations
 
-from typing import Final
+from itertools import product
+from typing import Final, assert_never
 
 from distal.backends.llvm.lanes import Lanes
 from distal.ir.intrinsics import Trend
@@ -32,6 +33,12 @@ _UPPER: Final = FLOAT_SLOT  # bytes from the lower ends of a slot to its upper e
 # ``lang.prelude.elementary``; ``tests/tape/test_intervals.py`` measures them against these.
 RELATIVE_ERROR: Final = 4e-6
 ABSOLUTE_ERROR: Final = 4e-6
+POWER_ERROR: Final = 5e-5  # relative; of the exponent, which is up to 126
+# The error of an exponential is relative, down to the smallest number that it gives.
+_ONLY_RELATIVE: Final = ("exp", "exp2")
+SMALLEST_VALUE: Final = 1e-37
+_LARGEST_TANGENT: Final = 100.0  # beyond it, the ends' order does not exclude a pole
+_HALF_TURN: Final = 3.1416
 LARGEST_ANGLE: Final = 1e4  # beyond it, sines are less accurate: their interval is -1 to 1
 
 
@@ -43,6 +50,7 @@ class _Intervals(TapeLoop):
         self.first = self.code.parameter("first", POINTER)
         self.second = self.code.parameter("second", POINTER)
         self._ends = self.code.stack(2 * FLOAT_SLOT)
+        self._inner = self.code.stack(4 * FLOAT_SLOT)
 
     def ends(self, address: Value, offset: int) -> tuple[Value, Value]:
         """Load a chunk of lower ends and one of upper ends."""
@@ -99,7 +107,7 @@ class _Intervals(TapeLoop):
             choose(name, reader, target, index)
         elif row.trend is not None:
             operands = [self.slot(reader, f) for f in "ab"[: row.operands]]
-            self._elementary(name, row.trend, operands[0], target)
+            self._elementary(name, row.trend, operands, target)
         else:
             addresses = [self.slot(reader, f) for f in "ab"[: row.operands]]
             for offset in self.offsets:
@@ -202,26 +210,80 @@ class _Intervals(TapeLoop):
             always, never = (high + doubt) <= least, (low + doubt) > most
         return self.code.select(always, 1.0, zero), self.code.select(never, 0.0, one)
 
-    def _elementary(self, name: str, trend: Trend, a: Value, target: Value) -> None:
-        code = self.code
-        if trend is Trend.UNKNOWN:
-            nothing = code.literal(float("nan"), self.vector)
-            for offset in self.offsets:
-                self.keep((nothing, nothing), target, offset)
-            return
+    def _elementary(self, name: str, trend: Trend, operands: list[Value], target: Value) -> None:
+        code, a = self.code, operands[0]
         number = code.literal(NUMBER[name] - FIRST_ELEMENTARY)
-        if trend is Trend.WAVE:
-            self._wave(a, target, number)
-            return
+        match trend:
+            case Trend.UNKNOWN:
+                nothing = code.literal(float("nan"), self.vector)
+                for offset in self.offsets:
+                    self.keep((nothing, nothing), target, offset)
+            case Trend.WAVE:
+                self._wave(a, target, number)
+            case Trend.MONOTONE | Trend.ANGLE:
+                self._corners(trend, a, operands[1], target, number)
+            case Trend.EVEN:
+                for offset in self.offsets:
+                    low, high = self.ends(a, offset)
+                    nearest = self.positive(self.most(low, -high))
+                    self.keep((nearest, self.most(-low, high)), self._inner, offset)
+                self._at_ends(name, Trend.RISING, self._inner, target, number)
+            case Trend.RISING | Trend.FALLING | Trend.BRANCHES:
+                self._at_ends(name, trend, a, target, number)
+            case _:
+                assert_never(trend)
+
+    def _at_ends(self, name: str, trend: Trend, a: Value, target: Value, number: Value) -> None:
+        """A function that rises or falls: its values at the ends."""
+        code = self.code
         code.call("elementary", self._ends, a, a, number)
         code.call("elementary", self._ends.at(_UPPER), a.at(_UPPER), a.at(_UPPER), number)
+        absolute = SMALLEST_VALUE if name in _ONLY_RELATIVE else ABSOLUTE_ERROR
         for offset in self.offsets:
-            doubt = self.doubt(*self.ends(a, offset))
+            first, last = self.ends(a, offset)
+            doubt = self.doubt(first, last)
             low, high = self.ends(self._ends, offset)
             if trend is Trend.FALLING:
                 low, high = high, low
-            low = low - (self.call("fabs", low) * RELATIVE_ERROR + ABSOLUTE_ERROR)
-            high = high + (self.call("fabs", high) * RELATIVE_ERROR + ABSOLUTE_ERROR)
+            if trend is Trend.BRANCHES:
+                doubt = doubt + self._pole(last - first, low, high)
+                # Its slope is 1 + tan^2, by which an error of the argument grows.
+                rest = [(end * end + 1.0) * ABSOLUTE_ERROR for end in (low, high)]
+                self.keep((low - rest[0], high + (rest[1] + doubt)), target, offset)
+                continue
+            low = low - (self.call("fabs", low) * RELATIVE_ERROR + absolute)
+            high = high + (self.call("fabs", high) * RELATIVE_ERROR + absolute)
+            self.keep((low, high + doubt), target, offset)
+
+    def _pole(self, width: Value, low: Value, high: Value) -> Value:
+        """Return NaN where there may be a pole of the tangent between the ends, else 0.
+
+        The tangents of ends less than pi apart are in falling order if a pole is between them.
+        Next to a pole their order is not certain.
+        """
+        code = self.code
+        zero = code.literal(0.0, self.vector)
+        largest = self.most(self.call("fabs", low), self.call("fabs", high))
+        known = (width < 3.0) & (low <= high) & (largest < _LARGEST_TANGENT)
+        return code.select(known, zero, code.literal(float("nan"), self.vector))
+
+    def _corners(self, trend: Trend, a: Value, b: Value, target: Value, number: Value) -> None:
+        """A function that is monotone along both arguments: its values at the corners."""
+        code = self.code
+        for place, (first, second) in enumerate(product((0, _UPPER), repeat=2)):
+            corner = self._inner.at(place * FLOAT_SLOT)
+            code.call("elementary", corner, a.at(first), b.at(second), number)
+        for offset in self.offsets:
+            values = [self.load(self._inner, place * FLOAT_SLOT + offset) for place in range(4)]
+            (al, ah), (bl, bh) = self.ends(a, offset), self.ends(b, offset)
+            doubt = self.doubt(al, ah, bl, bh)
+            low, high = self.corners(values)
+            low = low - (self.call("fabs", low) * POWER_ERROR + ABSOLUTE_ERROR)
+            high = high + (self.call("fabs", high) * POWER_ERROR + ABSOLUTE_ERROR)
+            if trend is Trend.ANGLE:
+                smooth = (bl > 0.0) | (al > 0.0) | (ah < 0.0)
+                low = code.select(smooth, low, code.literal(-_HALF_TURN, self.vector))
+                high = code.select(smooth, high, code.literal(_HALF_TURN, self.vector))
             self.keep((low, high + doubt), target, offset)
 
     def _wave(self, a: Value, target: Value, number: Value) -> None:

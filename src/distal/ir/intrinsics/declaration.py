@@ -43,11 +43,15 @@ ZERO_TO_ONE: Final[Interval] = (0.0, 1.0 + WIDER)
 
 
 class Trend(Enum):
-    """How the result of a built-in follows from its argument."""
+    """How the result of a built-in follows from its arguments."""
 
     RISING = "rising"  # never decreases
     FALLING = "falling"  # never increases
     WAVE = "wave"  # slope at most 1, values from -1 to 1
+    EVEN = "even"  # falls to 0 and rises from there
+    BRANCHES = "branches"  # rises between poles that are pi apart
+    MONOTONE = "monotone"  # along each argument, it never decreases or never increases
+    ANGLE = "angle"  # the same, where y is not around 0 with x below 0
     UNKNOWN = "unknown"
 
 
