@@ -226,7 +226,8 @@ class _Intervals(TapeLoop):
                 for offset in self.offsets:
                     low, high = self.ends(a, offset)
                     nearest = self.positive(self.most(low, -high))
-                    self.keep((nearest, self.most(-low, high)), self._inner, offset)
+                    farthest = self.most(-low, high) + self.doubt(low, high)
+                    self.keep((nearest, farthest), self._inner, offset)
                 self._at_ends(name, Trend.RISING, self._inner, target, number)
             case Trend.RISING | Trend.FALLING | Trend.BRANCHES:
                 self._at_ends(name, trend, a, target, number)
