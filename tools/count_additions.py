@@ -46,7 +46,8 @@ class Addition:
 
 
 ADDITIONS: Final = (
-    Addition("an intrinsic", "sinh", ("sinh",)),
+    # A rule for proofs of slopes is optional: without one, nothing is proved.
+    Addition("an intrinsic", "sinh", ("sinh",), users=("tape/derivative_bounds.py",)),
     Addition("a built-in in scene code", "outer", ("outer_product",)),
     Addition("a shape", "CappedTorus", ("CappedTorus", "capped_torus")),
     Addition("an operator", "twist", ("twist",)),

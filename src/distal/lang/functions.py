@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
@@ -20,6 +20,8 @@ from distal.lang.source import Source, capture
 if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.lang.parameters import Parameter
+
+Marked = TypeVar("Marked", bound=Any)  # a Func; scene code sees the types of its parameters
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
@@ -150,7 +152,7 @@ def func(function: Callable[..., Any]) -> Func:
     return Func(_record(function, "@func", sys._getframe(1)))
 
 
-def apart(function: Func) -> Func:
+def apart(function: Marked) -> Marked:
     """Mark a long function that few of the pixels computed together need, as ``@apart``.
 
     The CPU calls it for each vector of pixels, and skips vectors that do not need it.

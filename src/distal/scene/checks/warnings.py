@@ -50,7 +50,6 @@ LOOSE: Final = 1.5
 MOST_LOST: Final = 1e-3
 
 
-
 class _Suspects(NamedTuple):
     """The nodes of a tree that are checked before a picture.
 
