@@ -37,6 +37,7 @@ NO_OPERATOR = {
     "from_function": "below: all children here",
     "from_vm": "tape/test_vm_files",
     "fill": "tape/test_filled_shapes",
+    "heights": "tape/test_shape_heights",
     "parameters": "asks",
     "text": "shows",
     "show": "shows",

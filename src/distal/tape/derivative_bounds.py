@@ -73,7 +73,8 @@ def _cosine(interval: Doubles) -> Doubles:
     ends[1] = np.where(np.floor(high / turn) >= np.ceil(low / turn), 1.0, ends[1])
     halves = (low - np.pi) / turn, (high - np.pi) / turn
     ends[0] = np.where(np.floor(halves[1]) >= np.ceil(halves[0]), -1.0, ends[0])
-    return np.clip(ends + np.array([[-_COSINE_ERROR], [_COSINE_ERROR]]), -1.0, 1.0)
+    found: Doubles = np.clip(ends + np.array([[-_COSINE_ERROR], [_COSINE_ERROR]]), -1.0, 1.0)
+    return found
 
 
 def _square(interval: Doubles) -> Doubles:
@@ -235,9 +236,9 @@ class Derivatives:
                 return 1.0 + _square(result)
             case "sinh":
                 nearest = np.maximum(np.maximum(value[0], -value[1]), 0.0)
-                return np.cosh(np.stack([nearest, _largest(value)]))
+                return np.stack([np.cosh(nearest), np.cosh(_largest(value))])
             case "cosh":
-                return np.sinh(value)
+                return np.stack([np.sinh(value[0]), np.sinh(value[1])])
             case "tanh":
                 return np.clip(1.0 - _square(result)[::-1], 0.0, 1.0)
             case _:
