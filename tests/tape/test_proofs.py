@@ -138,6 +138,17 @@ def test_a_declared_slope_that_is_refuted():
     assert "test_proofs.py" in text
 
 
+def test_what_is_constant_beyond_a_limit_refutes_nothing():
+    """asin beyond 1 and x^2.5 below 0 do not change, whatever their rules say."""
+    builder = TapeBuilder()
+    x = builder.operation("x")
+    for name, operands in (("asin", (x,)), ("pow", (x, builder.constant(1.0))), ("exp", (x,))):
+        tape = builder.tape(builder.operation(name, *operands))
+        ends = (100.0, 120.0) if name == "exp" else (-3.0, -1.001)
+        slope = 1e-3 if name == "pow" else 0.5
+        assert refute(tape, slope, (ends[0], -1.0), (ends[1], 1.0)) is None, name
+
+
 def test_powers_and_angles():
     """x^y with 2 <= y <= 3 in [0.5, 1.5]: along x y x^(y - 1); and the angle: 1 / r."""
     builder = TapeBuilder()

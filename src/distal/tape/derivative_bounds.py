@@ -29,6 +29,11 @@ _RULES: Final = (
     *("sinh", "cosh", "tanh", "exp", "exp2", "log", "log2", "pow"),
 )
 NO_RULE: Final = tuple(name for name in ELEMENTARY if name not in _RULES)
+# The magnitude of arguments from which on functions are constant, or may be.
+_HELD: Final = {
+    **{"exp": 86.0, "exp2": 125.0, "sinh": 86.0, "cosh": 86.0},
+    **{"asin": 1.0, "acos": 1.0},
+}
 _INVERSE: Final = {"log": "exp", "log2": "exp2"}
 _LOG_2: Final = float(np.log(2.0))
 _COSINE_ERROR: Final = 1e-9  # more than that of a cosine, and of its argument up to 1e6
@@ -102,6 +107,8 @@ def _power(base: Doubles, exponent: Doubles, slope: Doubles) -> tuple[Doubles, D
     both = np.stack([powers.min(axis=0), powers.max(axis=0)])
     products = np.stack([p * y for p in both for y in exponent])
     along_base = np.stack([products.min(axis=0), products.max(axis=0)])
+    # Below 0 it is constant.
+    along_base = np.where(base[0] <= 0.0, _hull(along_base, 0.0 * along_base), along_base)
     values = np.stack([x**y for x in held for y in exponent])
     logs = np.log(held)
     products = np.stack([v * t for v in (values.min(axis=0), values.max(axis=0)) for t in logs])
@@ -174,6 +181,9 @@ class Derivatives:
                 if terms is not None:
                     return self._mean(terms)
             factor = self._factor(name, self._values[a], self._values[index])
+            if name in _HELD:  # beyond its limit, the function is constant
+                beyond = _largest(self._values[a]) >= _HELD[name]
+                factor = np.where(beyond, _hull(factor, 0.0 * factor), factor)
             return _times(factor, da), _largest(factor) * la
         b = operands[1]
         db, lb = self._intervals[b], self._lengths[b]
