@@ -32,7 +32,6 @@ from distal.render.part_tree import (
     beyond_box,
     box_count,
     inverse_of,
-    nearest_part,
     span_in_box,
     squared,
 )
@@ -207,32 +206,44 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> NearParts:
 
 
 @func
-def distance_to_listed(
+def nearest_listed(
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
     listed: PartList,
     own: int,
     p: vec3,
     most: float,
-) -> float:
-    """Return the signed distance of a point to the nearest part of a list, at most ``most``.
+) -> NearestPart:
+    """Return the part of a list nearest to a point; all parts count if the list is not complete.
 
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
-        listed: The list; if it is not complete, all parts count.
+        listed: The list.
         own: The bits of the parts that count.
         p: The point.
-        most: The largest distance that is of interest.
+        most: The distance that limits the search.
     """
+    is_whole = listed.count > MOST_LISTED
     best = most
-    if listed.count > MOST_LISTED:
-        best = nearest_part(boxes, distance, p, NearestPart(best, -1)).distance
-    else:
-        for i in range(listed.count):
+    part = -1
+    box = 0
+    for i in range(box_count(boxes) if is_whole else listed.count):
+        if not is_whole:
             box = listed.boxes[i]
-            high = boxes[2 * box + 1]
-            is_own = (own >> i & 1) == 1
-            if anywhere(is_own and beyond_box(p, boxes[2 * box], high) <= squared(best)):
-                best = select(is_own, min(best, distance(p, int(high.w))), best)
-    return best
+        elif box >= box_count(boxes):
+            break
+        low = boxes[2 * box]
+        high = boxes[2 * box + 1]
+        following = int(low.w)
+        counts = is_whole or (own >> i & 1) == 1
+        if anywhere(counts and beyond_box(p, low, high) <= squared(best)):
+            of = int(high.w)
+            if of < 0:
+                following = box + 1
+            else:
+                d = select(counts, distance(p, of), best)
+                part = select(d < best, of, part)
+                best = min(best, d)
+        box = following
+    return NearestPart(best, part)

@@ -10,17 +10,17 @@ from collections.abc import Callable
 
 from distal.fields.boxes import hull
 from distal.fields.guarantees import UNBOUNDED, Bounds
-from distal.lang import Buffer, func, length, max, min, vec3, vec4
+from distal.lang import Buffer, func, gradient, length, max, min, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
 from distal.render.part_lists import (
     MOST_LISTED,
-    distance_to_listed,
+    nearest_listed,
     parts_along,
     parts_around,
 )
-from distal.render.part_tree import near_leaf
+from distal.render.part_tree import NearestPart
 from distal.render.shade import Shading, occlusion_in
 from distal.render.shadow_ray import OPEN, Edge, find_edge
 from distal.render.shadows import Opening, above_planes, opening
@@ -70,19 +70,30 @@ def edge_of_parts(
     if own != 0 and not needs_offset:
         return Edge(0.0, False, False)
 
+    def found_at(p: vec3) -> NearestPart:
+        return nearest_listed(boxes, distance, listed, own, p, UNBOUNDED)
+
     def nearest(p: vec3) -> float:
-        most = UNBOUNDED
-        if listed.count > MOST_LISTED:
-            most = distance(p, near_leaf(boxes, p))
-        d = distance_to_listed(boxes, distance, listed, own, p, most)
+        d = found_at(p).distance
         if has_others:
             d = min(d, others(p))
         return d
 
+    def slope(p: vec3) -> vec3:
+        found = found_at(p)
+        if has_others and others(p) < found.distance:
+            return gradient(others, p)
+        part = max(found.part, 0)
+
+        def of_part(q: vec3) -> float:
+            return distance(q, part)
+
+        return gradient(of_part, p)
+
     bounds = near.bounds
     if has_others:
         bounds = hull(bounds, others_bounds)
-    return find_edge(nearest, ray, width, end, bounds, numbers, steps, steep, needs_offset)
+    return find_edge(nearest, slope, ray, width, end, bounds, numbers, steps, steep, needs_offset)
 
 
 @func
@@ -188,7 +199,7 @@ def occlusion_of_parts(
     def nearest(q: vec3) -> float:
         # The surface at p is not farther away.
         most = max(slope, 1.0) * length(q - p)
-        d = distance_to_listed(boxes, distance, listed, own, q, most)
+        d = nearest_listed(boxes, distance, listed, own, q, most).distance
         if has_others:
             d = min(d, others(q))
         return d

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.boxes import everywhere
+from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
     Buffer,
     abs,
@@ -96,11 +97,10 @@ def box_count(boxes: Buffer[vec4]) -> int:
 
 @func
 def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
-    """Return a part whose box is near a point: at each box, the child whose box is nearer."""
+    """Return the box of a part near a point: at each box, the child whose box is nearer."""
     box = 0
-    part = int(boxes[1].w)
     for _ in range(box_count(boxes)):
-        if part >= 0:
+        if int(boxes[2 * box + 1].w) >= 0:
             break
         first = box + 1
         second = int(boxes[2 * first].w)
@@ -109,26 +109,33 @@ def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
         box = second
         if anywhere(to_first < to_second):
             box = first
-        part = int(boxes[2 * box + 1].w)
-    return part
+    return box
 
 
 @func
 def nearest_part(
-    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3, known: NearestPart
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    p: vec3,
+    most: float,
+    first: int,
 ) -> NearestPart:
     """Return the part nearest to a point.
+
+    Drivers write out the distance for each place in the code that asks it, so there is one.
 
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
         p: The point.
-        known: A part that is near; its distance limits the search.
+        most: The distance that limits the search.
+        first: A box to look into first, which makes the search shorter; 0 if none is known.
     """
-    best = known.distance
-    part = known.part
-    box = 0
-    for _ in range(box_count(boxes)):
+    best = most
+    part = -1
+    box = first
+    is_first = first > 0
+    for _ in range(box_count(boxes) + 1):
         if box >= box_count(boxes):
             break
         low = boxes[2 * box]
@@ -142,7 +149,8 @@ def nearest_part(
                 d = distance(p, of)
                 part = select(d < best, of, part)
                 best = min(d, best)
-        box = following
+        box = 0 if is_first else following
+        is_first = False
     return NearestPart(best, part)
 
 
@@ -157,8 +165,7 @@ def nearest_of_all(
         distance: The signed distance of a point to a part.
         p: The point.
     """
-    first = near_leaf(boxes, p)
-    return nearest_part(boxes, distance, p, NearestPart(distance(p, first), first))
+    return nearest_part(boxes, distance, p, UNBOUNDED, near_leaf(boxes, p))
 
 
 @func
@@ -200,7 +207,7 @@ def contains(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec
         distance: The signed distance of a point to a part.
         p: The point.
     """
-    return nearest_part(boxes, distance, p, NearestPart(0.0, -1)).part >= 0
+    return nearest_part(boxes, distance, p, 0.0, 0).part >= 0
 
 
 @func
@@ -311,7 +318,7 @@ def first_of_parts(
     if other.side < 0.0 or contains(boxes, distance, ray.origin):
 
         def field(p: vec3) -> float:
-            return min(distance_to_parts(boxes, distance, distance, p), others_field(p))
+            return min(nearest_of_all(boxes, distance, p).distance, others_field(p))
 
         way = march(field, ray, everywhere(), numbers, steps)
         end = ray.origin + way.t * ray.direction

@@ -6,6 +6,8 @@ finds the same on every target and in every frame. Decision 21 has the measureme
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from distal.fields.guarantees import Bounds
 from distal.lang import (
     Field3,
@@ -13,7 +15,6 @@ from distal.lang import (
     clamp,
     dot,
     func,
-    gradient,
     length,
     max,
     min,
@@ -141,21 +142,27 @@ def passing(free: float, value: float, step: float) -> vec2:
 
 
 @func
-def outline_offset(field: Field3, ray: Ray, entered: float, left: float) -> float:
+def outline_offset(slope: Callable[[vec3], vec3], ray: Ray, entered: float, left: float) -> float:
     """Return the tangent of the angle from a ray through a solid to the solid's outline.
 
     The two faces are taken as flat: as the ray turns, its chord shrinks by a known rate, and the
     outline is where nothing is left of it. Parallel faces have no outline.
 
     Args:
-        field: Signed distance, of any slope.
+        slope: The gradient of a signed distance, of any length.
         ray: The ray.
         entered: Distance along it where it enters the solid.
         left: Distance where it leaves.
     """
     inset = INSET * (left - entered)
-    front = gradient(field, ray.origin + (entered + inset) * ray.direction)
-    back = gradient(field, ray.origin + (left - inset) * ray.direction)
+    front = vec3(0.0)
+    back = vec3(0.0)
+    # A loop: drivers write out the field for each place in the code that asks it.
+    for side in range(2):
+        t = select(side == 0, entered + inset, left - inset)
+        found = slope(ray.origin + t * ray.direction)
+        front = select(side == 0, found, front)
+        back = found
     ahead = min(dot(front, ray.direction), -1e-3 * length(front))
     behind = max(dot(back, ray.direction), 1e-3 * length(back))
     turned = entered / min(ahead, -1e-9) * front - left / max(behind, 1e-9) * back
@@ -304,6 +311,7 @@ def pass_surfaces(
 @func
 def find_edge(
     field: Field3,
+    slope: Callable[[vec3], vec3],
     ray: Ray,
     width: float,
     end: float,
@@ -317,6 +325,7 @@ def find_edge(
 
     Args:
         field: Signed distance.
+        slope: Its gradient.
         ray: The ray to the middle of the disc.
         width: Radius of the disc at distance 1.
         end: Distance along the ray where it ends.
@@ -341,12 +350,12 @@ def find_edge(
         if steep and share < 1.0 and share > -1.0:
             # The local gradient makes a distance of a value that is too small.
             p = ray.origin + found.closest * ray.direction
-            share = share / true_slope(length(gradient(field, p)) / numbers.divisor, numbers)
+            share = share / true_slope(length(slope(p)) / numbers.divisor, numbers)
         through = found.chord.y > found.chord.x
         if through:
             is_sure = False
         if through and needs_offset:
-            across = outline_offset(field, ray, found.chord.x, found.chord.y) / width
+            across = outline_offset(slope, ray, found.chord.x, found.chord.y) / width
             share = min(share, mix(min(share, 0.0), -across, found.chord.z))
         offset = min(offset, share)
         # A ray that ran out of steps is lost if what it has not seen could change the picture.

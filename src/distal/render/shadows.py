@@ -14,6 +14,7 @@ from distal.lang import (
     cos,
     cross,
     func,
+    gradient,
     max,
     min,
     normalize,
@@ -116,8 +117,11 @@ def soft_shadow(
         samples: How many samples the pixel has.
     """
 
+    def slope(p: vec3) -> vec3:
+        return gradient(field, p)
+
     def edge(ray: Ray, width: float, end: float, needs_offset: bool) -> Edge:
-        return find_edge(field, ray, width, end, bounds, numbers, steps, steep, needs_offset)
+        return find_edge(field, slope, ray, width, end, bounds, numbers, steps, steep, needs_offset)
 
     return opening(edge, origin, light, numbers.far, sample, samples)
 
