@@ -10,7 +10,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
-from weakref import WeakKeyDictionary, WeakSet, ref
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,31 +58,26 @@ class _Suspects(NamedTuple):
         endless: Moving operators that have a slope only for some children.
     """
 
-    own: tuple[ref[Node], ...]
-    endless: tuple[ref[Node], ...]
+    own: list[Node]
+    endless: list[Node]
 
 
 _looked_at: WeakSet[Node] = WeakSet()
-# Trees do not change, and a tree of 100,000 parts takes longer to walk than to draw.
-_suspects: WeakKeyDictionary[Node, _Suspects] = WeakKeyDictionary()
 
 
 def _suspects_of(root: Node) -> _Suspects:
-    found = _suspects.get(root)
-    if found is None:
-        own: list[ref[Node]] = []
-        endless: list[ref[Node]] = []
-        for node in root.walk():
-            if isinstance(node.rule, Primitive) and node.rule.slope is given_slope:
-                own.append(ref(node))
-            if may_be_endless(node) and _moves(node):
-                endless.append(ref(node))
-        found = _suspects[root] = _Suspects(tuple(own), tuple(endless))
+    # A tree of 100,000 parts takes longer to walk than to draw.
+    return root.derived("suspects", lambda: _found_suspects(root))
+
+
+def _found_suspects(root: Node) -> _Suspects:
+    found = _Suspects([], [])
+    for node in root.walk():
+        if isinstance(node.rule, Primitive) and node.rule.slope is given_slope:
+            found.own.append(node)
+        if may_be_endless(node) and _moves(node):
+            found.endless.append(node)
     return found
-
-
-def _alive(nodes: tuple[ref[Node], ...]) -> list[Node]:
-    return [node for at in nodes if (node := at()) is not None]
 
 
 def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
@@ -96,7 +91,7 @@ def warn_of_functions(shape: BaseShape, params: Mapping[str, Any], time: float) 
     Raises:
         SceneValueError: A function returns NaN at all points.
     """
-    for node in _alive(_suspects_of(shape.node).own):
+    for node in _suspects_of(shape.node).own:
         if node not in _looked_at:
             _look(node, params, time)
             _looked_at.add(node)
@@ -115,7 +110,7 @@ def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> No
     Raises:
         SceneValueError: At the line of the first operator whose children still have a bound.
     """
-    risky = _alive(_suspects_of(shape.node).endless)
+    risky = _suspects_of(shape.node).endless
     if not risky:
         return
     promised = bounds_of_nodes(shape.node, _read(shape, params), time)

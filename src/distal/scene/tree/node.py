@@ -7,9 +7,9 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias, TypeVar
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
@@ -17,6 +17,7 @@ from distal.lang.functions import Func
 from distal.scene.tree.conversion import NO_VALUES, Number
 
 Rule: TypeAlias = Primitive | Operator
+Derived = TypeVar("Derived")
 
 
 class GrowingChildren:
@@ -77,6 +78,7 @@ class Node:
     label: str = ""
     parts: int = field(init=False, default=1)
     _growing: GrowingChildren | None = field(init=False, repr=False, default=None)
+    _derived: dict[str, Any] | None = field(init=False, repr=False, default=None)
 
     def __init__(
         self,
@@ -113,6 +115,7 @@ class Node:
         _set_material(self, material)
         _set_cut_material(self, cut_material)
         _set_label(self, label)
+        _set_derived(self, None)
         if type(children) is tuple:
             _set_children(self, children)
             _set_growing(self, None)
@@ -197,6 +200,24 @@ class Node:
             return self.rule.estimate
         return any(child.estimate for child in self.children)
 
+    def derived(self, name: str, make: Callable[[], Derived]) -> Derived:
+        """Return what was made of this tree before, under a name; else make it.
+
+        It lives as long as the node, which it may refer to: trees do not change.
+
+        Args:
+            name: What it is.
+            make: Makes it.
+        """
+        if self._derived is None:
+            _set_derived(self, {})
+        known = self._derived
+        assert known is not None
+        if name not in known:
+            known[name] = make()
+        found: Derived = known[name]
+        return found
+
     def walk(self) -> Iterator[Node]:
         """Yield this node and all below it, each once, parents first."""
         seen: set[int] = set()
@@ -231,3 +252,4 @@ _set_cut_material: Final = _SLOTS["cut_material"].__set__
 _set_label: Final = _SLOTS["label"].__set__
 _set_parts: Final = _SLOTS["parts"].__set__
 _set_growing: Final = _SLOTS["_growing"].__set__
+_set_derived: Final = _SLOTS["_derived"].__set__

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
-from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError
 from distal.fields.combine.joins import UNION
@@ -108,19 +107,16 @@ class Rolled:
     beside: Sequence[tuple[UnionMember, str]]
 
 
-_rolled: WeakKeyDictionary[Node, Rolled] = WeakKeyDictionary()
-
-
 def rolled(root: Node) -> Rolled:
     """Return a tree with a table of the parts that its root unites, if there are many."""
-    found = _rolled.get(root)
-    if found is None:
-        try:
-            found = _roll(root)
-        except RecursionError:
-            found = Rolled(root, None, ())  # lowering reports a tree that is too deep
-        _rolled[root] = found
-    return found
+    return root.derived("table", lambda: _rolled(root))
+
+
+def _rolled(root: Node) -> Rolled:
+    try:
+        return _roll(root)
+    except RecursionError:
+        return Rolled(root, None, ())  # lowering reports a tree that is too deep
 
 
 def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:

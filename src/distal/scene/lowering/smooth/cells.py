@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
-from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError
 from distal.fields.guarantees import Operator
@@ -128,12 +127,6 @@ class CelledTree:
     linear: Sequence[tuple[Node, int, str]]
 
 
-# The grids of smooth unions, of how many of their members, and why not of all.
-_grids: WeakKeyDictionary[Node, tuple[MemberGrid | None, int, str]] = WeakKeyDictionary()
-_celled: WeakKeyDictionary[Node, CelledTree] = WeakKeyDictionary()
-_exact: WeakKeyDictionary[Node, Node] = WeakKeyDictionary()
-
-
 def celled(root: Node) -> CelledTree:
     """Return a tree with grids for its large smooth unions.
 
@@ -142,19 +135,19 @@ def celled(root: Node) -> CelledTree:
     Raises:
         PackageError: NumPy is missing, and the shapes are too many without grids.
     """
-    found = _celled.get(root)
-    if found is None:
-        rewriting = _GridInsertion()
-        try:
-            found = CelledTree(rewriting.of(root), rewriting.grids, rewriting.linear)
-        except RecursionError:
-            found = CelledTree(root, (), ())  # lowering reports a tree that is too deep
-        except PackageError:
-            if root.parts > MOST_WITHOUT:
-                raise
-            found = CelledTree(root, (), ())  # texts are compiled without NumPy too
-        _celled[root] = found
-    return found
+    return root.derived("grids", lambda: _with_grids(root))
+
+
+def _with_grids(root: Node) -> CelledTree:
+    rewriting = _GridInsertion()
+    try:
+        return CelledTree(rewriting.of(root), rewriting.grids, rewriting.linear)
+    except RecursionError:
+        return CelledTree(root, (), ())  # lowering reports a tree that is too deep
+    except PackageError:
+        if root.parts > MOST_WITHOUT:
+            raise
+        return CelledTree(root, (), ())  # texts are compiled without NumPy too
 
 
 def celled_for(table_from: int | None, root: Node, *, exact: bool) -> Node:
@@ -185,10 +178,7 @@ def exact_cells(root: Node) -> Node:
     """Return a tree of ``celled`` in which values outside of grids are those of the unions, too."""
     if not any(isinstance(node, CellNode) for node in root.walk()):
         return root
-    found = _exact.get(root)
-    if found is None:
-        found = _exact[root] = _made_exact(root)
-    return found
+    return root.derived("exact grids", lambda: _made_exact(root))
 
 
 def _made_exact(node: Node) -> Node:
@@ -276,15 +266,15 @@ class _GridInsertion:
 
 def _grid_of(node: Node, links: list[Link]) -> tuple[MemberGrid | None, int, str]:
     """Return the grid of a union, of how many of its members, and why not of all."""
-    known = _grids.get(node)
-    if known is None:
-        count, reason = first_linear(links)
-        known = (None, 0, reason)
-        if count >= LEAST_MEMBERS:
-            made = grid.grid_of(links[:count])
-            known = (None, 0, made) if isinstance(made, str) else (made, count, reason)
-        _grids[node] = known
-    return known
+    return node.derived("grid", lambda: _new_grid(links))
+
+
+def _new_grid(links: Sequence[Link]) -> tuple[MemberGrid | None, int, str]:
+    count, reason = first_linear(links)
+    if count < LEAST_MEMBERS:
+        return None, 0, reason
+    made = grid.grid_of(links[:count])
+    return (None, 0, made) if isinstance(made, str) else (made, count, reason)
 
 
 def _nodes(links: Sequence[Link]) -> list[Node]:
