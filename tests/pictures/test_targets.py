@@ -30,6 +30,7 @@ LONG_BY_REFERENCE = (
     "forest",
     "gyroid_part",
     "molecule",
+    "ripples",
     "sdfray_csg_on_checker",
     "sdfray_glass",
     "sdfray_refraction",
