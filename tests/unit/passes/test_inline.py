@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from distal.ir import build
@@ -71,6 +73,12 @@ def test_text_keeps_its_functions_but_not_the_unused() -> None:
     module = Module((DOUBLED, SQUARE, main), "main", EntryKind.FUNCTION)
     kept = run(module, context(TEXT))
     assert kept.functions == (SQUARE, main)
+
+
+def test_a_function_that_few_pixels_need_stays_a_call() -> None:
+    entry = function("entry", {"x": FLOAT}, Return(call("square", x)))
+    assert calls(inlined(SQUARE, entry).body) == []
+    assert calls(inlined(replace(SQUARE, apart=True), entry).body) == ["square"]
 
 
 def test_arguments_become_lets_unless_they_cost_nothing() -> None:
