@@ -276,6 +276,26 @@ def test_boxes_of_all_times_are_not_much_larger_than_they_must_be():
     assert bounds_of(kind).high[:, 1] == pytest.approx([0.1 + 0.3 * np.sin(i) for i in range(3)])
 
 
+ELEMENTARY = (
+    *("sin", "cos", "tan", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh"),
+    *("exp", "exp2", "log", "log2", "sqrt", "floor", "ceil", "abs", "trunc"),
+)
+
+
+@pytest.mark.parametrize("name", ELEMENTARY)
+@pytest.mark.parametrize("reach", [(0.9, 0.0), (0.4, -0.3), (0.3, 0.5), (3.0, 2.0)])
+def test_boxes_of_all_times_hold_what_moves_by_any_function(name, reach):
+    wide, middle = reach
+    function = getattr(np, name)
+    (kind,) = kinds(*(Sphere(0.1).translate(y=function(SWING * wide + middle)) for _ in range(2)))
+    swept = swept_bounds_of(kind)
+    angles = np.linspace(-1.0, 1.0, 2001) * wide + middle
+    with np.errstate(all="ignore"):
+        y = function(angles)
+    y = y[np.isfinite(y)]
+    assert swept.low[0, 1] <= y.min() - 0.0999 and swept.high[0, 1] >= y.max() + 0.0999
+
+
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
 def test_a_part_that_turns_is_as_long_along_its_axis_as_ever(axis):
     (kind,) = kinds(*(Box(0.2, 0.4, 0.6).rotate(**{axis: time + i}) for i in range(2)))

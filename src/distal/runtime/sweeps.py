@@ -206,8 +206,11 @@ def _elementary(name: str, *operands: Ends) -> Ends:
     (low, high), *_ = operands
     if trend is Trend.WAVE:
         return _wave(low, high, 0.5 * math.pi if name == "sin" else 0.0)
+    if trend is Trend.EVEN:
+        low, high = _magnitude((low, high))
+        trend = Trend.RISING
     row = INTRINSICS.get(name)
-    if row is None or row.meaning is None or trend is Trend.UNKNOWN:
+    if row is None or row.meaning is None or trend not in (Trend.RISING, Trend.FALLING):
         return np.full_like(low, -np.inf), np.full_like(low, np.inf)
     if row.held is not None:
         low, high = (np.clip(end, row.held.low, row.held.high) for end in (low, high))
