@@ -13,6 +13,7 @@ from distal.compiler.driver import run_passes
 from distal.frontend import lower
 from distal.ir.types import Buffer
 from distal.lang.composed import Composed
+from distal.lang.resources import MovingBuffer
 
 
 def buffer_data(entry: dict[str, Any], buffers: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
@@ -27,10 +28,16 @@ def buffer_data(entry: dict[str, Any], buffers: Mapping[str, NDArray[Any]]) -> N
     return np.array(entry["values"], np.int32 if entry["element"] == "int" else np.float32)
 
 
-def buffers_of(image: Any) -> dict[str, NDArray[Any]]:
-    """The author's buffers of a picture, and the tables of its parts, by name."""
-    resources = lower(image).resources
-    return {r.name: np.asarray(r.source.data) for r in resources if isinstance(r.type, Buffer)}
+def buffers_of(image: Any, seconds: float) -> dict[str, NDArray[Any]]:
+    """The author's buffers of a picture, and the tables of its parts at a time, by name."""
+    found = {r.name: r.source for r in lower(image).resources if isinstance(r.type, Buffer)}
+    return {name: _numbers(source, seconds) for name, source in found.items()}
+
+
+def _numbers(source: Any, seconds: float) -> NDArray[Any]:
+    # Boxes for all times are right, too, but move the silhouettes of single samples.
+    moves = isinstance(source, MovingBuffer)
+    return np.asarray(source.at({}, seconds) if moves else source.data)
 
 
 def text_of(image: Any, target: str) -> Artifact:

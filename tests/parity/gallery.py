@@ -104,9 +104,9 @@ def program(example: str, target: str = "glsl-es300") -> Artifact:
 
 
 @cache
-def buffers(example: str) -> dict[str, NDArray[Any]]:
+def buffers(example: str, seconds: float) -> dict[str, NDArray[Any]]:
     """The data that the text reads."""
-    return buffers_of(image(example))
+    return buffers_of(image(example), seconds)
 
 
 def is_moving(example: str) -> bool:
@@ -138,7 +138,7 @@ def by_browser(driver: str) -> Callable[[str, tuple[int, int], float], NDArray[A
 
     def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
         values = {"time": seconds} if is_moving(example) else {}
-        given = {"buffers": buffers(example), "driver": driver}
+        given = {"buffers": buffers(example, seconds), "driver": driver}
         return webgl.run_webgl(program(example), size, values, **given)
 
     return draw

@@ -80,8 +80,8 @@ def cpu_picture(example, time):
 
 
 @cache
-def buffers(example):
-    return buffers_of(image(example))
+def buffers(example, time):
+    return buffers_of(image(example), time)
 
 
 def drawn(example, target, time):
@@ -91,12 +91,12 @@ def drawn(example, target, time):
     if program.interface["target"].startswith("wgsl"):
         gpu = pytest.importorskip("tests.gpu")
         try:
-            return gpu.run_wgsl(program, SIZE, uniforms, buffers=buffers(example))
+            return gpu.run_wgsl(program, SIZE, uniforms, buffers=buffers(example, time))
         except gpu.GpuUnavailableError as error:
             pytest.skip(str(error))
     glsl = pytest.importorskip("tests.glsl")
     try:
-        return glsl.run_glsl(program, SIZE, uniforms, buffers=buffers(example))
+        return glsl.run_glsl(program, SIZE, uniforms, buffers=buffers(example, time))
     except glsl.egl.EglUnavailableError as error:
         pytest.skip(str(error))
 
