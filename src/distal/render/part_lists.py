@@ -55,6 +55,20 @@ class PartList:
 
 
 @struct
+class OwnParts:
+    """Which parts are near a ray or a point.
+
+    Attributes:
+        listed: A bit for each place in the list.
+        others: If the list is not complete: the bits of the parts' boxes, modulo 32. So few of the
+            others count too.
+    """
+
+    listed: int
+    others: int
+
+
+@struct
 class NearParts:
     """The parts near a ray or a point.
 
@@ -63,13 +77,13 @@ class NearParts:
 
     Attributes:
         listed: The parts near any ray.
-        own: The bits of those in the list that are near this ray.
+        own: Which parts are near this ray.
         bounds: The box around them.
         hidden: Whether one part alone hides all of a cone.
     """
 
     listed: PartList
-    own: int
+    own: OwnParts
     bounds: Bounds
     hidden: bool = False
 
@@ -133,6 +147,7 @@ def parts_along(
     listed = [0] * MOST_LISTED
     count = 0
     own = 0
+    others = 0
     hidden = False
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
@@ -164,9 +179,11 @@ def parts_along(
                     if count < MOST_LISTED:
                         listed[count] = box
                         own = select(beside, own | (1 << count), own)
+                    others = select(beside, others | (1 << (box & 31)), others)
                     count += 1
         box = following
-    return NearParts(PartList(count, listed), own, Bounds(around_low, around_high), hidden)
+    around = Bounds(around_low, around_high)
+    return NearParts(PartList(count, listed), OwnParts(own, others), around, hidden)
 
 
 @func
@@ -181,6 +198,7 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> NearParts:
     listed = [0] * MOST_LISTED
     count = 0
     own = 0
+    others = 0
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
     box = 0
@@ -200,9 +218,11 @@ def parts_around(boxes: Buffer[vec4], p: vec3, reach: float) -> NearParts:
                 if count < MOST_LISTED:
                     listed[count] = box
                     own = select(meets, own | (1 << count), own)
+                others = select(meets, others | (1 << (box & 31)), others)
                 count += 1
         box = following
-    return NearParts(PartList(count, listed), own, Bounds(around_low, around_high))
+    around = Bounds(around_low, around_high)
+    return NearParts(PartList(count, listed), OwnParts(own, others), around)
 
 
 @func
@@ -210,23 +230,23 @@ def nearest_listed(
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
     listed: PartList,
-    own: int,
+    own: OwnParts,
     p: vec3,
-    most: float,
+    known: NearestPart,
 ) -> NearestPart:
-    """Return the part of a list nearest to a point; all parts count if the list is not complete.
+    """Return the part nearest to a point, of those near a ray or another point.
 
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
         listed: The list.
-        own: The bits of the parts that count.
+        own: The parts that count.
         p: The point.
-        most: The distance that limits the search.
+        known: A part that is near, or -1; its distance limits the search.
     """
     is_whole = listed.count > MOST_LISTED
-    best = most
-    part = -1
+    best = known.distance
+    part = known.part
     box = 0
     for i in range(box_count(boxes) if is_whole else listed.count):
         if not is_whole:
@@ -236,9 +256,10 @@ def nearest_listed(
         low = boxes[2 * box]
         high = boxes[2 * box + 1]
         following = int(low.w)
-        counts = is_whole or (own >> i & 1) == 1
+        of = int(high.w)
+        bit = select(is_whole, own.others >> (box & 31), own.listed >> i) & 1
+        counts = bit == 1 or of < 0
         if anywhere(counts and beyond_box(p, low, high) <= squared(best)):
-            of = int(high.w)
             if of < 0:
                 following = box + 1
             else:

@@ -20,7 +20,7 @@ from distal.render.part_lists import (
     parts_along,
     parts_around,
 )
-from distal.render.part_tree import NearestPart
+from distal.render.part_tree import NearestPart, near_part
 from distal.render.shade import Shading, occlusion_in
 from distal.render.shadow_ray import OPEN, Edge, find_edge
 from distal.render.shadows import Opening, above_planes, opening
@@ -65,13 +65,16 @@ def edge_of_parts(
         return Edge(-OPEN, True, False)
     listed = near.listed
     own = near.own
-    if own == 0 and listed.count <= MOST_LISTED and not has_others:
+    if own.others == 0 and not has_others:
         return Edge(OPEN, True, False)
-    if own != 0 and not needs_offset:
+    if own.others != 0 and not needs_offset:
         return Edge(0.0, False, False)
 
     def found_at(p: vec3) -> NearestPart:
-        return nearest_listed(boxes, distance, listed, own, p, UNBOUNDED)
+        known = NearestPart(UNBOUNDED, -1)
+        if listed.count > MOST_LISTED:
+            known = near_part(boxes, distance, p)
+        return nearest_listed(boxes, distance, listed, own, p, known)
 
     def nearest(p: vec3) -> float:
         d = found_at(p).distance
@@ -199,7 +202,7 @@ def occlusion_of_parts(
     def nearest(q: vec3) -> float:
         # The surface at p is not farther away.
         most = max(slope, 1.0) * length(q - p)
-        d = nearest_listed(boxes, distance, listed, own, q, most).distance
+        d = nearest_listed(boxes, distance, listed, own, q, NearestPart(most, -1)).distance
         if has_others:
             d = min(d, others(q))
         return d

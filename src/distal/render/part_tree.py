@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.boxes import everywhere
-from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
     Buffer,
     abs,
@@ -97,10 +96,11 @@ def box_count(boxes: Buffer[vec4]) -> int:
 
 @func
 def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
-    """Return the box of a part near a point: at each box, the child whose box is nearer."""
+    """Return a part whose box is near a point: at each box, the child whose box is nearer."""
     box = 0
+    part = int(boxes[1].w)
     for _ in range(box_count(boxes)):
-        if int(boxes[2 * box + 1].w) >= 0:
+        if part >= 0:
             break
         first = box + 1
         second = int(boxes[2 * first].w)
@@ -109,33 +109,26 @@ def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
         box = second
         if anywhere(to_first < to_second):
             box = first
-    return box
+        part = int(boxes[2 * box + 1].w)
+    return part
 
 
 @func
 def nearest_part(
-    boxes: Buffer[vec4],
-    distance: Callable[[vec3, int], float],
-    p: vec3,
-    most: float,
-    first: int,
+    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3, known: NearestPart
 ) -> NearestPart:
     """Return the part nearest to a point.
-
-    Drivers write out the distance for each place in the code that asks it, so there is one.
 
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
         p: The point.
-        most: The distance that limits the search.
-        first: A box to look into first, which makes the search shorter; 0 if none is known.
+        known: A part that is near, or -1; its distance limits the search.
     """
-    best = most
-    part = -1
-    box = first
-    is_first = first > 0
-    for _ in range(box_count(boxes) + 1):
+    best = known.distance
+    part = known.part
+    box = 0
+    for _ in range(box_count(boxes)):
         if box >= box_count(boxes):
             break
         low = boxes[2 * box]
@@ -149,9 +142,21 @@ def nearest_part(
                 d = distance(p, of)
                 part = select(d < best, of, part)
                 best = min(d, best)
-        box = 0 if is_first else following
-        is_first = False
+        box = following
     return NearestPart(best, part)
+
+
+@func
+def near_part(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> NearestPart:
+    """Return a part near a point, with its distance: where a search begins, to be short.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+    """
+    first = near_leaf(boxes, p)
+    return NearestPart(distance(p, first), first)
 
 
 @func
@@ -165,7 +170,7 @@ def nearest_of_all(
         distance: The signed distance of a point to a part.
         p: The point.
     """
-    return nearest_part(boxes, distance, p, UNBOUNDED, near_leaf(boxes, p))
+    return nearest_part(boxes, distance, p, near_part(boxes, distance, p))
 
 
 @func
@@ -207,7 +212,7 @@ def contains(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec
         distance: The signed distance of a point to a part.
         p: The point.
     """
-    return nearest_part(boxes, distance, p, 0.0, 0).part >= 0
+    return nearest_part(boxes, distance, p, NearestPart(0.0, -1)).part >= 0
 
 
 @func
