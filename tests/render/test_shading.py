@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from distal.fields.guarantees import Bounds
-from distal.lang import func, length, max, min, vec2, vec3
+from distal.lang import func, gradient, length, max, min, vec2, vec3
 from distal.lang.runtime_access import executor
 from distal.render import ambient, lights, material, shade, shadow_ray, shadows, sky, trace
 from distal.render.camera import Ray
@@ -43,8 +43,13 @@ def shadow_of_a_cone(at: vec2, radius: float, divisor: float, end: float) -> flo
     """The field is ``at.x`` times the way, but for ``at.y`` of way at the start."""
     light = LightSample(vec3(0.0, 0.6, 0.8), end, vec3(1.0), radius)
     room = Bounds(vec3(-1e18), vec3(1e18))
+
+    def field(p: vec3) -> float:
+        return at.x * length(p - vec3(0.5, 1.0, 2.0)) + at.y
+
     found = shadow_ray.find_edge(
-        lambda p: at.x * length(p - vec3(0.5, 1.0, 2.0)) + at.y,
+        field,
+        lambda p: gradient(field, p),
         Ray(vec3(0.5, 1.0, 2.0), light.direction),
         max(radius, shadows.SHARPEST),
         end,
