@@ -269,7 +269,7 @@ def _grid_of(node: Node, links: list[Link]) -> tuple[MemberGrid | None, int, str
     return node.derived("grid", lambda: _new_grid(links))
 
 
-def _new_grid(links: Sequence[Link]) -> tuple[MemberGrid | None, int, str]:
+def _new_grid(links: list[Link]) -> tuple[MemberGrid | None, int, str]:
     count, reason = first_linear(links)
     if count < LEAST_MEMBERS:
         return None, 0, reason
