@@ -16,9 +16,12 @@ Eurographics 2025.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeVar
 
 from distal.lang import Buffer, clamp, dot, func, length, max, select, struct, vec2, vec3
 from distal.render.material import Surface, mix_surfaces
+
+Attribute = TypeVar("Attribute", Surface, float)
 
 
 @struct
@@ -121,6 +124,40 @@ def distance_by_cells(
 
 
 @func
+def mixed_along(
+    cells: Buffer[int],
+    distance: Callable[[vec3, int], float],
+    joined: Callable[[vec3, int, float], float],
+    share: Callable[[vec3, int, float], float],
+    first: int,
+    of_first: Attribute,
+    shown: Callable[[vec3, int], Attribute],
+    mixed: Callable[[Attribute, Attribute, float], Attribute],
+    p: vec3,
+) -> Attribute:
+    """Return an attribute of a smooth union at a point: those of a list's members, mixed in turn.
+
+    Args:
+        cells: The cells and their lists.
+        distance: The signed distance of a point to a member.
+        joined: The same of the union of a member and what is joined before, given its distance.
+        share: The share of a member in this union, 0 to 1.
+        first: The place of the list.
+        of_first: The attribute of the first member.
+        shown: The attribute of a member.
+        mixed: The attribute of what is joined before, mixed with that of a member by its share.
+        p: The point.
+    """
+    found = of_first
+    d = distance(p, cells[first + 1])
+    for i in range(2, cells[first] + 1):
+        member = cells[first + i]
+        found = mixed(found, shown(p, member), share(p, member, d))
+        d = joined(p, member, d)
+    return found
+
+
+@func
 def surface_by_cells(
     cells: Buffer[int],
     distance: Callable[[vec3, int], float],
@@ -142,13 +179,8 @@ def surface_by_cells(
         p: The point.
     """
     first = list_at(cells, grid, p)
-    found = shown(p, cells[first + 1])
-    d = distance(p, cells[first + 1])
-    for i in range(2, cells[first] + 1):
-        member = cells[first + i]
-        found = mix_surfaces(found, shown(p, member), share(p, member, d))
-        d = joined(p, member, d)
-    return found
+    of_first = shown(p, cells[first + 1])
+    return mixed_along(cells, distance, joined, share, first, of_first, shown, mix_surfaces, p)
 
 
 @func
@@ -172,11 +204,10 @@ def number_by_cells(
         grid: The grid.
         p: The point.
     """
+
+    def larger(before: float, number: float, part: float) -> float:
+        return select(part > 0.5, number, before)
+
     first = list_at(cells, grid, p)
-    found = shown(p, cells[first + 1])
-    d = distance(p, cells[first + 1])
-    for i in range(2, cells[first] + 1):
-        member = cells[first + i]
-        found = select(share(p, member, d) > 0.5, shown(p, member), found)
-        d = joined(p, member, d)
-    return found
+    of_first = shown(p, cells[first + 1])
+    return mixed_along(cells, distance, joined, share, first, of_first, shown, larger, p)

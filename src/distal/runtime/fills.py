@@ -8,7 +8,6 @@ evaluated at every sample by its ordinary kernel. Both ways look at the same poi
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -16,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.base import Cancelled, cancel_test
-from distal.images.picture import Picture, Provenance
+from distal.images.picture import Picture
 from distal.lang.composed import Composed
 from distal.lang.render_options import RenderOptions
-from distal.loading import loaded_from
-from distal.runtime.function_tapes import Ready, uniforms_of
-from distal.tape.runtime import PlaneView, TapeProgram
-from distal.tape.tape import TapeError
+from distal.runtime.function_tapes import Drawing, Ready
+from distal.tape.runtime import PlaneView
 
 Floats = NDArray[np.float32]
 _ROWS: Final = 64  # of pixels that the ordinary kernel evaluates at a time, to limit the memory
@@ -46,23 +43,10 @@ def fill(
         options: Size, time, parameters, threads, progress and cancel.
         ready: Returns the function's tape, if it has one without compilation.
     """
-    begin = time.perf_counter()
     view = PlaneView(*edges)
-    values: dict[str, Any] = {}
-    stats: dict[str, Any] = {"device": "cpu"}
-    program: TapeProgram | None = None
-    if ready is not None:
-        program = executor.tapes.ready(function, ready)
-    else:
-        lowered = executor.lowered(function)
-        uniforms, values = uniforms_of(lowered, options.params, options.time)
-        try:
-            program = executor.tapes.program(function, lowered, uniforms)
-        except TapeError as error:
-            stats["no_tape"] = str(error)
-    made = time.perf_counter()
+    drawing = Drawing(executor, function, options, ready)
+    program = drawing.program
     if program is not None:
-        stats["operations"] = len(program.tape)
         pixels = program.fill(
             *options.size,
             view,
@@ -73,18 +57,8 @@ def fill(
         )
     else:
         pixels = _by_kernel(executor, function, view, colors, options)
-    stats |= {"compile_s": made - begin, "render_s": time.perf_counter() - made}
-    known = loaded_from(function)
-    origin = Provenance(
-        source=function.name if known is None else known.source,
-        source_hash="" if known is None else known.digest,
-        parameters=values,
-        time=options.time,
-        samples=len(colors) - 1,
-        view="fill",
-        device="cpu",
-    )
-    return Picture(pixels, origin, stats)
+    origin = drawing.finished("fill", len(colors) - 1)
+    return Picture(pixels, origin, drawing.stats)
 
 
 def _by_kernel(

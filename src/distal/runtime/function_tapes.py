@@ -6,6 +6,7 @@ Input: functions of a point, and values of their uniforms. Output: tapes that ar
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -14,9 +15,12 @@ from weakref import WeakKeyDictionary
 from distal.backends import get_target
 from distal.compiler.driver import run_passes
 from distal.devices.resources import load
+from distal.images.picture import Provenance
 from distal.ir.nodes import Module, Origin
 from distal.ir.types import Buffer
 from distal.lang.composed import Composed
+from distal.lang.render_options import RenderOptions
+from distal.loading import loaded_from
 from distal.runtime.lowered import Lowered
 from distal.runtime.uniform_values import DeclaredUniforms
 from distal.tape.from_ir import LAST_PASS, PRECISION, tape_of
@@ -95,12 +99,74 @@ def _tape(known: _Known, uniforms: Mapping[str, Any]) -> Tape:
         target = get_target("llvm")
         known.module = run_passes(known.lowered.module, target, PRECISION, after=LAST_PASS)
     assert isinstance(known.module, Module)
-    buffers = {
+    return tape_of(known.module, uniforms, buffers_of(known.module))
+
+
+def buffers_of(module: Module) -> dict[str, Any]:
+    """Return the data of a module's buffers, by name."""
+    return {
         resource.name: load(resource.source, resource.type)
-        for resource in known.module.resources
+        for resource in module.resources
         if isinstance(resource.type, Buffer) and resource.source is not None
     }
-    return tape_of(known.module, uniforms, buffers)
+
+
+class Drawing:
+    """What a picture by a tape and one by the ordinary kernel have in common: the tape, the origin.
+
+    Attributes:
+        program: The tape; None if the function has none.
+        stats: What the picture says of how it was made.
+    """
+
+    def __init__(
+        self, executor: Any, function: Composed, options: RenderOptions, ready: Ready | None
+    ) -> None:
+        """Make the tape.
+
+        Args:
+            executor: The executor that lowers the function.
+            function: The function.
+            options: Parameters and time.
+            ready: Returns the function's tape, if it has one without compilation.
+        """
+        begin = time.perf_counter()
+        self.program: TapeProgram | None = None
+        self.stats: dict[str, Any] = {"device": "cpu"}
+        self._function, self._time = function, options.time
+        self._values: dict[str, Any] = {}
+        if ready is not None:
+            self.program = executor.tapes.ready(function, ready)
+        else:
+            lowered = executor.lowered(function)
+            uniforms, self._values = uniforms_of(lowered, options.params, options.time)
+            try:
+                self.program = executor.tapes.program(function, lowered, uniforms)
+            except TapeError as error:
+                self.stats["no_tape"] = str(error)
+        if self.program is not None:
+            self.stats["operations"] = len(self.program.tape)
+        self._made = time.perf_counter()
+        self.stats["compile_s"] = self._made - begin
+
+    def finished(self, view: str, samples: int) -> Provenance:
+        """Note the time of drawing, and return the picture's origin.
+
+        Args:
+            view: What it shows.
+            samples: Samples of a pixel.
+        """
+        self.stats["render_s"] = time.perf_counter() - self._made
+        known = loaded_from(self._function)
+        return Provenance(
+            source=self._function.name if known is None else known.source,
+            source_hash="" if known is None else known.digest,
+            parameters=self._values,
+            time=self._time,
+            samples=samples,
+            view=view,
+            device="cpu",
+        )
 
 
 def tape_for(lowered: Lowered, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Tape:

@@ -8,7 +8,6 @@ look at the same samples.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -18,14 +17,11 @@ from numpy.typing import NDArray
 
 from distal.devices.base import Cancelled, cancel_test
 from distal.images.height_map import HeightMap
-from distal.images.picture import Provenance
 from distal.lang.composed import Composed
 from distal.lang.render_options import RenderOptions
-from distal.loading import loaded_from
 from distal.render.between_samples import surface_between
-from distal.runtime.function_tapes import Ready, uniforms_of
-from distal.tape.runtime import TapeProgram, VolumeView
-from distal.tape.tape import TapeError
+from distal.runtime.function_tapes import Drawing, Ready
+from distal.tape.runtime import VolumeView
 
 Floats = NDArray[np.float32]
 _POINTS: Final = 2**18  # that the ordinary kernel evaluates at a time, to limit the memory
@@ -72,22 +68,9 @@ def heights(
         options: Size, time, parameters, threads, progress and cancel.
         ready: Returns the function's tape, if it has one without compilation.
     """
-    begin = time.perf_counter()
-    values: dict[str, Any] = {}
-    stats: dict[str, Any] = {"device": "cpu"}
-    program: TapeProgram | None = None
-    if ready is not None:
-        program = executor.tapes.ready(function, ready)
-    else:
-        lowered = executor.lowered(function)
-        uniforms, values = uniforms_of(lowered, options.params, options.time)
-        try:
-            program = executor.tapes.program(function, lowered, uniforms)
-        except TapeError as error:
-            stats["no_tape"] = str(error)
-    made = time.perf_counter()
+    drawing = Drawing(executor, function, options, ready)
+    program = drawing.program
     if program is not None:
-        stats["operations"] = len(program.tape)
         found = program.heights(
             (*options.size, view.layers),
             _volume(view),
@@ -97,18 +80,8 @@ def heights(
         )
     else:
         found = _SampledRays(executor, view, options).found(function, gradient)
-    stats |= {"compile_s": made - begin, "render_s": time.perf_counter() - made}
-    known = loaded_from(function)
-    origin = Provenance(
-        source=function.name if known is None else known.source,
-        source_hash="" if known is None else known.digest,
-        parameters=values,
-        time=options.time,
-        samples=1,
-        view="heights",
-        device="cpu",
-    )
-    return HeightMap(found[..., 3], found[..., :3], origin, stats)
+    origin = drawing.finished("heights", 1)
+    return HeightMap(found[..., 3], found[..., :3], origin, drawing.stats)
 
 
 def _volume(view: RayView) -> VolumeView:

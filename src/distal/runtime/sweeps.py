@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 from distal.backends import get_target
 from distal.backends.llvm.lanes import leaf_count
 from distal.compiler.driver import run_passes
-from distal.devices.resources import load
 from distal.ir.intrinsics import INTRINSICS, Trend
-from distal.ir.nodes import Module, Origin, UniformDeclaration
-from distal.ir.types import FLOAT, INT, Buffer, Kind, component_count
+from distal.ir.nodes import Origin, UniformDeclaration
+from distal.ir.types import FLOAT, INT, Kind, component_count
+from distal.runtime.function_tapes import buffers_of
 from distal.runtime.lowered import Lowered
 from distal.tape.from_ir import PRECISION, followed
 from distal.tape.scalars import Scalar, Scalars, Varying
@@ -251,7 +251,7 @@ def sweep(lowered: Lowered, columns: Sequence[NDArray[np.float64]]) -> list[Ends
     ]
     uniforms = {u.name: _of_uniform(u) for u in module.uniforms if u.origin is not Origin.NUMBER}
     try:
-        found = followed(module, args, uniforms, _buffers(module), _IntervalScalars())
+        found = followed(module, args, uniforms, buffers_of(module), _IntervalScalars())
     except TapeError:
         # It has something without an interval.
         return [(np.array(-np.inf), np.array(np.inf))] * leaf_count(entry.result)
@@ -268,11 +268,3 @@ def _of_uniform(uniform: UniformDeclaration) -> tuple[Scalar, ...]:
         low = high = None
     ends = -np.inf if low is None else low, np.inf if high is None else high
     return (swept(*ends),) * component_count(uniform.type)
-
-
-def _buffers(module: Module) -> dict[str, Any]:
-    return {
-        resource.name: load(resource.source, resource.type)
-        for resource in module.resources
-        if isinstance(resource.type, Buffer) and resource.source is not None
-    }

@@ -56,16 +56,28 @@ def floats_code(lanes: Lanes, declarations: set[str]) -> str:
         declarations: Receives the declarations of LLVM intrinsics.
     """
     code = FunctionCode(lanes, declarations)
+    _evaluate_points(code, lanes, "floats", FLOAT_SLOT)
+    return code.function(FLOATS, JOB)
+
+
+def _evaluate_points(code: FunctionCode, lanes: Lanes, interpreter: str, plane: int) -> None:
+    """Write the passes of an interpreter over points.
+
+    Args:
+        code: The exported function.
+        lanes: The shape of the machine's vectors.
+        interpreter: The function that evaluates the tape once.
+        plane: Bytes of one coordinate of a pass's points.
+    """
     job = thread_job(code)
     operations, length = job.pointer("allocated"), job.word("length")
     slots = job.memory("floats")
     with code.count(job.word("height")) as index:
-        source = job.pointer("view").at(index * (3 * FLOAT_SLOT))
-        code.call("floats", operations, length, job.pointer("constants"), slots, source)
+        source = job.pointer("view").at(index * (3 * plane))
+        code.call(interpreter, operations, length, job.pointer("constants"), slots, source)
         result = result_slot(code, operations, length, slots, FLOAT_SLOT)
         target = job.pointer("output").at(index * FLOAT_SLOT)
         copy_slot(code, lanes, result, target, FLOAT_SLOT)
-    return code.function(FLOATS, JOB)
 
 
 def gradients_code(lanes: Lanes, declarations: set[str]) -> str:
@@ -79,15 +91,7 @@ def gradients_code(lanes: Lanes, declarations: set[str]) -> str:
         declarations: Receives the declarations of LLVM intrinsics.
     """
     code = FunctionCode(lanes, declarations)
-    job = thread_job(code)
-    operations, length = job.pointer("allocated"), job.word("length")
-    slots = job.memory("floats")
-    with code.count(job.word("height")) as index:
-        source = job.pointer("view").at(index * (3 * GRADIENT_PLANE))
-        code.call("gradients", operations, length, job.pointer("constants"), slots, source)
-        result = result_slot(code, operations, length, slots, FLOAT_SLOT)
-        target = job.pointer("output").at(index * FLOAT_SLOT)
-        copy_slot(code, lanes, result, target, FLOAT_SLOT)
+    _evaluate_points(code, lanes, "gradients", GRADIENT_PLANE)
     return code.function(GRADIENTS, JOB)
 
 

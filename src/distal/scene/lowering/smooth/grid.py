@@ -111,8 +111,8 @@ def grid_of(links: Sequence[Link]) -> MemberGrid | str:
         return REPEATED
     bounds = _bounds_of(kinds)
     widths = np.array([width_of(link) for link in links])
-    room = bounds.side_growth * widths.max()
-    low, high = bounds.low.min(axis=0) - room, bounds.high.max(axis=0) + room
+    growth = bounds.side_growth * widths.max()
+    low, high = bounds.low.min(axis=0) - growth, bounds.high.max(axis=0) + growth
     if not max(np.abs(low).max(), np.abs(high).max()) < ENDLESS:
         return INFINITE
     if not bounds.slope < ENDLESS:
