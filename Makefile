@@ -54,7 +54,7 @@ sweep: $(VENV)/.setup-test
 	DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs tests/pictures/test_targets.py
 
 sweep-fields: $(VENV)/.setup-test
-	DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
+	DISTAL_FIELD_SEED=$(or $(SEED),day) DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
 
 # Every example in every place it can be drawn in, against the CPU; writes docs/parity.md.
 parity: system $(VENV)/.setup-test

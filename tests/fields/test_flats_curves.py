@@ -53,6 +53,30 @@ def test_parabolas_beside_their_evolute(curvature):
     assert (found - _nearest(points, curve)).max() <= 2e-6
 
 
+@pytest.mark.parametrize("steepness", [1e-3, 0.01, 1.0, 1e3])
+def test_hyperbolas_next_to_their_surface(steepness):
+    s = np.linspace(0.0, 2.0, 300)
+    out, up = np.cosh(s), steepness * np.sinh(s)
+    normal = np.stack([out, -np.sinh(s) / steepness], axis=1)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    way = np.array([0.0, 1e-6, -1e-6, 1e-4, -1e-4])[:, None, None] * min(steepness, 1.0)
+    points = np.stack([out, up], axis=1) - way * normal
+    found = np.asarray(distal.Hyperbola(1.0, steepness)(points.reshape(-1, 2)))
+    size = np.linalg.norm(points, axis=-1)
+    assert (np.abs(found.reshape(size.shape) - way[..., 0]) / size).max() <= 4e-7
+
+
+@pytest.mark.parametrize("curvature", [1e-4, 0.01, 1e3, 4e4])
+def test_parabolas_of_any_curvature(curvature):
+    # In focal lengths, normals of a parabola all have the same form.
+    s = np.linspace(0.0, 3.0, 300)
+    feet = np.stack([s, 0.5 * s * s], axis=1)
+    normal = np.stack([s, -np.ones_like(s)], axis=1) / np.hypot(s, 1.0)[:, None]
+    points = (feet + 0.7 * normal) * (0.5 / curvature)
+    found = np.asarray(distal.Parabola(curvature)(points)) * (2.0 * curvature)
+    assert np.abs(found - 0.7).max() <= 4e-6
+
+
 def test_bezier_curves_beside_their_evolute():
     start, control, end = np.array([(-0.9, -0.4), (0.3, 0.9), (0.6, -0.7)])
     t = np.linspace(0.0, 1.0, 8001)[:, None]

@@ -1,8 +1,8 @@
 """Every shape of the library keeps what it promises.
 
 ``DISTAL_FIELD_SAMPLES`` sets how many random sets of numbers each shape is tried with; more than a
-few of them also raise the number of points (``make sweep-fields``). What is drawn changes each day;
-a failure names the seed, ``DISTAL_FIELD_SEED`` sets it.
+few of them also raise the number of points (``make sweep-fields``, which also draws
+others each day); a failure names the seed, ``DISTAL_FIELD_SEED`` sets it.
 """
 
 from __future__ import annotations

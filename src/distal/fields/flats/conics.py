@@ -23,7 +23,7 @@ PLASTIC: Final = 1.3247179572447460
 BELOW_BOTH: Final = 0.7548
 CUBIC_STEPS: Final = 5
 ELLIPSE_STEPS: Final = 4
-HYPERBOLA_STEPS: Final = 9
+HYPERBOLA_STEPS: Final = 5
 
 
 @func
@@ -47,8 +47,10 @@ def parabola_foot(q: vec2, curvature: float) -> float:
 
     Requires q.x >= 0 and curvature > 0.
     """
+    # In units of the focal parameter, so that the cubic's coefficients are near 1 for a very steep
+    # or a very flat parabola too.
     double = 2.0 * curvature
-    return largest_root((1.0 / double - q.y) / curvature, q.x / (double * curvature))
+    return largest_root(2.0 - 2.0 * double * q.y, 2.0 * double * q.x) / double
 
 
 @primitive("Parabola", EXACT, limits={"curvature": Limit.POSITIVE})
@@ -238,6 +240,25 @@ def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
     return select(dot(unit, unit) < 1.0, -d, d)
 
 
+@func
+def hyperbola_start(m: float, c: float, past: float) -> float:
+    """Return a number slightly below the root v of m v / sqrt(v^2 + 1) + c v = m - past.
+
+    Because v / sqrt(v^2 + 1) <= 1 - 1 / (2 v^2 + 2), the root is above that of c v^3 + past v^2 + c
+    v = m / 2 - past, whose three terms are bounded one by one. Other bounds are far too low next to
+    the surface of a flat hyperbola.
+
+    Args:
+        m: Factor of the first term, above 0.
+        c: Factor of the second term, above 0.
+        past: The difference of ``m`` and the sum.
+    """
+    beyond = max(past, TINY * m)
+    rest = max(0.5 * m - beyond, 0.0)
+    by_c = rest / c
+    return min(pow(0.4 * by_c, 1.0 / 3.0), sqrt(0.4 * rest / beyond), 0.2 * by_c)
+
+
 @primitive("Hyperbola", EXACT, limits={"steepness": Limit.POSITIVE})
 @func
 def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
@@ -263,7 +284,7 @@ def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
     total = radius * radius + other * other
     m = radius * q.x
     c = other * q.y
-    w = max(total - m, total * c / (c + m))
+    w = max(total - m, total * c / (c + m), c * hyperbola_start(m, c, m - total))
     for _ in range(HYPERBOLA_STEPS):
         inverse = 1.0 / length(vec2(w, c))
         value = m * w * inverse + w - total
