@@ -1,0 +1,1 @@
+"""Random numbers for paths: well distributed points, and directions made of them."""
