@@ -19,7 +19,13 @@ HORIZON = vec3(0.8, 0.85, 0.9)
 GROUND = vec3(0.25, 0.22, 0.2)
 
 
-@light("AmbientLight")
+@func
+def even_radiance(direction: vec3, intensity: float = 0.1, color: vec3 = WHITE) -> vec3:
+    """Return the radiance of an ambient light from a direction."""
+    return color * intensity
+
+
+@light("AmbientLight", radiance=even_radiance)
 @func
 def ambient_light(n: vec3, intensity: float = 0.1, color: vec3 = WHITE) -> vec3:
     """The same light from every direction.
@@ -36,7 +42,27 @@ def _has_an_upper_half(up: tuple[float, ...]) -> str | None:
     return None if any(up) else "up is a vector of zeros, which points nowhere"
 
 
-@light("HemisphereLight", requires=_has_an_upper_half)
+@func
+def hemisphere_radiance(
+    direction: vec3,
+    sky: vec3 = SKY,
+    ground: vec3 = EARTH,
+    intensity: float = 0.5,
+    up: vec3 = UP,
+) -> vec3:
+    """Return the radiance of a hemisphere light from a direction.
+
+    Args:
+        direction: Unit direction.
+        sky: Color of the upper half.
+        ground: Color of the lower half.
+        intensity: A factor on both.
+        up: Direction of the upper half, of any length.
+    """
+    return (sky if dot(direction, up) > 0.0 else ground) * intensity
+
+
+@light("HemisphereLight", requires=_has_an_upper_half, radiance=hemisphere_radiance)
 @func
 def hemisphere_light(
     n: vec3,

@@ -59,6 +59,8 @@ class Declaration:
         refracts: For a material: whether refracted rays may enter it.
         sample: For a background that is also a light: ``(p, …) -> LightSample``.
         ambient: For a background that is also a light: ``(n, …) -> vec3``.
+        radiance: For light from all sides: ``(direction, …) -> vec3``, the light of a direction,
+            of which ``ambient`` is the mean that a surface receives.
     """
 
     name: str
@@ -72,6 +74,7 @@ class Declaration:
     refracts: bool = False
     sample: Func | None = None
     ambient: Func | None = None
+    radiance: Func | None = None
 
 
 class Family:

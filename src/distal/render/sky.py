@@ -62,7 +62,28 @@ LIGHT = ExtraParameter(
 )
 
 
-@background("Sky", requires=_has_a_sun, extras=(LIGHT,), sample=sky_sun, ambient=sky_ambient)
+@func
+def sky_radiance(
+    direction: vec3,
+    zenith: vec3 = ZENITH,
+    horizon: vec3 = HORIZON,
+    ground: vec3 = GROUND,
+    intensity: float = 1.0,
+) -> vec3:
+    """Return the light of ``sky`` from a direction, without its sun."""
+    air = mix(horizon, zenith, clamp(direction.y, 0.0, 1.0))
+    # A blend over a thousandth on either side keeps the horizon from flickering.
+    return mix(ground, air, smoothstep(-1e-3, 1e-3, direction.y)) * intensity
+
+
+@background(
+    "Sky",
+    requires=_has_a_sun,
+    extras=(LIGHT,),
+    sample=sky_sun,
+    ambient=sky_ambient,
+    radiance=sky_radiance,
+)
 @func
 def sky(
     direction: vec3,
@@ -88,9 +109,7 @@ def sky(
         ground: Color below.
         intensity: Brightness of everything but the sun.
     """
-    air = mix(horizon, zenith, clamp(direction.y, 0.0, 1.0))
-    # A blend over a thousandth on either side keeps the horizon from flickering.
-    base = mix(ground, air, smoothstep(-1e-3, 1e-3, direction.y)) * intensity
+    base = sky_radiance(direction, zenith, horizon, ground, intensity)
     along = dot(direction, normalize(sun))
     rim = cos(0.5 * sun_angle)
     disc = smoothstep(rim - 0.2 * (1.0 - rim), rim + 0.2 * (1.0 - rim), along)

@@ -29,7 +29,7 @@ from distal.scene.objects.declared import (
     given_arguments,
     scene_call,
 )
-from distal.scene.objects.lights import Light
+from distal.scene.objects.lights import Light, call_of_part
 from distal.scene.objects.scene_object import CalledObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
@@ -121,8 +121,9 @@ class DeclaredSurroundings(Surroundings):
         self._keep(
             background=whole,
             light=bool(given.get("light", False)),
-            sample=_part(whole, declaration.sample),
-            ambient=_part(whole, declaration.ambient),
+            sample=call_of_part(whole, declaration.sample),
+            ambient=call_of_part(whole, declaration.ambient),
+            radiance=call_of_part(whole, declaration.radiance),
         )
 
 
@@ -156,7 +157,12 @@ class Environment(Surroundings):
         environment = environment_library.environment
         whole = scene_call(BACKGROUNDS, environment, given, "Environment", place)
         self._keep(
-            background=whole, light=bool(light), sample=None, _texture=texture, _ambient=None
+            background=whole,
+            light=bool(light),
+            sample=None,
+            radiance=whole,
+            _texture=texture,
+            _ambient=None,
         )
 
     @property
@@ -237,12 +243,3 @@ def _own(function: Func, numbers: Mapping[str, Any], place: Span | None) -> Func
             place,
         )
     return call
-
-
-def _part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
-    """Return a call of a function that takes some of another call's values."""
-    if function is None:
-        return None
-    taken = {slot.name for slot in slots_of(function)}
-    values = {name: value for name, value in whole.values.items() if name in taken}
-    return FunctionCall(whole.what, function, values, whole.place)

@@ -35,26 +35,42 @@ class Light(SceneObject):
             sides.
         ambient: ``(n) -> vec3``, the light that a surface with normal n receives from all sides;
             else None.
+        radiance: ``(direction) -> vec3``, the light from a direction, where there is ``ambient``;
+            else None.
     """
 
-    __slots__ = ("ambient", "sample")
+    __slots__ = ("ambient", "radiance", "sample")
 
     noun: ClassVar[str] = "light"
     sample: FunctionCall | None
     ambient: FunctionCall | None
+    radiance: FunctionCall | None
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         place, what = author_place(), type(self).__name__
         given = given_arguments(self.declaration, args, kwargs, what, place)
         call = declared_call(self.declaration, given, place, what=what)
         everywhere = any(slot.name == "n" for slot in slots_of(call.func))
-        self._keep(sample=None if everywhere else call, ambient=call if everywhere else None)
+        self._keep(
+            sample=None if everywhere else call,
+            ambient=call if everywhere else None,
+            radiance=call_of_part(call, self.declaration.radiance),
+        )
 
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the light calls."""
         for call in (self.sample, self.ambient):
             if call is not None:
                 yield from call.functions()
+
+
+def call_of_part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
+    """Return a call of a function that takes some of another call's values; None of none."""
+    if function is None:
+        return None
+    taken = {slot.name for slot in slots_of(function)}
+    values = {name: value for name, value in whole.values.items() if name in taken}
+    return FunctionCall(whole.what, function, values, whole.place)
 
 
 CLASSES: Final = {name: declared_class(found, Light) for name, found in LIGHTS.members.items()}
