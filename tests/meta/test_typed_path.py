@@ -99,7 +99,7 @@ def test_a_public_method_takes_the_declared_options(method, options):
     for name, parameter in parameters.items():
         assert parameter.default == default_of(options[name]), name
     # The numbers of a scene are set by the views that read them.
-    left_out = {"settings"} if method is Scene.render else {"settings", "freeze"}
+    left_out = {"settings", "refinement"} | (set() if method is Scene.render else {"freeze"})
     assert options.keys() - parameters.keys() == left_out
 
 

@@ -130,10 +130,12 @@ ThreadsOption = Annotated[
 SamplesOption = Annotated[
     int | None,
     typer.Option(
+        "--samples",
+        "--spp",
         min=1,
         max=65536,
         help="Samples in each pixel; if not given, one of an @image; one of a scene, and eight "
-        "more where the pixel differs from its neighbours.",
+        "more where the pixel differs from its neighbours; 64 in mode path.",
     ),
 ]
 DeviceOption = Annotated[

@@ -10,7 +10,7 @@ import json
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -41,6 +41,46 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
+class PathArguments:
+    """The options of path tracing; None for options that were not given.
+
+    Attributes:
+        mode: "direct" or "path".
+        time_limit: Seconds.
+        noise: The error at which the picture is finished.
+        film: The file that keeps the samples so far.
+        goes_on: Whether the samples that it keeps already are used, and those of this run kept.
+    """
+
+    mode: str | None
+    time_limit: float | None
+    noise: float | None
+    film: Path
+    goes_on: bool
+
+    def view_options(self, scene_mode: str) -> dict[str, Any]:
+        """Return the arguments of ``ViewOptions``.
+
+        Args:
+            scene_mode: The mode of the scene.
+
+        Raises:
+            UsageError: ``--continue`` was given in another mode.
+        """
+        given = {"mode": self.mode, "time_limit": self.time_limit, "noise": self.noise}
+        if (self.mode or scene_mode) == "path":
+            return {**given, "film": self.film}
+        if self.goes_on:
+            raise UsageError("--continue is for --mode path")
+        return given
+
+    def forget(self) -> None:
+        """Delete the samples that a run has kept, unless they are wanted."""
+        if not self.goes_on:
+            self.film.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True, slots=True)
 class ViewArguments:
     """The options of a view; None for options that were not given."""
 
@@ -49,6 +89,7 @@ class ViewArguments:
     transparent: bool
     exposure: float | None
     tone_map: str | None
+    paths: PathArguments | None = None
 
     def refuse_for_image(self, name: str, layers: tuple[str, ...]) -> None:
         """Check that no option for scenes was given for an ``@image``.
@@ -61,6 +102,7 @@ class ViewArguments:
             "--transparent": self.transparent or None,
             "--exposure": self.exposure,
             "--tone-map": self.tone_map,
+            "--mode": None if self.paths is None else self.paths.mode,
             "--layers": layers or None,
         }
         for option, value in given.items():
@@ -82,6 +124,28 @@ def render(
     at: TimeOption = "0",
     assignments: SetOption = None,
     samples: SamplesOption = None,
+    mode: Annotated[
+        str | None,
+        typer.Option(
+            help="direct: from each light to the first surface; path: exact, by many random paths.",
+            show_default=False,
+        ),
+    ] = None,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="In mode path: begin no more samples after S seconds."),
+    ] = None,
+    noise: Annotated[
+        float | None,
+        typer.Option(metavar="E", help="In mode path: stop when the estimated error is below E."),
+    ] = None,
+    goes_on: Annotated[
+        bool,
+        typer.Option(
+            "--continue",
+            help="In mode path: use the samples of a run that was broken off, and keep them.",
+        ),
+    ] = False,
     view: Annotated[
         str | None,
         typer.Option(
@@ -132,8 +196,10 @@ def render(
     from distal.scene.viewing.viewable import viewable
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
-    arguments = read_view(view, plane, transparent, exposure, tone_map)
     suffix, _ = check_savable(output, bits)
+    film = output.with_name(output.name + ".film")
+    paths = PathArguments(mode, time_limit, noise, film, goes_on)
+    arguments = replace(read_view(view, plane, transparent, exposure, tone_map), paths=paths)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
     obj, values = load_picture(scene, assignments)
@@ -154,6 +220,7 @@ def render(
         picture = rendered_picture(seen, arguments, wanted, options)
     rendered = time.perf_counter()
     picture.save(output, bits)
+    paths.forget()
     figures = {
         "load_s": loaded - begin,
         **dict.fromkeys(("compile_s", "render_s", "cache_hit", "lanes", "threads")),
@@ -260,11 +327,19 @@ def rendered_picture(
     if seen.scene is None:
         return seen.render(options, view=arguments.view)
     scene = seen.scene.developed(exposure=arguments.exposure, tone_map=arguments.tone_map)
-    view = ViewOptions(
-        view=arguments.view,
-        transparent=arguments.transparent,
-        layers=layers,
-    )
+    paths = arguments.paths
+    try:
+        view = ViewOptions(
+            view=arguments.view,
+            transparent=arguments.transparent,
+            layers=layers,
+            **({} if paths is None else paths.view_options(scene.mode)),
+        )
+        refinement = view.refinement(scene.mode, options.samples)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
     if arguments.plane is not None:
         view = replace(view, plane=arguments.plane)
+    if paths is not None and refinement is not None:
+        paths.forget()
     return render_scene(scene, view, options)

@@ -49,6 +49,7 @@ class Provenance:
         seed: The seed of random numbers.
         mouse: The frame's mouse.
         samples: Samples in each pixel; None for one, and more where neighbouring pixels differ.
+        mode: How light was computed: "direct" or "path".
         view: The name of the view.
         plane: The plane of the view "slice": normal and offset.
         transparent: Whether alpha is 0 where a ray hits nothing.
@@ -72,6 +73,7 @@ class Provenance:
     seed: int = 0
     mouse: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
     samples: int | None = 1
+    mode: str = "direct"
     view: str = "color"
     plane: tuple[tuple[float, ...], float] | None = None
     transparent: bool = False
@@ -105,6 +107,8 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
     }
     if origin.neighbours:
         found["distal:neighbours"] = json.dumps(origin.neighbours)
+    if origin.mode != "direct":
+        found["distal:mode"] = origin.mode
     if origin.plane is not None:
         found["distal:plane"] = json.dumps([list(origin.plane[0]), origin.plane[1]])
     if origin.exposure is not None:
@@ -153,6 +157,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             seed=int(found.get("distal:seed", "0")),
             mouse=_numbers(json_of("distal:mouse", [0.0] * 4), 4),
             samples=None if samples == ADAPTIVE else int(samples),
+            mode=found.get("distal:mode", "direct"),
             view=found.get("distal:view", "color"),
             plane=None if plane is None else _pair(plane, lambda normal: _numbers(normal, 3)),
             transparent=_flag(found.get("distal:transparent", "false")),

@@ -32,6 +32,8 @@ class Composed(Immutable, ABC):
             its pixels for display. None if the pixels are already encoded.
         adaptive: Whether it is a picture of linear light that is rendered in the two passes of
             ``runtime.sampling``.
+        refined: Whether it is a picture of linear light that gets ever more samples
+            (``runtime.accumulation``).
         glow: For a picture with linear light: how much of the halo of ``runtime.glow`` is added.
     """
 
@@ -41,6 +43,7 @@ class Composed(Immutable, ABC):
     result: Type
     display: Composed | None = None
     adaptive: bool = False
+    refined: bool = False
     glow: float = 0.0
 
     @abstractmethod

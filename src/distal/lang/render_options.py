@@ -12,17 +12,37 @@ import operator
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from distal.ir.limits import LARGEST_TIME
 
 LARGEST_SIDE_PX: Final = 16384
 MOST_SAMPLES: Final = 65536
+# Samples of a pixel in mode "path", if nothing else says when a picture is finished.
+PATH_SAMPLES: Final = 64
 
 # Called with the finished share, from 0 to 1.
 Progress: TypeAlias = Callable[[float], Any]
 # Rendering stops when the event is set or the function returns True.
 Cancel: TypeAlias = Callable[[], bool] | threading.Event
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Refinement:
+    """When a picture that gets ever more samples is finished; the first reason counts.
+
+    Attributes:
+        samples: It has so many samples in each pixel.
+        time_limit: So many seconds have passed; None has no limit. There is always one pass.
+        noise: Its estimated error is at most this; None has no limit.
+        film: A file that keeps the samples so far; they are taken from it if it exists.
+    """
+
+    samples: int
+    time_limit: float | None = None
+    noise: float | None = None
+    film: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,6 +66,7 @@ class RenderOptions:
             scene, and eight more where the pixel differs from its neighbours.
         freeze: Compile all numbers as constants: slower to compile, a little faster to run.
         settings: Values of a scene's numbers by name, for this picture only.
+        refinement: When a picture in mode "path" is finished; None: when it has its samples.
 
     Raises:
         TypeError: A value has the wrong type.
@@ -65,6 +86,7 @@ class RenderOptions:
     samples: int | None = None
     freeze: bool = False
     settings: Mapping[str, Any] = field(default_factory=dict)
+    refinement: Refinement | None = None
 
     def __post_init__(self) -> None:
         for name, value in (

@@ -45,7 +45,8 @@ STRIP_PX: Final = 4
 SAMPLES: Final = "Samples"
 AGAIN: Final = "Again"
 PICTURE_SIZE: Final = "Picture_size"
-PASS_NUMBERS: Final = frozenset((SAMPLES, AGAIN, PICTURE_SIZE))
+FIRST_SAMPLE: Final = "First_sample"
+PASS_NUMBERS: Final = frozenset((SAMPLES, FIRST_SAMPLE, AGAIN, PICTURE_SIZE))
 # Rec. 709 luma.
 LUMA = vec3(0.2126, 0.7152, 0.0722)
 # The data of these buffers is replaced for each picture.

@@ -29,7 +29,7 @@ FULL_TURN = 6.28318530717959
 
 
 @struct
-class Surroundings:
+class DirectionSample:
     """A random direction to the surroundings.
 
     Attributes:
@@ -44,7 +44,7 @@ class Surroundings:
 @func
 def sample_surroundings(
     table: Buffer[vec3], rows: int, columns: int, turn: float, u: vec3
-) -> Surroundings:
+) -> DirectionSample:
     """Return a random direction, denser where the picture is brighter.
 
     Args:
@@ -66,7 +66,7 @@ def sample_surroundings(
     angle = FULL_TURN * (across - 0.5)
     level = sqrt(max(1.0 - y * y, 0.0))
     direction = vec3(level * sin(angle), y, -level * cos(angle))
-    return Surroundings(turned_by(direction, -turn), table[chosen].z)
+    return DirectionSample(turned_by(direction, -turn), table[chosen].z)
 
 
 @func

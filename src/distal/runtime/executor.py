@@ -31,14 +31,21 @@ from distal.lang.functions import Func, Image
 from distal.lang.lazy_module import LazyModule
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
-from distal.lang.render_options import Progress, RenderOptions, checked_time
+from distal.lang.render_options import (
+    PATH_SAMPLES,
+    Progress,
+    Refinement,
+    RenderOptions,
+    checked_time,
+)
 from distal.lang.resources import MovingBuffer
 from distal.loading import loaded_from
 from distal.render import film
-from distal.runtime import glow, sampling
+from distal.runtime import accumulation, film_files, glow, sampling
 from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
+from distal.runtime.fingerprints import fingerprint
 from distal.runtime.kernels import KernelCache, automatic_device
 from distal.runtime.lost_rays import LostRays
 from distal.runtime.lowered import Lowered, Types
@@ -144,7 +151,8 @@ class PythonExecutor:
         values, others = _uniforms(run.declared, options)
         if options.freeze:
             numbers = run.declared.number_values(options.settings)
-            kept = film.PASS_NUMBERS if adaptive else ()
+            refined = isinstance(image, Composed) and image.refined
+            kept = film.PASS_NUMBERS if adaptive or refined else ()
             parts = tuple(part.frozen(numbers, kept) for part in parts)
         kernels = [self.kernels.kernel(part, device, 32) for part in parts]
         moved = _moved(parts[0].resources, values, options.time)
@@ -153,7 +161,13 @@ class PythonExecutor:
         compiled = time.perf_counter()
         linear: NDArray[np.float32] | None = None
         samples = 1.0
-        if contrast is not None:
+        exposed: accumulation.Film | None = None
+        if isinstance(image, Composed) and image.refined:
+            samples_only = Refinement(samples=options.samples or PATH_SAMPLES)
+            exposed = passes.accumulated(options.refinement or samples_only)
+            linear = exposed.light
+            pixels = passes.shown(linear)
+        elif contrast is not None:
             seen = partial(passes.contrast, *contrast)
             programs = sampling.Programs(passes.light, passes.shown, seen)
             linear, pixels, samples = sampling.adaptive(programs, options.size, options.progress)
@@ -168,7 +182,9 @@ class PythonExecutor:
         stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
         stats["render_s"] = time.perf_counter() - compiled
         stats["lost"] = passes.lost.shares
-        if contrast is not None:
+        if exposed is not None:
+            stats |= exposed.figures()
+        elif contrast is not None:
             stats["samples"] = samples
         known = loaded_from(image)
         origin = Provenance(
@@ -181,7 +197,7 @@ class PythonExecutor:
             seed=others["seed"],
             mouse=others["mouse"],
             freeze=options.freeze,
-            samples=None if adaptive else options.samples or 1,
+            samples=_samples(options, adaptive, exposed),
             device=device,
         )
         return Picture(pixels, origin, stats, linear)
@@ -519,6 +535,35 @@ class _Passes:
             self.lost.remove_marks(pixels)
         return pixels
 
+    def accumulated(self, refinement: Refinement) -> accumulation.Film:
+        """Render samples until there are enough of them."""
+
+        def rendered(first: int, count: int, progress: Progress | None) -> NDArray[np.float32]:
+            numbers = {film.FIRST_SAMPLE: first, film.SAMPLES: count}
+            return self.light(self.options.size, numbers, {}, progress)
+
+        size, progress = self.options.size, self.options.progress
+        if refinement.film is None:
+            exposed = accumulation.Film.empty(*size)
+            accumulation.accumulate(exposed, rendered, refinement, None, progress)
+            return exposed
+        file = film_files.FilmFile(refinement.film, self._fingerprint)
+        exposed = file.load(*size)
+        try:
+            accumulation.accumulate(exposed, rendered, refinement, file.keep, progress)
+        finally:
+            file.write(exposed)
+        return exposed
+
+    @property
+    def _fingerprint(self) -> str:
+        """The fingerprint of the picture without its number of samples."""
+        parameters, others = self.values
+        numbers = self.declared.for_kernel(0, parameters, others)
+        numbers = {n: v for n, v in numbers.items() if n not in film.PASS_NUMBERS}
+        parts = [self.parts[0].digest, numbers, self.options.size]
+        return fingerprint(parts, self.resources)
+
     def shown(self, light: NDArray[np.float32]) -> NDArray[np.float32]:
         """Encode linear light for display by the second kernel."""
         return self.kernels[1].map_pixels(
@@ -535,6 +580,15 @@ class _Passes:
         """Return the contrast of each pixel of display values with its neighbours."""
         height, width, _ = shown.shape
         return _over(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
+
+
+def _samples(
+    options: RenderOptions, adaptive: bool, exposed: accumulation.Film | None
+) -> int | None:
+    """Return the number of samples to record; None for adaptive sampling."""
+    if exposed is not None:
+        return exposed.samples
+    return None if adaptive else options.samples or 1
 
 
 def _moved(

@@ -45,11 +45,12 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     warn_of_functions(scene.shape, options.params, options.time)
     shares = _shares(options.progress, 1 + len(view.layers))
     steered = view.steering is not None
-    image, sampled = scene.program(
-        view.view, options.samples, transparent=view.transparent, steered=steered
-    )
+    refinement = view.refinement(scene.mode, options.samples)
+    shown = {"transparent": view.transparent, "steered": steered}
+    image, sampled = scene.program(view.view, options.samples, mode=view.mode, **shown)
     settings = {**sampled, **sliced, **moved}
-    asked = with_range(image, replace(options, settings=settings, progress=shares[0]))
+    asked = replace(options, settings=settings, progress=shares[0], refinement=refinement)
+    asked = with_range(image, asked)
     picture = executor().render(image, asked)
     if view.view == "color":
         _check_visible(scene, view, picture, options)
@@ -60,6 +61,7 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     }
     return picture.with_layers(layers).with_provenance(
         view=view.view,
+        mode="direct" if refinement is None else "path",
         transparent=view.transparent,
         plane=tuple(sliced.values()) or None,
         steering=None if view.steering is None else view.steering.numbers,

@@ -178,6 +178,7 @@ def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Pic
         yaw, pitch, zoom, *pan = origin.steering
         moved = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
     view = ViewOptions(
+        mode=origin.mode if origin.view == "color" else None,
         view=origin.view,
         transparent=origin.transparent,
         steering=moved,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from distal.fields.guarantees import Limit
@@ -36,7 +37,7 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.steering import Steering
 from distal.scene.tree.source_places import author_place
-from distal.scene.view_options import ViewOptions
+from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
@@ -80,7 +81,10 @@ class Scene(Composed, Presentable):
         shadows: Whether lights cast shadows.
         ambient_occlusion: How far, in scene units, to search for surfaces that block ambient light;
             0 disables it. None: half the radius of the finite parts.
-        bounces: The maximum number of reflections and refractions that a ray follows.
+        mode: How light is computed: "direct", from each light to the first surface, with mirrors
+            and glass; or "path", along random paths, which is exact and takes many samples.
+        bounces: The maximum number of reflections and refractions that a ray follows; paths have no
+            limit.
         normals: How normals are computed: "exact", or by finite differences: "six_taps",
             "tetrahedron" or "forward".
         march: "sphere" for sphere tracing, or "heightfield" for terrain and water: long steps over
@@ -126,6 +130,7 @@ class Scene(Composed, Presentable):
         glow: float = 0.0,
         shadows: bool = True,
         ambient_occlusion: Number | None = None,
+        mode: str = "direct",
         bounces: int = 6,
         normals: str = "exact",
         march: str = "sphere",
@@ -163,6 +168,7 @@ class Scene(Composed, Presentable):
         self.march = one_of("march", march, ("sphere", "heightfield"), place)
         self.glow = checked_glow(glow, place)
         self.shadows = bool(shadows)
+        self.mode = one_of("mode", mode, MODES, place)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
         self.acceleration = bool(acceleration)
         self.steps = None if steps is None else whole("steps", steps, Limit.POSITIVE, place)
@@ -185,6 +191,7 @@ class Scene(Composed, Presentable):
             "default_material": default_material,
             "glow": glow,
             "shadows": shadows,
+            "mode": mode,
             "bounces": bounces,
             "normals": normals,
             "march": march,
@@ -258,6 +265,11 @@ class Scene(Composed, Presentable):
         seed: int = 0,
         *,
         samples: int | None = None,
+        mode: str | None = None,
+        spp: int | None = None,
+        time_limit: float | None = None,
+        noise: float | None = None,
+        film: str | Path | None = None,
         view: str = "color",
         transparent: bool = False,
         plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
@@ -282,6 +294,14 @@ class Scene(Composed, Presentable):
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
                 scene, and eight more where the pixel differs from its neighbours.
+            mode: How light is computed: "direct" or "path"; None: as the scene says.
+            spp: In mode "path": samples in each pixel, the same as ``samples``. None: 64, or as
+                many as a limit of time or noise takes.
+            time_limit: In mode "path": seconds after which no more samples are begun.
+            noise: In mode "path": the estimated error at which the picture is finished: the
+                standard error of a pixel's light, as a root mean square (1 is white).
+            film: In mode "path": a file that keeps the samples so far; if it exists, rendering
+                goes on from them.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
             transparent: Whether alpha is 0 where a ray hits nothing.
@@ -299,6 +319,11 @@ class Scene(Composed, Presentable):
             ValueError: A value is out of range, or the view, parameter or device does not exist.
         """
         shown = ViewOptions(
+            mode=mode,
+            spp=spp,
+            time_limit=time_limit,
+            noise=noise,
+            film=film,
             view=view,
             transparent=transparent,
             plane=plane,
@@ -330,6 +355,7 @@ class Scene(Composed, Presentable):
         encoded: bool = False,
         steered: bool = False,
         adaptive: bool = False,
+        paths: bool = False,
     ) -> Composed:
         """Return another view of the scene ("normal", "depth" …); the scene itself for "color".
 
@@ -341,6 +367,7 @@ class Scene(Composed, Presentable):
             steered: Whether the camera is moved by the numbers of a ``Steering``.
             adaptive: Whether it is rendered in two passes: one sample in each pixel, then more
                 where pixels differ from their neighbours; for "color" as linear light.
+            paths: Whether the light is that of random paths; for "color" as linear light.
 
         Raises:
             ValueError: There is no such view.
@@ -349,27 +376,37 @@ class Scene(Composed, Presentable):
             known = ", ".join(["color", *views.VIEWS])
             hint = "; locals are shown of an @image" if name.startswith("local:") else ""
             raise ValueError(f"there is no view '{name:.40}'; views: {known}{hint}")
-        key = (name, transparent, sampled, encoded, steered, adaptive)
-        if key == ("color", False, False, False, False, False):
+        key = (name, transparent, sampled, encoded, steered, adaptive, paths)
+        if key == ("color", False, False, False, False, False, False):
             return self
         if key not in self._pictures:
             self._pictures[key] = View(self, *key)
         return self._pictures[key]
 
     def program(
-        self, view: str, samples: int | None, *, encoded: bool = False, **shown: bool
+        self,
+        view: str,
+        samples: int | None,
+        *,
+        encoded: bool = False,
+        mode: str | None = None,
+        **shown: bool,
     ) -> tuple[Composed, Mapping[str, Any]]:
         """Return a view with several samples in each pixel, and its settings.
 
         Args:
             view: The name of the view.
             samples: Number of samples. None: adaptive for "color", one for other views.
-            encoded: Whether pixels are display values instead of linear light; not if adaptive.
+            encoded: Whether pixels are display values instead of linear light; not if adaptive, or
+                in mode "path".
+            mode: "direct" or "path"; None: as the scene says.
             shown: ``transparent`` and ``steered`` of ``view``.
 
         Raises:
             ValueError: There is no such view.
         """
+        if view == "color" and (mode or self.mode) == "path":
+            return self.view(view, paths=True, **shown), {}
         if samples is None and view == "color":
             return self.view(view, adaptive=True, **shown), {}
         if samples is None or samples == 1:
@@ -441,6 +478,7 @@ class View(Composed):
         encoded: bool,
         steered: bool,
         adaptive: bool,
+        paths: bool,
     ) -> None:
         copy_loaded_from(scene, self)
         self.name = scene.name if view == "color" else f"{scene.name} ({view})"
@@ -448,7 +486,7 @@ class View(Composed):
         self._view = view
         self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
         self._steered = steered
-        self.adaptive = adaptive
+        self.adaptive, self.refined = adaptive, paths
         self.display = scene.display if view == "color" and not encoded else None
         self.glow = scene.glow
         self.ranged = view in RANGED
@@ -462,6 +500,7 @@ class View(Composed):
             encoded=self._encoded and self._view == "color",
             steered=self._steered,
             adaptive=self.adaptive,
+            paths=self.refined,
         )
 
     def functions(self) -> Iterable[Func]:

@@ -6,17 +6,22 @@ Input: values from a caller. Output: a ``ViewOptions``, and the numbers that its
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, VEC3
+from distal.lang.render_options import MOST_SAMPLES, PATH_SAMPLES, Refinement, checked_samples
 from distal.scene.lowering.layers import checked_layers
 from distal.scene.steering import Steering
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
+
+MODES: Final = ("direct", "path")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +29,14 @@ class ViewOptions:
     """What is shown of a scene; checked on construction.
 
     Attributes:
+        mode: How light is computed: "direct" or "path"; None: as the scene says.
+        spp: In mode "path": samples in each pixel, the same as ``samples``. None: 64, or as
+            many as a limit of time or noise takes.
+        time_limit: In mode "path": seconds after which no more samples are begun.
+        noise: In mode "path": the estimated error at which the picture is finished: the standard
+            error of a pixel's light, as a root mean square (1 is white).
+        film: In mode "path": a file that keeps the samples so far; if it exists, rendering
+            goes on from them.
         view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
             "steps", "material", "slope" or "slice".
         transparent: Whether alpha is 0 where a ray hits nothing.
@@ -37,6 +50,11 @@ class ViewOptions:
         ValueError: A value is out of range, or there is no such layer.
     """
 
+    mode: str | None = None
+    spp: int | None = None
+    time_limit: float | None = None
+    noise: float | None = None
+    film: str | Path | None = None
     view: str = "color"
     transparent: bool = False
     plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0)
@@ -45,6 +63,38 @@ class ViewOptions:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "layers", checked_layers(self.layers))
+        if self.mode not in (None, *MODES):
+            raise ValueError(f"there is no mode '{self.mode!s:.40}'; modes: {', '.join(MODES)}")
+        object.__setattr__(self, "spp", checked_samples(self.spp))
+        for name in ("time_limit", "noise"):
+            object.__setattr__(self, name, _checked_limit(name, getattr(self, name)))
+
+    def refinement(self, mode: str, samples: int | None) -> Refinement | None:
+        """Return when a picture in mode "path" is finished; None in mode "direct".
+
+        Args:
+            mode: The scene's own mode.
+            samples: Samples in each pixel, if they are given as for other pictures.
+
+        Raises:
+            ValueError: An option for paths was given in mode "direct", or contradicts another.
+        """
+        given = {n: getattr(self, n) for n in ("spp", "time_limit", "noise", "film")}
+        if (self.mode or mode) != "path":
+            for name, value in given.items():
+                if value is not None:
+                    raise ValueError(f"{name} is for mode 'path'")
+            return None
+        if self.view != "color":
+            if self.mode is None:
+                return None
+            raise ValueError(f"mode 'path' computes light; the view '{self.view:.40}' shows none")
+        if None not in (self.spp, samples) and self.spp != samples:
+            raise ValueError(f"spp={self.spp} and samples={samples} are the same: give one")
+        limited = self.time_limit is not None or self.noise is not None
+        count = self.spp or samples or (MOST_SAMPLES if limited else PATH_SAMPLES)
+        film = None if self.film is None else Path(self.film)
+        return Refinement(samples=count, time_limit=self.time_limit, noise=self.noise, film=film)
 
     @property
     def steering_settings(self) -> dict[str, Any]:
@@ -69,3 +119,16 @@ class ViewOptions:
         direction = number(normal, Asked("normal", "slice", VEC3, Limit.UNIT, place=place))
         distance = number(offset, Asked("offset", "slice", FLOAT, place=place))
         return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
+
+
+def _checked_limit(name: str, value: object) -> float | None:
+    """Return the limit, or None.
+
+    Raises:
+        ValueError: It is no number above 0.
+    """
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
+        raise ValueError(f"{name} is a number above 0, not {value!r:.40}")
+    return float(value)

@@ -6,14 +6,9 @@ animated pictures with the same fingerprint have the same frames. Does not depen
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from distal.images.picture import Picture
 from distal.ir.nodes import Origin
@@ -21,11 +16,11 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.render import film
+from distal.runtime.fingerprints import fingerprint
 from distal.runtime.lowered import Lowered
 from distal.scene.checks.warnings import check_slopes, warn_of_black, warn_of_functions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
-from distal.version import __version__
 from distal.video.formats import VideoError
 
 if TYPE_CHECKING:
@@ -152,25 +147,4 @@ def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dic
 
 def _fingerprint(lowered: Lowered, settings: Mapping[str, Any]) -> str:
     numbers = {u.name: u.default for u in lowered.module.uniforms if u.origin is Origin.NUMBER}
-    parts = [__version__, lowered.digest, numbers, dict(settings)]
-    digest = hashlib.sha256(json.dumps(parts, sort_keys=True, default=repr).encode())
-    for name, source in sorted(lowered.resources.items()):
-        digest.update(f"\0{name}\0".encode())
-        digest.update(_bytes(getattr(source, "data", source)))
-    return digest.hexdigest()
-
-
-def _bytes(data: Any) -> bytes:
-    """Return the data of a texture or a buffer; for a file, its content."""
-    if isinstance(data, str | Path):
-        try:
-            return Path(data).read_bytes()
-        except OSError:  # rendering reports the error
-            return str(data).encode()
-    try:
-        array = np.asarray(data)
-    except ValueError:
-        return repr(data).encode()
-    if array.dtype == object:
-        return repr(data).encode()
-    return f"{array.dtype}{array.shape}".encode() + array.tobytes()
+    return fingerprint([lowered.digest, numbers, dict(settings)], lowered.resources)

@@ -32,6 +32,8 @@ from distal.render import (
     layers,
     legend,
     lettering,
+    path_film,
+    paths,
     ranges,
     settings,
     shade,
@@ -42,6 +44,7 @@ from distal.render import (
 from distal.render.camera import Ray
 from distal.render.footprint import Cone, Footprint
 from distal.render.lights import no_light
+from distal.render.sampling.points import Stream
 from distal.scene import steering
 from distal.scene.lowering.attributes import (
     Attribute,
@@ -71,6 +74,7 @@ RENDERERS: Final[dict[str, Func]] = {
     "mirrored": bounce.seen_mirrored,
     "refracted": bounce.seen_refracted,
 }
+PATHS: Final[Func] = paths.path_light
 # The type checker infers only ``object`` for tables of different functions.
 LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
 LEGENDS: Final = cast(Mapping[str, Func], legend.LEGENDS)
@@ -112,6 +116,7 @@ class SceneLowering:
         encoded: bool,
         steered: bool = False,
         adaptive: bool = False,
+        paths: bool = False,
     ) -> str:
         """Add the function that maps the frame to a pixel, and return its name.
 
@@ -122,12 +127,13 @@ class SceneLowering:
             encoded: Whether pixels are display values instead of linear light.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
             adaptive: Whether it is rendered in two passes.
+            paths: Whether the light is that of random paths.
         """
         frame = Read("frame", FRAME)
         body = StatementList(taken={"frame"})
         resolution = field(frame, "resolution")
         samples: Expr = integer(1)
-        if sampled or adaptive:
+        if sampled or adaptive or paths:
             samples = self._assembly.number(film.SAMPLES, INT, 1)
         again: dict[str, Expr] = {}
         if adaptive:
@@ -145,12 +151,17 @@ class SceneLowering:
         }
         # Pictures of linear light carry marks, which the executor counts and removes.
         given["counted"] = boolean(view == "color" and not encoded)
+        shown = PATHS if paths else self._shown(view)
         given["radiance"] = self._radiance(
-            self._shown(view), resolution, view, steered=steered, counted=given["counted"]
+            shown, resolution, view, steered=steered, counted=given["counted"]
         )
         if sampled or adaptive:
             given["step"] = self.composer.call(film.lattice_step, {"count": samples})
-        exposed = film.exposed_again if adaptive else film.exposed
+        exposed: Func = film.exposed_again if adaptive else film.exposed
+        if paths:
+            exposed = path_film.exposed_paths
+            given["first_sample"] = self._assembly.number(film.FIRST_SAMPLE, INT, 0)
+            given |= {name: field(frame, name) for name in ("seed", "index")}
         color = body.let("color", self.composer.call(exposed, given))
         if view in LEGENDS:
             title = self._assembly.constant(lettering.word(legend.TITLES[view]), IVEC4)
@@ -204,7 +215,12 @@ class SceneLowering:
         return self.composer.call(tonemap.display, given)
 
     def given(
-        self, body: StatementList, resolution: Expr, *, steered: bool = False
+        self,
+        body: StatementList,
+        resolution: Expr,
+        *,
+        steered: bool = False,
+        paths: bool = False,
     ) -> dict[str, Expr]:
         """Return all values that a renderer may take, by name.
 
@@ -212,6 +228,7 @@ class SceneLowering:
             body: The statements to add to.
             resolution: Size of the picture in pixels.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
+            paths: Whether rays are followed from surface to surface.
         """
         composer, scene, node = self.composer, self._scene, self.node
         values = composer.values.all(node)
@@ -228,7 +245,8 @@ class SceneLowering:
             "field": composer.field(node, values, ZERO_CELL),
             "surface": self.surface(),
             "lights": self._lights(),
-            "ambient": self._ambient(),
+            "ambient": self._ambient("n"),
+            "around": self._ambient("direction"),
             "background": self._background(),
             "fog": self._fog(),
             "camera": self._camera_of(resolution, steered=steered),
@@ -251,7 +269,7 @@ class SceneLowering:
         given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
         given["occlusion"] = rays.occlusion(body, given, hybrid=self._hybrid)
         given["shadow"] = rays.shadow(body, given, casts=scene.shadows, hybrid=self._hybrid)
-        if scene.renderer == "refracted":
+        if scene.renderer == "refracted" or paths:
             on_surface = {**given, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
             given["next_hit"] = rays.first_hit(body, on_surface, hybrid=self._hybrid)
@@ -313,12 +331,14 @@ class SceneLowering:
         """
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            asked = {**self.given(body, given["resolution"], steered=steered), **given}
+            follows = shown is PATHS
+            known = self.given(body, given["resolution"], steered=steered, paths=follows)
+            asked = {**known, **given}
             asked["counted"] = counted
-            if shown in RENDERERS.values():
+            if shines:
                 asked["surface"] = self._surface_of_hit()
                 asked["field_of"] = self._rays.field_of(hybrid=self._hybrid)
-            if shown in RENDERERS.values() and not self._hybrid:
+            if shines and not self._hybrid:
                 values = self.composer.values.all(self.node)
                 asked["field"] = self.composer.safe_field(self.node, values, ZERO_CELL)
             elif self._shown_node is not self.node:
@@ -331,8 +351,12 @@ class SceneLowering:
                 asked["identity"] = self._material_number(kind)
             return self.composer.call(shown, asked)
 
-        ray, cone = self._assembly.struct(Ray), self._assembly.struct(Cone)
-        params = (("ray", ray), ("cone", cone), ("resolution", VEC2))
+        shines = shown is PATHS or shown in RENDERERS.values()
+        struct = self._assembly.struct
+        params: list[tuple[str, Type]] = [("ray", struct(Ray)), ("cone", struct(Cone))]
+        if shown is PATHS:
+            params.append(("stream", struct(Stream)))
+        params.append(("resolution", VEC2))
         return self._function("radiance", params, make, (resolution,))
 
     def _shown_numbers(
@@ -453,16 +477,18 @@ class SceneLowering:
 
         return self._function("light", (("i", INT), ("p", VEC3)), make)
 
-    def _ambient(self) -> FunctionRef:
+    def _ambient(self, of: str) -> FunctionRef:
+        """Return the ambient light on a surface by its normal ``n``, or from a ``direction``."""
+
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             total: Expr = number(0.0, VEC3)
             for light in self._scene.lights:
-                if light.ambient is not None:
-                    part = light.ambient.emit(self.composer, {"n": given["n"]})
-                    total = body.let("total", add(total, part))
+                call = light.ambient if of == "n" else light.radiance
+                if call is not None:
+                    total = body.let("total", add(total, call.emit(self.composer, given)))
             return total
 
-        return self._function("ambient", (("n", VEC3),), make)
+        return self._function("ambient" if of == "n" else "around", ((of, VEC3),), make)
 
     def _background(self) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:

@@ -1,0 +1,85 @@
+"""Files that keep the samples of a picture while it is rendered.
+
+Input: a film and the fingerprint of its picture. Output: a file, replaced in one step, so that a
+process that is killed loses only the passes since the last one. Does not depend on how samples are
+made.
+"""
+
+from __future__ import annotations
+
+import time
+import zipfile
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from distal.images.atomic_files import SaveError, check_destination, replacement
+from distal.runtime.accumulation import Film
+
+# Seconds between two writes; a slow disk is written to less often.
+_INTERVAL_S: Final = 10.0
+_INTERVAL_WRITES: Final = 20.0
+
+
+class FilmFile:
+    """The file of a film.
+
+    Args:
+        path: The file; a film that is there is continued.
+        key: The fingerprint of the picture.
+
+    Raises:
+        SaveError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path, key: str) -> None:
+        check_destination(path)
+        self._path, self._key = path, key
+        self._interval = _INTERVAL_S
+        self._written = time.monotonic()
+
+    def load(self, width: int, height: int) -> Film:
+        """Return the film that the file keeps; one without samples if there is no file.
+
+        Args:
+            width: Width of the picture in pixels.
+            height: Height in pixels.
+
+        Raises:
+            ValueError: The file is not a film, or that of another picture.
+        """
+        if not self._path.exists():
+            return Film.empty(width, height)
+        try:
+            with np.load(self._path, allow_pickle=False) as found:
+                key, counts = str(found["key"]), found["counts"]
+                sums, spread = found["sums"], found["spread"]
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+            raise ValueError(f"{self._path} is not a film: delete it or name another") from None
+        if key != self._key or sums.shape != (height, width, 4):
+            raise ValueError(
+                f"{self._path} keeps the samples of another picture: delete it or name another"
+            )
+        return Film(sums, spread, int(counts[0]), int(counts[1]))
+
+    def keep(self, film: Film) -> None:
+        """Write the film, if the last time was long ago."""
+        if time.monotonic() - self._written >= self._interval:
+            self.write(film)
+
+    def write(self, film: Film) -> None:
+        """Write the film.
+
+        Raises:
+            SaveError: The file cannot be written.
+        """
+        begin = time.monotonic()
+        counts = np.array([film.samples, film.passes])
+        try:
+            with replacement(self._path) as file:
+                np.savez(file, key=self._key, counts=counts, sums=film.sums, spread=film.spread)
+        except OSError as error:
+            raise SaveError(f"cannot write {self._path}: {error.strerror or error}") from None
+        self._written = time.monotonic()
+        self._interval = max(_INTERVAL_S, _INTERVAL_WRITES * (self._written - begin))
