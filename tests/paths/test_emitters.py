@@ -157,7 +157,7 @@ TABLE = Buffer(CELLS)
 
 
 @func
-def from_table(u: vec3, turn: float) -> surroundings.Surroundings:
+def from_table(u: vec3, turn: float) -> surroundings.DirectionSample:
     return surroundings.sample_surroundings(TABLE, 16, 32, turn, u)
 
 

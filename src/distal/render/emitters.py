@@ -50,7 +50,7 @@ class Emission:
 
 
 @struct
-class Seen:
+class LightOnRay:
     """What a ray meets of a light.
 
     Attributes:
@@ -115,7 +115,7 @@ def sample_light(light: LightSample, u: vec2) -> Emission:
 
 
 @func
-def seen_light(light: LightSample, direction: vec3) -> Seen:
+def seen_light(light: LightSample, direction: vec3) -> LightOnRay:
     """Return what a ray from the light's point meets of it, and how likely it is sampled.
 
     Args:
@@ -126,9 +126,9 @@ def seen_light(light: LightSample, direction: vec3) -> Seen:
     across = cross(light.direction, direction)
     ahead = dot(light.direction, direction) > 0.0 and dot(across, across) <= sine
     if sine < POINT or not (ahead or sine >= 1.0):
-        return Seen(FAR_AWAY, vec3(0.0), 0.0)
+        return LightOnRay(FAR_AWAY, vec3(0.0), 0.0)
     density = cone_density(narrowness_of(sine))
-    return Seen(way_to_ball(light, sine, direction), light.radiance / sine, density)
+    return LightOnRay(way_to_ball(light, sine, direction), light.radiance / sine, density)
 
 
 @func
