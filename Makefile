@@ -3,6 +3,7 @@
 # make bench     measures; make sweep runs thousands of random programs and draws every example
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
+# make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -21,13 +22,14 @@ PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 p
 WORKERS ?= 2
 SWEEP ?= 5000
 SAMPLES ?= 40
+SEGMENTS ?= 1e7
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
 COUNT ?= 100
 SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test lint units system bench sweep sweep-fields parity mutate versions clean
+.PHONY: picture test lint units system bench sweep sweep-fields sweep-segments parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -55,6 +57,9 @@ sweep: $(VENV)/.setup-test
 
 sweep-fields: $(VENV)/.setup-test
 	DISTAL_FIELD_SEED=$(or $(SEED),day) DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
+
+sweep-segments: $(VENV)/.setup-test
+	DISTAL_SEGMENTS=$(SEGMENTS) $(BIN)/python -m pytest -s tests/paths/test_segment_leaks.py
 
 # Every example in every place it can be drawn in, against the CPU; writes docs/parity.md.
 parity: system $(VENV)/.setup-test
