@@ -46,7 +46,7 @@ from distal.render.normals import unit_or_up
 # in the last place. Values below it are on neither side.
 ROUNDING = 2.5e-7
 # A first step is so long that the field is to be as many rounding errors at its end.
-START = 64.0
+START = 256.0
 # The largest distance between a value and the parabola, in rounding errors.
 AGREEMENT = 3.0
 # The longest step by the parabola: in rounding errors, and as a share of the field's box. 30 units
@@ -76,6 +76,35 @@ class Landing:
     p: vec3
     n: vec3
     slope: float
+
+
+@struct
+class Way:
+    """The state of a segment.
+
+    Attributes:
+        t: The last accepted place, as a distance along the ray.
+        free: The value of the field there, positive.
+        rise: The first divided difference of the last two values along the ray.
+        bend: The second of the last three; 0 if there are fewer.
+        last: The length of the last accepted step; 0 if there was none.
+        step: The length of the next step.
+        reach: The longest step by the parabola.
+        high: If positive, the crossing is between ``t`` and ``t + high``.
+        below: The value at ``t + high``, negated.
+        found: Whether the crossing is known to a rounding error.
+    """
+
+    t: float
+    free: float
+    rise: float
+    bend: float
+    last: float
+    step: float
+    reach: float
+    high: float
+    below: float
+    found: bool
 
 
 @func
@@ -131,94 +160,106 @@ def segment_between(
     """
     starts = slope > 0.0
     end = min(span.y, numbers.far)
-    scale = 1.0 / numbers.divisor
-    size = abs(ray.origin.x) + abs(ray.origin.y) + abs(ray.origin.z)
-    # The last accepted place, the value there, its first and second divided differences along the
-    # ray, and the length of the last accepted step.
     t = select(starts, 0.0, max(span.x, numbers.near))
-    free = 0.0
-    rise = slope * scale
-    bend = 0.0
-    last = 0.0
+    size = abs(ray.origin.x) + abs(ray.origin.y) + abs(ray.origin.z)
     noise = ROUNDING * (size + t)
     reach = min(REACH * noise, SHARE * extent)
-    step = select(starts, clamp(START * noise / max(rise, 1e-6), noise, max(reach, noise)), 0.0)
+    rise = slope / numbers.divisor
+    first = select(starts, clamp(START * noise / max(rise, 1e-6), noise, max(reach, noise)), 0.0)
     # A crossing in a first step as short as this is the next face.
-    shortest = 4.0 * noise / max(rise, 1e-3)
-    # If high > 0, the crossing is between t and t + high, where the value is -below.
-    high = 0.0
-    below = 0.0
+    shortest = select(starts, 4.0 * noise / max(rise, 1e-3), first)
+    way = Way(t, 0.0, rise, 0.0, 0.0, first, reach, 0.0, 0.0, False)
     around = side
-    found = False
     taken = 0
     for _ in range(min(steps, MOST_STEPS)):
-        if t > end:
+        if way.t > end or way.found:
             break
-        at = t + step
-        value = scale * field(ray.origin + at * ray.direction)
+        at = way.t + way.step
+        value = field(ray.origin + at * ray.direction) / numbers.divisor
         taken += 1
         if around == 0.0:
             around = select(value < 0.0, -1.0, 1.0)
-        value = around * value
         noise = ROUNDING * (size + at)
-        if high > 0.0:
-            # False position; an end that stays a second time counts half (Illinois). ``rise`` is
-            # the sign of the last value.
-            up = value > 0.0
-            below = select(up, select(rise > 0.0, 0.5, 1.0) * below, -value)
-            free = select(up, value, select(rise < 0.0, 0.5, 1.0) * free)
-            t = select(up, at, t)
-            high = select(up, high - step, step)
-            rise = select(up, 1.0, -1.0)
-            if abs(value) < 0.25 * noise or high < 0.5 * noise:
-                found = True
-                t = at
-                high = 0.0
-                break
-        else:
-            error = abs(value - (free + step * (rise + bend * (step + last))))
-            near = free < reach
-            agrees = near and error <= AGREEMENT * noise
-            crossed = value < -noise
-            touching = step <= free + abs(value) + 2.0 * noise
-            growth = step_growth(error, noise)
-            leaving = starts and last == 0.0 and step > shortest
-            if crossed and (touching or (near and not leaving)):
-                high = step
-                below = -value
-                rise = 0.0
-                # Within a few rounding errors of its end: the line through both values is enough.
-                if agrees and below * step <= 16.0 * noise * (free + below):
-                    found = True
-                    break
-            if not crossed and (touching or agrees):
-                inverse = 1.0 / max(step * (step + last), 1e-30)
-                steeper = (value - free) * ((step + last) * inverse)
-                bend = select(last > 0.0, (steeper - rise) * (step * inverse), 0.0)
-                rise = steeper
-                last = step
-                t = at
-                free = max(value, 0.0)
-                step = next_step(free, rise, bend, last, min(reach, growth * last), noise)
-                reach *= select(taken > PATIENCE or last > 0.9 * reach, WIDENING, 1.0)
-                if t + step > end:
-                    if t >= end or t + free > end:
-                        t = end + 1.0
-                        break
-                    step = end - t
-            elif high == 0.0:
-                # Taken back: shorter, but as long as the free ball.
-                step = max(select(near, min(growth, 0.5) * step, free), max(free, 2.0 * noise))
-        if high > 0.0:
-            step = high * clamp(free / max(free + below, 1e-30), 0.02, 0.98)
+        way = moved(way, around * value, noise, end, shortest, taken > PATIENCE)
     lost = PASSED
-    if high > 0.0:
-        found = True
-        t += high * (free / max(free + below, 1e-30))
-    elif not found:
-        cut_short = t > end and numbers.far < span.y and rise < 0.0
-        lost = select(t > end, select(cut_short, TOO_FAR, PASSED), OUT_OF_STEPS)
+    if not way.found and way.high == 0.0:
+        cut_short = way.t > end and numbers.far < span.y and way.rise < 0.0
+        lost = select(way.t > end, select(cut_short, TOO_FAR, PASSED), OUT_OF_STEPS)
+    # If steps end while the crossing is enclosed, it is where the line through both values is 0.
+    t = way.t + way.high * share_of(way.free, way.below)
+    found = way.found or way.high > 0.0
     return Hit(clamp(t, 0.0, max(end, 0.0)), found, taken, around, lost)
+
+
+@func
+def share_of(free: float, below: float) -> float:
+    """Return where the line from ``free`` at 0 to ``-below`` at 1 is 0."""
+    return free / max(free + below, 1e-30)
+
+
+@func
+def moved(way: Way, value: float, noise: float, end: float, shortest: float, widening: bool) -> Way:
+    """Return the state of a segment after one more evaluation of the field.
+
+    All choices are between numbers, not between branches: the CPU computes many rays together.
+
+    Args:
+        way: The state before; the field was evaluated at its ``step``.
+        value: The value there, positive on the side of the ray.
+        noise: The rounding error of the value.
+        end: Where the ray ends.
+        shortest: The length of a first step that may enclose a crossing.
+        widening: Whether the longest step by the parabola grows.
+    """
+    at = way.t + way.step
+    up = value > 0.0
+    enclosed = way.high > 0.0
+    # Is the step accepted, does it enclose a crossing, or is it taken back?
+    expected = way.free + way.step * (way.rise + way.bend * (way.step + way.last))
+    error = abs(value - expected)
+    near = way.free < way.reach
+    agrees = near and error <= AGREEMENT * noise
+    crossed = value < -noise
+    touching = way.step <= way.free + abs(value) + 2.0 * noise
+    early = way.last == 0.0 and way.step > shortest
+    enters = not enclosed and crossed and (touching or (near and not early))
+    goes = not enclosed and not crossed and (touching or agrees)
+    # False position; an end that stays a second time counts half (Illinois). ``rise`` is then the
+    # sign of the last value.
+    sign = select(up, 1.0, -1.0)
+    half = select(way.rise * sign > 0.5, 0.5, 1.0)
+    lower = enters or (enclosed and not up)
+    below = select(lower, -value, select(enclosed, way.below * half, way.below))
+    kept = select(enclosed, select(up, value, way.free * half), way.free)
+    free = select(goes, max(value, 0.0), kept)
+    high = select(lower, way.step, select(enclosed, way.high - way.step, way.high))
+    t = select(goes or (enclosed and up), at, way.t)
+    # The parabola.
+    last = select(goes, way.step, way.last)
+    inverse = 1.0 / max(way.step * (way.step + way.last), 1e-30)
+    steeper = (value - way.free) * ((way.step + way.last) * inverse)
+    bent = select(way.last > 0.0, (steeper - way.rise) * (way.step * inverse), 0.0)
+    bend = select(goes, bent, way.bend)
+    rise = select(goes, steeper, select(enclosed, sign, select(enters, 0.0, way.rise)))
+    # The next step.
+    growth = step_growth(error, noise)
+    longest = min(way.reach, growth * last)
+    onward = next_step(free, rise, bend, last, longest, noise)
+    beyond = goes and t + onward > end
+    passes = beyond and (t >= end or t + free > end)
+    onward = select(beyond, end - t, onward)
+    shorter = select(near, min(growth, 0.5) * way.step, free)
+    back = max(shorter, max(free, 2.0 * noise))
+    within = high * clamp(share_of(free, below), 0.02, 0.98)
+    step = select(high > 0.0, within, select(goes, onward, back))
+    wider = goes and (widening or last > 0.9 * way.reach)
+    reach = way.reach * select(wider, WIDENING, 1.0)
+    # The end: at a crossing that is known to a rounding error, or past the end.
+    exact = enclosed and (abs(value) < 0.25 * noise or way.high < 0.5 * noise)
+    close = enters and agrees and below * way.step <= 4.0 * noise * (free + below)
+    t = select(exact, at, select(passes, end + 1.0, t))
+    high = select(exact, 0.0, high)
+    return Way(t, free, rise, bend, last, step, reach, high, below, exact or close)
 
 
 @func
@@ -227,7 +268,9 @@ def step_growth(error: float, noise: float) -> float:
 
     The error of a parabola grows with the third power of the step.
     """
-    return clamp(AGREEMENT * noise / (0.5 * AGREEMENT * noise + 0.7 * error), 0.25, 2.0)
+    limit = AGREEMENT * noise
+    kept = select(error < limit, 1.0, select(error < 8.0 * limit, 0.5, 0.25))
+    return select(error < 0.2 * limit, 2.0, kept)
 
 
 @func
@@ -249,7 +292,7 @@ def next_step(
         noise: The rounding error of a value.
     """
     fall = -(rise + bend * last)
-    above = free + 3.0 * noise
+    above = free + 2.0 * noise
     root = fall * fall - 4.0 * bend * above
     down = fall + sqrt(max(root, 0.0))
     falls = root > 0.0 and down > 0.0
