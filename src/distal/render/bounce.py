@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.lang import Field3, abs, dot, exp, func, reflect, refract, select, vec3, vec4
+from distal.lang import Field3, abs, dot, exp, func, max, reflect, refract, select, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
@@ -17,13 +17,15 @@ from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
+from distal.render.segment import Landing, landing
 from distal.render.shade import Shading, direct_light, fogged
 from distal.render.shadows import Opening
-from distal.render.trace import at_surface, ray_offset, surface_point, way_off
+from distal.render.trace import ray_offset, surface_point
 
 # Alpha of a ray that starts inside a solid and does not leave it.
 ALL_INSIDE = -1.0
 STACK = 12
+FLATTEST = 1e-9  # the least slope with which a ray leaves a surface
 DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display are not followed
 
 
@@ -155,7 +157,7 @@ def seen_mirrored(
 def seen_refracted(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
-    next_hit: Callable[[Ray], Hit],
+    next_hit: Callable[[Ray, float, float, int], Hit],
     field: Field3,
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
@@ -176,17 +178,19 @@ def seen_refracted(
 ) -> vec4:
     """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue.
 
-    Both start on the surface itself and know their side of it, so that a pane may be as thin as a
-    few rounding errors of its distance. ``next_hit`` is the first surface along a ray that starts
-    on a surface, ``field`` the signed distance; the other arguments are those of ``seen_mirrored``.
+    Both start on the surface itself and know their side of it (``segment``), so that a pane may be
+    as thin as a few rounding errors of its distance. ``next_hit`` is the next surface along a ray,
+    by its side, the slope with which it leaves a surface, and the part that has this surface;
+    ``field`` is the signed distance; the other arguments are those of ``seen_mirrored``.
     """
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
     widths = [cone.width] * STACK
     depths = [0] * STACK
-    ways = [0.0] * STACK  # how far a ray has already come from the surface on which it starts
-    insides = [True] * STACK  # whether a ray may start inside a solid; the camera's ray may
+    sides = [0.0] * STACK  # of the surface on which a ray starts, and the slope and the part there
+    slopes = [0.0] * STACK
+    parts = [-1] * STACK
     waiting = 1
     color = vec3(0.0)
     alpha = 0.0
@@ -200,10 +204,11 @@ def seen_refracted(
         width = Cone(widths[waiting], cone.spread, cone.sample, cone.samples)
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
-        hit = first_hit(here) if depth == 0 else next_hit(here)
+        side = sides[waiting]
+        slope = slopes[waiting]
+        part = parts[waiting]
+        hit = first_hit(here) if depth == 0 else next_hit(here, side, slope, part)
         lost = merged(lost, reason(hit.lost))
-        if hit.side < 0.0 and not insides[waiting]:
-            continue  # mirrored into a crevice: the surface in front hides everything behind it
         if not hit.found:
             color += throughput * background(direction)
             if hit.side < 0.0 and depth == 0:
@@ -212,11 +217,11 @@ def seen_refracted(
         alpha = 1.0
         point = surface_point(here, hit, field_of, surface, width, numbers, normals, normal_step)
         continues = brightest(throughput * (point.shares.mirrored + point.shares.transmitted))
-        exact = hit.t
+        place = Landing(point.p, point.n, point.slope, point.t)
         if point.inside or continues >= DIMMEST:
-            exact = at_surface(field, here, hit, numbers)
+            place = landing(field, here, hit)
         if point.inside:
-            throughput = throughput * exp(-point.surface.absorption * (exact + ways[waiting]))
+            throughput = throughput * exp(-point.surface.absorption * place.t)
         else:
             light = direct_light(
                 here, point, occlusion, lights, ambient, shadow, numbers, look, light_count,
@@ -232,22 +237,18 @@ def seen_refracted(
         bent = refract(direction, point.n, eta)
         mirror_share = throughput * point.shares.mirrored * (1.0 - point.surface.roughness)
         through_share = throughput * point.shares.transmitted
-        place = here.origin + exact * direction
-        side = -1.0 if point.inside else 1.0
         for kind in range(2):
             through = kind == 1
             share = through_share if through else mirror_share
             onward = bent if through else reflect(direction, point.n)
             if brightest(share) >= DIMMEST and waiting < STACK:
-                slope = point.slope * abs(dot(onward, point.n))
-                goes = -side if through else side
-                way = way_off(field, Ray(place, onward), goes, slope, exact)
-                origins[waiting] = place + way * onward
-                ways[waiting] = way
+                origins[waiting] = place.p
+                sides[waiting] = -hit.side if through else hit.side
+                slopes[waiting] = max(place.slope * abs(dot(onward, place.n)), FLATTEST)
+                parts[waiting] = hit.part
                 directions[waiting] = onward
                 throughputs[waiting] = share
                 widths[waiting] = continued(width, point.t).width
                 depths[waiting] = depth + 1
-                insides[waiting] = point.inside != through
                 waiting += 1
     return vec4(color, marked(alpha, lost, counted))

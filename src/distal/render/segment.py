@@ -61,6 +61,10 @@ PATIENCE = 16
 # a multiple of the previous ball's radius.
 RELAXATION = 0.95
 LONGEST = 12.0
+# Steps of Newton's method to a place on a surface, and the slope along a ray, as a share of the
+# gradient, below which they follow the normal.
+LANDING_STEPS = 2
+FLAT = 0.1
 
 
 @struct
@@ -71,11 +75,13 @@ class Landing:
         p: The place.
         n: The unit normal, outwards.
         slope: |gradient| of the field.
+        t: Its distance along the ray.
     """
 
     p: vec3
     n: vec3
     slope: float
+    t: float
 
 
 @struct
@@ -105,6 +111,12 @@ class Way:
     high: float
     below: float
     found: bool
+
+
+@func
+def rounding_of(p: vec3) -> float:
+    """Return the rounding error of a field at a place."""
+    return ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z))
 
 
 @func
@@ -161,8 +173,8 @@ def segment_between(
     starts = slope > 0.0
     end = min(span.y, numbers.far)
     t = select(starts, 0.0, max(span.x, numbers.near))
-    size = abs(ray.origin.x) + abs(ray.origin.y) + abs(ray.origin.z)
-    noise = ROUNDING * (size + t)
+    nearby = rounding_of(ray.origin)
+    noise = nearby + ROUNDING * t
     reach = min(REACH * noise, SHARE * extent)
     rise = slope / numbers.divisor
     first = select(starts, clamp(START * noise / max(rise, 1e-6), noise, max(reach, noise)), 0.0)
@@ -179,7 +191,7 @@ def segment_between(
         taken += 1
         if around == 0.0:
             around = select(value < 0.0, -1.0, 1.0)
-        noise = ROUNDING * (size + at)
+        noise = nearby + ROUNDING * at
         way = moved(way, around * value, noise, end, shortest, taken > PATIENCE)
     lost = PASSED
     if not way.found and way.high == 0.0:
@@ -308,20 +320,30 @@ def next_step(
 
 @func
 def landing(field: Field3, ray: Ray, hit: Hit) -> Landing:
-    """Return the place on the surface at the end of a segment, within a rounding error of it.
+    """Return the place on the surface at the end of a ray, within a rounding error of that place.
 
     The length of a ray is rounded, and so is the place that it gives: far more than the place's own
-    coordinates if the ray is long. A step along the normal corrects that. The gradient is that just
-    before the hit: many fields have none on the surface itself.
+    coordinates if the ray is long. Newton's method from there corrects that: along the ray, or
+    along the normal if the ray is almost parallel to the surface. The gradient is that just before
+    the place, because many fields have none on the surface itself.
 
     Args:
         field: Signed distance.
-        ray: The ray of the segment.
+        ray: Ray.
         hit: Its end, at a surface.
     """
-    p = ray.origin
-    noise = ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z) + hit.t)
-    p += (hit.t - 4.0 * noise) * ray.direction
-    steepest = gradient(field, p)
-    squared = max(dot(steepest, steepest), 1e-12)
-    return Landing(p - steepest * (field(p) / squared), unit_or_up(steepest), length(steepest))
+    p = ray.origin + hit.t * ray.direction
+    steepest = vec3(0.0)
+    for _ in range(LANDING_STEPS):
+        p -= 2.0 * rounding_of(p) * ray.direction
+        value = field(p)
+        steepest = gradient(field, p)
+        squared = max(dot(steepest, steepest), 1e-12)
+        along = dot(steepest, ray.direction)
+        flat = along * along < FLAT * FLAT * squared
+        way = select(flat, steepest / squared, ray.direction / select(flat, 1.0, along))
+        p -= value * way
+    n = unit_or_up(steepest)
+    return Landing(
+        p, n, length(steepest), hit.t + dot(p - ray.origin - hit.t * ray.direction, ray.direction)
+    )

@@ -32,11 +32,8 @@ from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
 from distal.render.march import FORGIVING, PASSED, TOO_FAR, Hit, March, march
 from distal.render.material import Shares, Surface, shares
 from distal.render.normals import EXACT, normal, unit_or_up
+from distal.render.segment import rounding_of, segment
 
-# Rounding errors of a place, for each unit of its coordinates and of the ray's length; how often
-# the way from a surface is doubled.
-ROUNDING = 2e-6
-LEAVING_STEPS = 12
 # Steps of Newton's method. The largest error of a depth of 4 (a sphere, 160x120, without grazing
 # rays) after 0, 1 and 2 steps: 4e-3, 6e-7, 6e-7; where a ray hits it at 6 degrees 2e-2, 1e-3, 5e-6.
 NEWTON_STEPS = 2
@@ -151,6 +148,55 @@ def first_surface_or_plane(
 
 
 @func
+def segment_or_plane(
+    field: Field3,
+    planes: Field3,
+    nearest_plane: Callable[[Ray], float],
+    ray: Ray,
+    side: float,
+    slope: float,
+    bounds: Bounds,
+    numbers: March,
+    farthest_plane: float,
+    steps: int,
+) -> Hit:
+    """Return the next surface along a ray from a surface; planes are met in closed form.
+
+    Args:
+        field: Signed distance without the planes.
+        planes: Signed distance of the planes' union.
+        nearest_plane: Distance along a ray that starts above all planes to the first of them.
+        ray: Ray.
+        side: 1 if the ray runs outside, -1 inside.
+        slope: How fast the absolute value of the field of all grows along the ray.
+        bounds: Box around the surface without the planes.
+        numbers: The parameters of the march.
+        farthest_plane: Planes farther along the ray are not seen.
+        steps: Maximum number of evaluations of the field.
+    """
+    inside = side < 0.0
+    met = UNBOUNDED
+    if not inside:
+        met = max(nearest_plane(ray), 0.0)
+
+    def nearest(p: vec3) -> float:
+        d = field(p)
+        return select(inside, min(d, planes(p)), d)
+
+    # A ray from a plane is off the other surfaces.
+    from_plane = planes(ray.origin) < 4.0 * rounding_of(ray.origin)
+    leaving = select(from_plane and not inside, 0.0, slope)
+    box = everywhere() if inside else bounds
+    far = min(numbers.far, met)
+    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
+    hit = segment(nearest, ray, side, leaving, box, limited, steps)
+    if hit.found or met >= farthest_plane:
+        return hit
+    lost = select(hit.lost == TOO_FAR, PASSED, hit.lost)  # the plane ended it, not the far limit
+    return Hit(met, lost == PASSED, hit.steps, side, lost)
+
+
+@func
 def hit_point(ray: Ray, hit: Hit) -> vec3:
     """Return the point where a ray ended."""
     return ray.origin + hit.t * ray.direction
@@ -214,44 +260,6 @@ def refined(field: Field3, ray: Ray, hit: Hit, numbers: March, start: float) -> 
         step = -field(p) / slope if abs(slope) > 1e-3 else 0.0
         t = clamp(t + step, hit.t - margin, hit.t + margin)
     return t
-
-
-@func
-def at_surface(field: Field3, ray: Ray, hit: Hit, numbers: March) -> float:
-    """Return the distance along a ray to the surface that it hit, as exactly as 32 bits allow.
-
-    Newton's method starts just before the hit, where fields have a gradient.
-
-    Args:
-        field: Signed distance.
-        ray: Ray.
-        hit: Where it ended, at a surface.
-        numbers: The parameters of the march.
-    """
-    start = hit.t * (1.0 - 0.5 * numbers.threshold)
-    return max(refined(field, ray, hit, numbers, start), 0.0)
-
-
-@func
-def way_off(field: Field3, start: Ray, side: float, slope: float, t: float) -> float:
-    """Return how far a ray from a surface must go until it has left the surface.
-
-    It is a few rounding errors, so that no face of something thin is skipped.
-
-    Args:
-        field: Signed distance.
-        start: The ray, from the surface.
-        side: 1 to go on outside, -1 inside.
-        slope: How fast the field grows along the ray.
-        t: Length of the ray that hit the surface: its rounding error is that of the place.
-    """
-    p = start.origin
-    way = ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z) + t)
-    for _ in range(LEAVING_STEPS):
-        if side * field(p + way * start.direction) > 0.25 * slope * way:
-            break
-        way *= 2.0
-    return way
 
 
 @func

@@ -272,7 +272,7 @@ class SceneLowering:
         if scene.renderer == "refracted" or paths:
             on_surface = {**given, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
-            given["next_hit"] = rays.first_hit(body, on_surface, hybrid=self._hybrid)
+            given["next_hit"] = rays.next_hit(body, on_surface)
         return given
 
     @property

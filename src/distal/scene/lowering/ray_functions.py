@@ -21,7 +21,16 @@ from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Retur
 from distal.ir.types import FLOAT, INT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
-from distal.render import part_shading, part_tree, settings, shade, shadows, trace
+from distal.render import (
+    part_segments,
+    part_shading,
+    part_tree,
+    segment,
+    settings,
+    shade,
+    shadows,
+    trace,
+)
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.scene.lowering.parts.table import TableNode
@@ -134,6 +143,37 @@ class RayFunctions:
             others = self._bound(part_tree.nothing_else, params, given, {})
         functions = {"others": others, "others_field": self._beside_field()}
         return self._bound(part_tree.first_of_parts, params, given, functions)
+
+    def next_hit(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
+        """Return the function ``(ray, side, slope, part) -> Hit`` for rays from a surface.
+
+        Args:
+            body: The statements of the function that calls it.
+            given: The values of the march, by name; rays begin at 0.
+        """
+        ray = self._composer.assembly.struct(Ray)
+        params = [("ray", ray), ("side", FLOAT), ("slope", FLOAT), ("part", INT)]
+        if self._table is None:
+            return self._next_of_others(body, params, given)
+        if self._beside:
+            others = self._next_of_others(body, params, given)
+        else:
+            others = self._bound(part_segments.nothing_next, params, given, {})
+        functions = {"others": others, "others_field": self._beside_field()}
+        return self._bound(part_segments.segment_of_parts, params, given, functions)
+
+    def _next_of_others(
+        self, body: StatementList, params: Params, given: Mapping[str, Expr]
+    ) -> FunctionRef:
+        """Return the function ``(ray, side, slope, part) -> Hit`` of all but the table."""
+        if self._table is None and not self._planes:
+            functions = {"field": self._safe_field(self._root)}
+            return self._bound(segment.segment, params, given, functions)
+        values = {**given, **self._without_planes(body)}
+        if not self._planes:
+            return self._bound(segment.segment, params, values, {"field": self._others_field()})
+        functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
+        return self._bound(trace.segment_or_plane, params, values, functions)
 
     def _first_of_others(
         self, body: StatementList, params: Params, given: Mapping[str, Expr], *, hybrid: bool

@@ -1,0 +1,165 @@
+"""Segments of rays through a table of parts: the next surface of any part, and of what is beside.
+
+Input: the tree of the parts' boxes, the distance to each part, and a ray with its side. Output: a
+``Hit``. As ``part_tree``, with ``segment`` in place of the march.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from distal.fields.boxes import everywhere
+from distal.lang import Buffer, abs, func, length, max, min, select, vec2, vec3, vec4
+from distal.lang.prelude.hidden import anywhere
+from distal.render.camera import Ray
+from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March
+from distal.render.part_tree import box_count, inverse_of, nearest_of_all, span_in_box
+from distal.render.segment import segment, segment_between
+
+# The margin around the boxes of parts, for each unit of the distance: rounding errors.
+MARGIN = 1e-5
+
+
+@func
+def segment_of_part(
+    distance: Callable[[vec3, int], float],
+    part: int,
+    ray: Ray,
+    slope: float,
+    span: vec2,
+    sides: vec3,
+    far: float,
+    numbers: March,
+    steps: int,
+) -> Hit:
+    """Return where a ray from outside enters one part.
+
+    Args:
+        distance: The signed distance of a point to a part.
+        part: The part.
+        ray: Ray.
+        slope: As for ``segment``; 0 if the ray does not start on this part.
+        span: Where the box around the part begins and ends, along the ray.
+        sides: The lengths of the box's sides.
+        far: The distance along the ray where it ends.
+        numbers: The other parameters of the march.
+        steps: Maximum number of evaluations of the field.
+    """
+
+    def field(p: vec3) -> float:
+        return distance(p, part)
+
+    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
+    extent = max(sides.x, max(sides.y, sides.z))
+    return segment_between(field, ray, 1.0, slope, span, extent, limited, steps)
+
+
+@func
+def next_of_parts(
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    ray: Ray,
+    slope: float,
+    part: int,
+    numbers: March,
+    steps: int,
+) -> Hit:
+    """Return the first part along a ray that runs outside of all parts.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        ray: Ray.
+        slope: As for ``segment``.
+        part: The part on which the ray starts; -1 if it starts on none.
+        numbers: The parameters of the march.
+        steps: Maximum number of evaluations in one part.
+    """
+    inverse = inverse_of(ray.direction)
+    farthest = max(abs(boxes[0].xyz - ray.origin), abs(boxes[1].xyz - ray.origin))
+    margin = MARGIN * min(length(farthest), numbers.far)
+    found = -1
+    t = numbers.far
+    taken = 0
+    lost = PASSED
+    box = 0
+    for _ in range(box_count(boxes)):
+        if box >= box_count(boxes):
+            break
+        low = boxes[2 * box]
+        high = boxes[2 * box + 1]
+        following = int(low.w)
+        span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
+        meets = span.x <= span.y and span.x < t and span.y >= numbers.near
+        if anywhere(meets):
+            of = int(high.w)
+            if of < 0:
+                following = box + 1
+            elif meets:
+                leaving = select(of == part, slope, 0.0)
+                sides = high.xyz - low.xyz
+                hit = segment_of_part(distance, of, ray, leaving, span, sides, t, numbers, steps)
+                taken += hit.steps
+                lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
+                if hit.found and hit.t < t:
+                    found = of
+                    t = hit.t
+        box = following
+    return Hit(t, found >= 0, taken, 1.0, select(found >= 0, PASSED, lost), found)
+
+
+@func
+def segment_of_parts(
+    others: Callable[[Ray, float, float, int], Hit],
+    others_field: Callable[[vec3], float],
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    ray: Ray,
+    side: float,
+    slope: float,
+    part: int,
+    numbers: March,
+    steps: int,
+) -> Hit:
+    """Return the next surface of the parts and of what is beside them, from a surface.
+
+    A ray inside a solid is followed through the field of all, because a way out of one part may
+    lead into another.
+
+    Args:
+        others: The next surface of what is beside the parts.
+        others_field: Signed distance of what is beside the parts.
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        ray: Ray.
+        side: 1 if the ray runs outside, -1 inside.
+        slope: As for ``segment``.
+        part: The part on which the ray starts; -1 if it starts on another surface.
+        numbers: The parameters of the march.
+        steps: Maximum number of evaluations in one part.
+    """
+    if side < 0.0:
+
+        def field(p: vec3) -> float:
+            return min(nearest_of_all(boxes, distance, p).distance, others_field(p))
+
+        way = segment(field, ray, side, slope, everywhere(), numbers, steps)
+        end = ray.origin + way.t * ray.direction
+        nearest = nearest_of_all(boxes, distance, end)
+        of = select(nearest.distance <= others_field(end), nearest.part, -1)
+        return Hit(way.t, way.found, way.steps, way.side, way.lost, of)
+    other = others(ray, side, select(part < 0, slope, 0.0), part)
+    far = select(other.found, other.t, numbers.far)
+    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
+    hit = next_of_parts(boxes, distance, ray, slope, part, limited, steps)
+    taken = other.steps + hit.steps
+    lost = select(hit.found, PASSED, max(hit.lost, other.lost))
+    if hit.found or not other.found:
+        return Hit(hit.t, hit.found, taken, 1.0, lost, hit.part)
+    return Hit(other.t, True, taken, 1.0, PASSED)
+
+
+@func
+def nothing_next(ray: Ray, side: float, slope: float, part: int, numbers: March) -> Hit:
+    """Return that a ray meets nothing beside the parts."""
+    return Hit(numbers.far, False, 0, side)
