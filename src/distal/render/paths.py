@@ -20,21 +20,22 @@ from typing import Final
 
 from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
-    Field3,
     abs,
     dot,
     exp,
     func,
+    max,
     min,
+    mix,
     select,
     struct,
     vec3,
     vec4,
 )
-from distal.render.bounce import ALL_INSIDE
+from distal.render.bounce import ALL_INSIDE, FLATTEST
 from distal.render.camera import Ray
 from distal.render.emitters import power_share, sample_light, seen_light
-from distal.render.footprint import THIN, Cone, Footprint, continued
+from distal.render.footprint import THIN, Cone, Footprint, continued, footprint_at
 from distal.render.lights import LightSample
 from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import PASSED, Hit, March
@@ -42,8 +43,9 @@ from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
 from distal.render.sampling.points import Stream, pair, single, triple
 from distal.render.scatter import all_specular, emitted, respond, sample
+from distal.render.segment import landing
 from distal.render.shade import Lit, Shading
-from distal.render.trace import SurfacePoint, at_surface, surface_point, way_off
+from distal.render.trace import facing_normal
 
 # The first segments of a path are always followed; later ones with this probability at most.
 SURE: Final = 4
@@ -87,39 +89,94 @@ def met_lights(
 
 
 @struct
-class Start:
-    """A ray from a surface.
+class Vertex:
+    """A place on a surface where a path turns.
 
     Attributes:
-        ray: The ray.
-        way: How far from the surface it starts.
+        t: How far the path came on its last ray.
+        p: The place.
+        n: The unit normal on the side that the path came from.
+        side: 1 if that is the outside, -1 if it is the inside.
+        slope: |gradient| of the field.
+        part: The part of a table that has the surface; -1 for other surfaces.
+        surface: The material.
     """
 
-    ray: Ray
-    way: float
+    t: float
+    p: vec3
+    n: vec3
+    side: float
+    slope: float
+    part: int
+    surface: Surface
 
 
 @func
-def start_from(field: Field3, point: SurfacePoint, direction: vec3) -> Start:
-    """Return the ray from a surface in a direction, on either side.
+def vertex_at(
+    ray: Ray,
+    hit: Hit,
+    field_of: Callable[[vec3, int], float],
+    surface: Callable[[vec3, Footprint, int], Surface],
+    cone: Cone,
+    numbers: March,
+    normals: int,
+    normal_step: float,
+) -> Vertex:
+    """Return the place where a ray met a surface.
 
     Args:
-        field: Signed distance.
-        point: The surface; ``t`` is the length of the ray that hit it.
-        direction: Unit direction.
+        ray: Ray.
+        hit: Where it ended, at a surface.
+        field_of: Signed distance near a surface of a part (``Hit.part``).
+        surface: The material at a point of a part, averaged over a footprint.
+        cone: The cone of the ray.
+        numbers: The parameters of the march.
+        normals: The method for normals; a constant of ``normals``.
+        normal_step: As for ``facing_normal``.
     """
-    rise = dot(direction, point.n)
-    goes = select((rise > 0.0) == point.inside, -1.0, 1.0)
-    way = way_off(field, Ray(point.p, direction), goes, point.slope * abs(rise), point.t)
-    return Start(Ray(point.p + way * direction, direction), way)
+
+    def field(q: vec3) -> float:
+        return field_of(q, hit.part)
+
+    place = landing(field, ray, hit)
+    n = hit.side * place.n
+    if normals != EXACT:
+        n = facing_normal(field, ray, hit, numbers, normals, normal_step)
+    material = surface(place.p, footprint_at(cone, ray.direction, place.t, n), hit.part)
+    return Vertex(place.t, place.p, n, hit.side, place.slope, hit.part, material)
+
+
+@struct
+class Start:
+    """A ray from a surface, as ``RayFunctions.next_hit`` takes it.
+
+    Attributes:
+        ray: The ray.
+        side: 1 if it runs outside, -1 inside.
+        slope: How fast the field grows along it.
+        part: The part of a table that has the surface; -1 for other surfaces.
+    """
+
+    ray: Ray
+    side: float
+    slope: float
+    part: int
+
+
+@func
+def start_from(vertex: Vertex, direction: vec3) -> Start:
+    """Return the ray from a surface in a direction, on either side."""
+    rise = dot(direction, vertex.n)
+    side = select(rise > 0.0, vertex.side, -vertex.side)
+    slope = max(vertex.slope * abs(rise), FLATTEST)
+    return Start(Ray(vertex.p, direction), side, slope, vertex.part)
 
 
 @func
 def light_on(
-    point: SurfacePoint,
+    vertex: Vertex,
     view: vec3,
-    next_hit: Callable[[Ray], Hit],
-    field: Field3,
+    next_hit: Callable[[Ray, float, float, int], Hit],
     lights: Callable[[int, vec3], LightSample],
     light_count: int,
     stream: Stream,
@@ -128,10 +185,9 @@ def light_on(
     """Return the light of one of the lights, chosen at random, that a surface sends to the eye.
 
     Args:
-        point: The surface.
+        vertex: The surface.
         view: Unit direction to the eye.
-        next_hit: The first surface along a ray that starts on a surface.
-        field: Signed distance.
+        next_hit: The next surface along a ray from a surface.
         lights: The light with a given index, from 0, at a point.
         light_count: How many lights there are, at least one.
         stream: The random numbers of the path.
@@ -139,26 +195,23 @@ def light_on(
     """
     count = float(light_count)
     which = min(int(single(stream, decision + WHICH_LIGHT) * count), light_count - 1)
-    light = sample_light(lights(which, point.p), pair(stream, decision + PLACE_ON_LIGHT))
-    found = respond(point.surface, view, light.direction, point.n, point.inside)
+    light = sample_light(lights(which, vertex.p), pair(stream, decision + PLACE_ON_LIGHT))
+    found = respond(vertex.surface, view, light.direction, vertex.n, vertex.side < 0.0)
     color = found.value * light.weight * count
-    lost = False
-    if brightest(color) > 0.0:
-        start = start_from(field, point, light.direction)
-        hit = next_hit(start.ray)
-        lost = hit.lost != PASSED
-        is_open = not hit.found or hit.t + start.way > light.distance
-        shared = power_share(light.density / count, found.density)
-        color = color * select(is_open and hit.side > 0.0, shared, 0.0)
-    return Lit(color, lost)
+    start = start_from(vertex, light.direction)
+    if brightest(color) <= 0.0 or start.side < 0.0:
+        return Lit(vec3(0.0), False)
+    hit = next_hit(start.ray, start.side, start.slope, start.part)
+    is_open = not hit.found or hit.t >= light.distance
+    shared = power_share(light.density / count, found.density)
+    return Lit(color * select(is_open, shared, 0.0), hit.lost != PASSED)
 
 
 @func
 def path_light(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
-    next_hit: Callable[[Ray], Hit],
-    field: Field3,
+    next_hit: Callable[[Ray, float, float, int], Hit],
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
     lights: Callable[[int, vec3], LightSample],
@@ -179,8 +232,8 @@ def path_light(
     Args:
         ray: Ray.
         first_hit: The first surface along a ray of the camera.
-        next_hit: The first surface along a ray that starts on a surface.
-        field: Signed distance.
+        next_hit: The next surface along a ray from a surface, by its side, the slope with which it
+            leaves the surface, and the part that has this surface.
         field_of: Signed distance near a surface of a part (``Hit.part``).
         surface: The material at a point of a part, averaged over a footprint.
         lights: The light with a given index, from 0, at a point.
@@ -204,48 +257,42 @@ def path_light(
     throughput = vec3(1.0)
     alpha = 0.0
     lost = 0
-    start = Start(ray, 0.0)
+    start = Start(ray, 0.0, 0.0, -1)
     width = cone
     seen = True  # only mirrors and clear glass are between the camera and the ray
     chosen = 0.0  # the density of the ray's direction; 0 if it was the only possible one
     for i in range(MOST_SEGMENTS):
         decision = CAMERA_DECISIONS + DECISIONS * i
         here = start.ray
-        hit = first_hit(here) if i == 0 else next_hit(here)
-        lost = merged(lost, merged(reason(hit.lost), select(i == 0 and hit.side < 0.0, INSIDE, 0)))
-        met = UNBOUNDED
-        if hit.found:
-            met = at_surface(field, here, hit, numbers)
-        if not seen and hit.side > 0.0:
-            color += throughput * met_lights(here, met, chosen, lights, light_count)
+        hit = first_hit(here) if i == 0 else next_hit(here, start.side, start.slope, start.part)
+        inside = hit.side < 0.0
+        lost = merged(lost, merged(reason(hit.lost), select(i == 0 and inside, INSIDE, 0)))
+        if not seen and not inside:
+            length = hit.t if hit.found else UNBOUNDED
+            color += throughput * met_lights(here, length, chosen, lights, light_count)
         if not hit.found:
-            if hit.side < 0.0:
-                alpha = ALL_INSIDE if i == 0 else alpha
-            else:
-                color += throughput * (
-                    background(here.direction) if seen else around(here.direction)
-                )
+            if not inside:
+                far = background(here.direction) if seen else around(here.direction)
+                color += throughput * far
+            elif i == 0:
+                alpha = ALL_INSIDE
             break
         alpha = 1.0
-        found = surface_point(here, hit, field_of, surface, width, numbers, normals, normal_step)
-        point = SurfacePoint(
-            met, found.inside, here.origin + met * here.direction, found.n, found.surface,
-            found.shares, found.slope,
-        )  # fmt: skip
-        if point.inside:
-            throughput = throughput * exp(-point.surface.absorption * (met + start.way))
+        vertex = vertex_at(here, hit, field_of, surface, width, numbers, normals, normal_step)
+        material = vertex.surface
+        if inside:
+            throughput = throughput * exp(-material.absorption * vertex.t)
         else:
-            clear = exp(-look.fog_density * met)
-            lit = (1.0 - clear) * fog(here.direction) + clear * emitted(point.surface, point.inside)
-            color += throughput * lit
+            clear = exp(-look.fog_density * vertex.t)
+            emission = emitted(material, inside)
+            color += throughput * mix(fog(here.direction), emission, clear)
             throughput = throughput * clear
         view = -here.direction
-        if light_count > 0 and not all_specular(point.surface):
-            direct = light_on(point, view, next_hit, field, lights, light_count, stream, decision)
+        if light_count > 0 and not all_specular(material):
+            direct = light_on(vertex, view, next_hit, lights, light_count, stream, decision)
             color += throughput * direct.color
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
-        u = triple(stream, decision + DIRECTION)
-        onward = sample(point.surface, view, point.n, point.inside, u)
+        onward = sample(material, view, vertex.n, inside, triple(stream, decision + DIRECTION))
         throughput = throughput * onward.weight
         likely = 1.0
         if i >= SURE:
@@ -255,6 +302,6 @@ def path_light(
         throughput = throughput / likely
         chosen = onward.density
         seen = seen and onward.specular
-        start = start_from(field, point, onward.direction)
-        width = continued(width, met)
+        start = start_from(vertex, onward.direction)
+        width = continued(width, vertex.t)
     return vec4(color, marked(alpha, lost, counted))
