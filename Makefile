@@ -45,15 +45,17 @@ lint: $(VENV)/.setup-test
 	$(BIN)/lint-imports
 
 # Generated files are proved fresh by tests beside the rest, so that one run names every fault.
+# A worker begins with a half of the files, and so compiles few programs that another compiles too.
 units: $(VENV)/.setup-test
-	$(BIN)/python -m pytest -n $(WORKERS) -rs
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
 
 bench: $(VENV)/.setup-test
 	@for f in benchmarks/bench_*.py; do echo "== $$f"; $(BIN)/python "$$f" || exit 1; done
 
 sweep: $(VENV)/.setup-test
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
-	DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs tests/pictures/test_targets.py
+	GALLIVM_PERF= DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs \
+		tests/pictures/test_targets.py
 
 sweep-fields: $(VENV)/.setup-test
 	DISTAL_FIELD_SEED=$(or $(SEED),day) DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
@@ -79,7 +81,7 @@ versions: system
 		echo "== Python $$v"; \
 		"python$$v" -m venv "$(VENV)-$$v" && \
 		"$(VENV)-$$v/bin/python" -m pip install --quiet --disable-pip-version-check -e '.[test]' && \
-		"$(VENV)-$$v/bin/python" -m pytest -n $(WORKERS) -rs || exit 1; \
+		"$(VENV)-$$v/bin/python" -m pytest -n $(WORKERS) --dist worksteal -rs || exit 1; \
 	done
 
 clean:
