@@ -54,6 +54,8 @@ bench: $(VENV)/.setup-test
 
 sweep: $(VENV)/.setup-test
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
+	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs \
+		tests/parts tests/smooth tests/tape tests/unit/backends
 	GALLIVM_PERF= DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs \
 		tests/pictures/test_targets.py
 

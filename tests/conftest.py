@@ -6,6 +6,8 @@ import os
 import shutil
 import tempfile
 
+from hypothesis import settings
+
 # Each pass's output is held against the IR's rules; read when distal.compiler.driver is imported.
 os.environ.setdefault("DISTAL_VERIFY", "1")
 
@@ -20,3 +22,8 @@ os.environ.setdefault("GALLIVM_PERF", "nopt")
 
 # The compiler allocates many small objects that live on: each collection finds almost nothing.
 gc.set_threshold(100_000, 20, 50)
+
+# A change is judged by the same random examples today and tomorrow; ``make sweep`` draws others.
+settings.register_profile("same", derandomize=True)
+settings.register_profile("others", derandomize=False)
+settings.load_profile("others" if os.environ.get("DISTAL_RANDOM_PROGRAMS") else "same")
