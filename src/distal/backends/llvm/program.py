@@ -43,8 +43,10 @@ CHUNK_COST = 400
 # latency of each other. Smooth unions have 7, hard unions 13 or more; with 7, a frame took 1.2
 # times as long.
 PARALLEL = 10
-# A function of this cost is called for each vector in any case.
+# A function of this cost is called for each vector in any case, unless it has a loop of more rounds:
+# the function of all parts of a table has the short loops of some kinds.
 LARGE_COST = 3000
+FEW_ROUNDS = 64
 # Arrays are on a thread's stack, with a value for each lane; ``devices.threads`` enlarges it.
 ARRAY_BYTES = 8 * 2**20
 _SMALL_ARRAY_BYTES = 2**18
@@ -238,9 +240,10 @@ class LaneProgram:
         if self._functions[name].apart:
             return True
         cost = self.costs.function(name)
-        if cost < CHUNK_COST or self.costs.rounds_of(name) > 1:
-            return False
-        return cost >= LARGE_COST or cost >= PARALLEL * self._chains.of(name)
+        rounds = self.costs.rounds_of(name)
+        if cost >= LARGE_COST and rounds <= FEW_ROUNDS:
+            return True
+        return cost >= CHUNK_COST and rounds == 1 and cost >= PARALLEL * self._chains.of(name)
 
     # Functions
 
