@@ -325,8 +325,7 @@ class Operator:
     @property
     def repeats(self) -> bool:
         """Whether the child receives the index of its cell."""
-        places = (function for function in (self.point, self.site) if function is not None)
-        return any(signature_types(place)["return"] in (Site, Site2) for place in places)
+        return _repeats(self)
 
     def takes_flat(self, lies: bool) -> bool:
         """Return whether the operator takes flat children.
@@ -338,6 +337,12 @@ class Operator:
         if self.point is not None:
             return signature_types(self.point)["return"] in (vec2, Site2)
         return lies
+
+
+@cache
+def _repeats(operator: Operator) -> bool:
+    places = (f for f in (operator.point, operator.site) if f is not None)
+    return any(signature_types(place)["return"] in (Site, Site2) for place in places)
 
 
 @cache

@@ -23,6 +23,7 @@ from distal.compiler.driver import run_passes
 from distal.devices.base import Kernel
 from distal.diagnostics import DeviceError
 from distal.images.picture import Picture, Provenance
+from distal.ir.collection import paused_collection
 from distal.ir.nodes import Origin, Return
 from distal.ir.types import VEC4
 from distal.lang.composed import Composed
@@ -146,15 +147,16 @@ class PythonExecutor:
             image = sampling.sampled(image)
             options = replace(options, settings={film.SAMPLES: options.samples})
         adaptive = isinstance(image, Composed) and image.adaptive
-        run = self._parts(image)
-        parts = run.parts
-        values, others = _uniforms(run.declared, options)
-        if options.freeze:
-            numbers = run.declared.number_values(options.settings)
-            refined = isinstance(image, Composed) and image.refined
-            kept = film.PASS_NUMBERS if adaptive or refined else ()
-            parts = tuple(part.frozen(numbers, kept) for part in parts)
-        kernels = [self.kernels.kernel(part, device, 32) for part in parts]
+        with paused_collection():
+            run = self._parts(image)
+            parts = run.parts
+            values, others = _uniforms(run.declared, options)
+            if options.freeze:
+                numbers = run.declared.number_values(options.settings)
+                refined = isinstance(image, Composed) and image.refined
+                kept = film.PASS_NUMBERS if adaptive or refined else ()
+                parts = tuple(part.frozen(numbers, kept) for part in parts)
+            kernels = [self.kernels.kernel(part, device, 32) for part in parts]
         moved = _moved(parts[0].resources, values, options.time)
         passes = _Passes(kernels, parts, run.declared, (values, others), options, moved)
         contrast = self._contrast(device) if adaptive else None

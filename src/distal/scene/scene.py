@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from distal.fields.guarantees import Limit
 from distal.frontend import Assembly
+from distal.ir.collection import paused_collection
 from distal.ir.nodes import EntryKind, Param, Read, Return
 from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
@@ -157,10 +158,11 @@ class Scene(Composed, Presentable):
             shape, lights, camera, background, default_material, tone_map, numbers
         )
         made = Dressed(given, as_look(look, place), place, self.__dict__.get("staged"))
-        standing = floor if floor is not None else made.wants_floor(named=look is not None)
-        self.shape = made.shown_shape(floor=standing)
-        self.subject = made.shape  # without the look's floor
-        check_cells(self.shape.node)
+        with paused_collection():  # it would traverse all parts
+            standing = floor if floor is not None else made.wants_floor(named=look is not None)
+            self.shape = made.shown_shape(floor=standing)
+            self.subject = made.shape  # without the look's floor
+            check_cells(self.shape.node)
         self.lights, self.background, self.camera = made.lights, made.background, made.camera
         self.material = made.material
         self.tone_map = one_of("tone map", made.tone_map, tonemap.NAMES, place)

@@ -16,6 +16,7 @@ from distal.fields.combine import joins
 from distal.scene.looks.boxes import subject_box
 from distal.scene.looks.dressing import Dressing
 from distal.scene.looks.look import Look
+from distal.scene.lowering.parts.table import keep_table
 from distal.scene.lowering.union_parts import parts_of
 from distal.scene.objects.backgrounds import Background, Surroundings, as_background
 from distal.scene.objects.cameras import BaseCamera
@@ -99,7 +100,9 @@ class Dressed:
         shape = self.shape
         ground = self._unpainted_ground() if self._given.material is None else set()
         if ground:
-            shape = BaseShape._of(_painted(shape.node, ground, self._dressing.ground))
+            painted = _painted(shape.node, ground, self._dressing.ground)
+            keep_table(shape.node, painted)
+            shape = BaseShape._of(painted)
         return shape.union(self._dressing.floor) if floor else shape
 
     def _unpainted_ground(self) -> set[int]:
@@ -173,7 +176,7 @@ class Dressed:
 
 
 def _is_painted(root: Node) -> bool:
-    return any(node.material is not None for node in root.walk())
+    return root.material is not None or any(node.material is not None for node in root.walk())
 
 
 def _painted(node: Node, parts: set[int], material: Material) -> Node:

@@ -20,12 +20,13 @@ from distal.scene.tree.source_places import author_place
 
 def _make(primitive: Primitive) -> type[BaseShape]:
     """Make the class of one primitive."""
-    base: type[BaseShape] = Shape2D if primitive.flat else Shape
+    flat = primitive.flat
+    base: type[BaseShape] = Shape2D if flat else Shape
 
     def initialise(self: BaseShape, *args: Any, **kwargs: Any) -> None:
         place = author_place()
         numbers, constants = bound(primitive, args, kwargs, place)
-        BaseShape.__init__(self, Node(primitive, primitive.flat, (), numbers, constants, place))
+        BaseShape.__init__(self, Node(primitive, flat, (), numbers, constants, place))
 
     hidden = {"p", "cell", *primitive.measured}
     python = inspect.signature(primitive.distance.python_function)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final, Protocol
 
 from distal.diagnostics import Span
@@ -115,9 +116,11 @@ class FunctionCall(Immutable):
     @property
     def uses(self) -> frozenset[str]:
         """Which of ``PLACE_NAMES`` the call or its values depend on."""
-        own = {slot.name for slot in slots_of(self.func)} - set(self.values)
-        nested = (value.uses for value in self.values.values() if hasattr(value, "uses"))
-        return PLACE_NAMES & own.union(*nested)
+        found = _own_uses(self.func, tuple(self.values))
+        for value in self.values.values():
+            if type(value) is not Number and hasattr(value, "uses"):
+                found |= value.uses
+        return found
 
     @property
     def result(self) -> Type | None:
@@ -135,6 +138,12 @@ class FunctionCall(Immutable):
 _set_what, _set_func, _set_values, _set_place = (
     vars(FunctionCall)[name].__set__ for name in ("what", "func", "values", "place")
 )
+
+
+@lru_cache(maxsize=1024)
+def _own_uses(func: Func, given: tuple[str, ...]) -> frozenset[str]:
+    """Return which of ``PLACE_NAMES`` a function takes besides the given values."""
+    return PLACE_NAMES & ({slot.name for slot in slots_of(func)} - set(given))
 
 
 def result_of(func: Func) -> Type | None:

@@ -218,6 +218,10 @@ class Node:
         found: Derived = known[name]
         return found
 
+    def known(self, name: str) -> Any:
+        """Return what ``derived`` made under a name; None if it has not."""
+        return None if self._derived is None else self._derived.get(name)
+
     def walk(self) -> Iterator[Node]:
         """Yield this node and all below it, each once, parents first."""
         seen: set[int] = set()

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Final
 
 from distal.fields.combine.joins import UNION
 from distal.fields.deform.offsets import OFFSET, ROUND
-from distal.fields.guarantees import Guarantee, Operator
+from distal.fields.guarantees import Guarantee, Operator, Primitive
 from distal.fields.place.flat import SCALE_FLAT
 from distal.fields.place.solid import SCALE, TRANSLATE
 from distal.fields.repeat.along import REPEAT_AT
@@ -90,8 +91,12 @@ def _wrapped(operator: Node, above: Callable[[Node], Node]) -> Callable[[Node], 
 
 def _passes(node: Node) -> bool:
     """Return whether an operator on a union is the union of the operator on its members."""
-    rule = node.rule
-    if not isinstance(rule, Operator) or len(node.children) != 1 or rule.around is not None:
+    return _passes_unions(node.rule) and len(node.children) == 1
+
+
+@lru_cache(maxsize=1024)
+def _passes_unions(rule: Primitive | Operator) -> bool:
+    if not isinstance(rule, Operator) or rule.around is not None:
         return False
     moves_only = rule.slope is None and rule.finish is None and not rule.repeats
     return rule in RISING or (moves_only and Guarantee.LOWER_BOUND in rule.keeps)
@@ -107,6 +112,10 @@ def _unites(node: Node) -> bool:
 
 def member_count(root: Node) -> int:
     """Return about how many parts a tree has: its own, and the copies of repetitions."""
+    return root.derived("member count", lambda: _member_count(root))
+
+
+def _member_count(root: Node) -> int:
     count, stack = root.parts, [root]
     while stack:
         node = stack.pop()

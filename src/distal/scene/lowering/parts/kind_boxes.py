@@ -6,8 +6,10 @@ places where a part may be at any time and for any values of the parameters.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import chain
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.parts.kinds import PartKind
+from distal.scene.tree.conversion import Plain
 from distal.scene.tree.values import StatementList, Values
 
 Floats = NDArray[np.float64]
@@ -76,7 +79,16 @@ def swept_bounds_of(kind: PartKind) -> KindBounds:
 
 def columns_of(kind: PartKind) -> list[Floats]:
     """Return the columns of a kind's table: arrays (n,) or (n, components)."""
-    return [np.array(column, np.float64) for column in zip(*kind.values, strict=True)]
+    columns = zip(kind.columns, zip(*kind.values, strict=True), strict=True)
+    return [_array(column.floats, values) for column, values in columns]
+
+
+def _array(floats: int, values: Sequence[Plain]) -> Floats:
+    """Return one row of floats for each value, or a number for each if they have one float."""
+    if floats == 1:
+        return np.array(values, np.float64)
+    flat = chain.from_iterable(cast("Sequence[tuple[float, ...]]", values))
+    return np.fromiter(flat, np.float64, floats * len(values)).reshape(-1, floats)
 
 
 class BoxOfKind(Composed):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from distal.fields.guarantees import Operator, Primitive
 from distal.frontend import Assembly
@@ -21,7 +21,7 @@ from distal.scene.lowering.parts.flatten import UnionMember
 from distal.scene.lowering.parts.lifted import ConstantLifter, with_values
 from distal.scene.tree.calls import COLUMN, FunctionCall
 from distal.scene.tree.conversion import Number, Plain
-from distal.scene.tree.node import Node
+from distal.scene.tree.node import Node, Rule
 
 # A row begins with the number of its kind and that of the part among those of the kind.
 HEAD: Final = 2
@@ -115,58 +115,93 @@ class PartKind:
 
 def kinds_of(members: Sequence[UnionMember]) -> list[PartKind]:
     """Return the kinds of parts, in the order of the first part of each."""
-    structures = _Structures()
-    grouped: dict[int, list[UnionMember]] = {}
+    reader = _StructureReader()
+    grouped: dict[Hashable, tuple[list[UnionMember], list[list[Number]]]] = {}
     for member in members:
-        grouped.setdefault(structures.key(member.part), []).append(member)
-    return [_kind(group) for group in grouped.values()]
+        structure, numbers = reader.read(member.part)
+        group = grouped.get(structure)
+        if group is None:
+            group = grouped[structure] = ([], [])
+        group[0].append(member)
+        group[1].append(numbers)
+    return [_kind(*group) for group in grouped.values()]
 
 
-class _Structures:
-    """Numbers that are equal for trees which differ only in plain numbers."""
+class _StructureReader:
+    """Reads trees once: their structure without plain numbers, and their numbers.
+
+    A structure is a flat sequence in the order of the tree. Each list in it begins with its length,
+    so that equal sequences are equal trees.
+    """
 
     def __init__(self) -> None:
-        self._known: dict[Hashable, int] = {}
-        self._of_object: dict[int, int] = {}
         self._lifter = ConstantLifter()
+        self._rules: dict[Rule, Hashable] = {}
+        self._known: dict[Hashable, int] = {}
 
-    def key(self, value: Any) -> int:
-        """Return the number of the structure of a node, a material or one of its values."""
-        found = self._of_object.get(id(value))
-        if found is None:
-            found = self._known.setdefault(self._structure(value), len(self._known))
-            self._of_object[id(value)] = found
-        return found
+    def read(self, part: Node) -> tuple[Hashable, list[Number]]:
+        """Return the structure of a tree, and its numbers in the order of the tree."""
+        structure: list[Hashable] = []
+        numbers: list[Number] = []
+        self._node(part, structure, numbers)
+        return tuple(structure), numbers
 
-    def _structure(self, value: Any) -> Hashable:
-        match value:
-            case Node():
-                numbers = tuple((n, self._number(v)) for n, v in value.numbers.items())
-                constants = tuple((n, _constant(v)) for n, v in value.constants.items())
-                paints = tuple(
-                    None if m is None else self.key(m) for m in (value.material, value.cut_material)
-                )
-                children = tuple(map(self.key, value.children))
-                return (_rule(value.rule), numbers, constants, paints, children)
-            case FunctionCall():
-                values = tuple((n, self._value(v)) for n, v in value.values.items())
-                return (type(value), id(value.func), values)
-            case _ if (call := _call_of(value)) is not None:
-                return (type(value), self.key(call))
-            case _:
-                return (type(value), id(value))
+    def _node(self, node: Node, structure: list[Hashable], numbers: list[Number]) -> None:
+        rule, constants, children = node.rule, node.constants, node.children
+        if rule not in self._rules:
+            # Rules that are equal in all that matters have one number.
+            self._rules[rule] = self._known.setdefault(_rule(rule), len(self._known))
+        structure += (self._rules[rule], len(node.numbers), len(constants), len(children))
+        for name, number in node.numbers.items():
+            self._number(name, number, structure, numbers)
+        for name, value in constants.items():
+            structure += (name, _constant(value))
+        for material in (node.material, node.cut_material):
+            if material is None:
+                structure.append(None)
+            else:
+                self._value(material, structure, numbers)
+        for child in children:
+            self._node(child, structure, numbers)
 
-    def _value(self, value: Any) -> Hashable:
-        if isinstance(value, Number):
-            return self._number(value)
-        return _constant(value) if isinstance(value, bool | int) else self.key(value)
+    def _number(
+        self, name: str, number: Number, structure: list[Hashable], numbers: list[Number]
+    ) -> None:
+        """Read a number: its type, with the structure of an expression.
 
-    def _number(self, number: Number) -> Hashable:
-        """Return the type of a plain number, with the structure of an expression."""
-        if isinstance(number.value, Expression):
-            structure = self._lifter.split(number.value.node)[0]
-            return (number.type, structure, number.value.parameters)
-        return number.type
+        Args:
+            name: Its name.
+            number: The number.
+            structure: Where the structure is appended.
+            numbers: Where the number is appended.
+        """
+        numbers.append(number)
+        value = number.value
+        if isinstance(value, Expression):
+            structure += (name, number.type, self._lifter.split(value.node)[0], value.parameters)
+        else:
+            structure += (name, number.type)
+
+    def _value(self, value: Any, structure: list[Hashable], numbers: list[Number]) -> None:
+        """Read a material, or another object among the values of a call."""
+        if isinstance(value, Node):
+            structure.append(Node)
+            self._node(value, structure, numbers)
+            return
+        structure.append(type(value))
+        call = value if isinstance(value, FunctionCall) else _call_of(value)
+        if call is None:
+            structure.append(id(value))
+            return
+        structure += (type(call), id(call.func), len(call.values))
+        for name, inner in call.values.items():
+            if isinstance(inner, Number):
+                self._number(name, inner, structure, numbers)
+            elif isinstance(inner, bool | int):
+                structure += (name, _constant(inner))
+            else:
+                structure.append(name)
+                self._value(inner, structure, numbers)
 
 
 def _call_of(value: Any) -> FunctionCall | None:
@@ -175,7 +210,7 @@ def _call_of(value: Any) -> FunctionCall | None:
     return call if isinstance(call, FunctionCall) else None
 
 
-def _rule(rule: Primitive | Operator) -> Hashable:
+def _rule(rule: Rule) -> Hashable:
     """Return what distinguishes a rule; shapes of one author's function have rules of their own."""
     if isinstance(rule, Operator):
         return id(rule)
@@ -190,18 +225,17 @@ def _constant(value: Any) -> Hashable:
     return (getattr(value, "type", None), plain) if plain is not None else id(value)
 
 
-def _kind(members: Sequence[UnionMember]) -> PartKind:
+def _kind(members: Sequence[UnionMember], every: Sequence[Sequence[Number]]) -> PartKind:
+    """Return the kind of these parts; ``every`` has the numbers of each."""
     lifter = ConstantLifter()
-    every = [list(numbers_in(member.part)) for member in members]
     columns: list[Column] = []
     numbers: dict[int, ColumnNumber] = {}
     values: list[Sequence[Plain]] = []
     width = HEAD
-    for i in range(len(every[0])):
-        own = [row[i] for row in every]
+    for i, own in enumerate(zip(*every, strict=True)):
         places: list[int | None] = []
         for type, found in _candidates(own, lifter):
-            if all(value == found[0] for value in found):
+            if found.count(found[0]) == len(found):
                 places.append(None)
                 continue
             size = type.size if isinstance(type, Vector) else 1
@@ -233,30 +267,14 @@ def _candidates(
     numbers: Sequence[Number], lifter: ConstantLifter
 ) -> Iterator[tuple[Type, Sequence[Plain]]]:
     """Yield the values of one number of all parts that may be a column: type, one value a part."""
+    # The structure of the parts says whether it is an expression in all of them.
+    if not isinstance(numbers[0].value, Expression):
+        yield numbers[0].type, cast("list[Plain]", [n.value for n in numbers])
+        return
     nodes = [n.value.node for n in numbers if isinstance(n.value, Expression)]
-    if not nodes:
-        yield numbers[0].type, [n.value for n in numbers if not isinstance(n.value, Expression)]
-    elif any(node is not nodes[0] for node in nodes):
+    if any(node is not nodes[0] for node in nodes):
         for values in zip(*(lifter.split(node)[1] for node in nodes), strict=True):
             yield FLOAT, values
-
-
-def numbers_in(value: Any) -> Iterator[Number]:
-    """Yield the numbers of a tree and of its materials, in an order that its structure decides."""
-    match value:
-        case Number():
-            yield value
-        case Node():
-            yield from value.numbers.values()
-            for material in (value.material, value.cut_material):
-                yield from numbers_in(material)
-            for child in value.children:
-                yield from numbers_in(child)
-        case FunctionCall():
-            for inner in value.values.values():
-                yield from numbers_in(inner)
-        case _ if (call := _call_of(value)) is not None:
-            yield from numbers_in(call)
 
 
 class _Copying:
@@ -272,7 +290,7 @@ class _Copying:
         return found
 
     def node(self, node: Node) -> Node:
-        """Return the copy of a node; visits numbers in the order of ``numbers_in``."""
+        """Return the copy of a node; visits numbers in the order of ``_StructureReader``."""
         numbers = {name: self._number(value) for name, value in node.numbers.items()}
         material, cut = self._value(node.material), self._value(node.cut_material)
         children = tuple(map(self.node, node.children))

@@ -96,8 +96,8 @@ def rows_of(kinds: Sequence[PartKind]) -> Rows:
         )
         fits = np.ones(len(kind.members), bool)
         for reason, keeps in rules:
-            lost = [m for m, ok in zip(kind.members, keeps | ~fits, strict=True) if not ok]
-            refused |= {id(member): reason for member in lost}
+            for i in np.flatnonzero(fits & ~keeps):
+                refused[id(kind.members[i])] = reason
             fits &= keeps
         if fits.any():
             held.append(_chosen(kind, fits))

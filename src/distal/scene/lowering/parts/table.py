@@ -22,6 +22,7 @@ from distal.scene.lowering.parts.flatten import UnionMember, member_count, membe
 from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.lowering.smooth.cells import celled_for
+from distal.scene.lowering.union_parts import parts_of
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ ENDLESS_SLOPE: Final = (
 )
 RARE: Final = f"there are more than {MOST_KINDS} kinds of parts"
 
+_TABLE: Final = "table"  # the name under which a tree keeps its ``Rolled``
 # The rule of a node that stands for all parts of a table; its children are one tree of each kind.
 PARTS: Final = Operator("parts", keeps=EXACT_OUTSIDE)
 
@@ -109,7 +111,33 @@ class Rolled:
 
 def rolled(root: Node) -> Rolled:
     """Return a tree with a table of the parts that its root unites, if there are many."""
-    return root.derived("table", lambda: _rolled(root))
+    return root.derived(_TABLE, lambda: _rolled(root))
+
+
+def keep_table(root: Node, changed: Node) -> None:
+    """Let a tree in which parts beside the table have other materials use the same table.
+
+    Args:
+        root: A tree. If it has no table yet, nothing is kept.
+        changed: The tree with other nodes in place of some parts.
+    """
+    found: Rolled | None = root.known(_TABLE)
+    if found is None or found.table is None or any(r is RARE for _, r in found.beside):
+        return
+    pairs = zip(parts_of(root), parts_of(changed), strict=True)
+    others = {id(old): new for old, new in pairs if old is not new}
+    beside = []
+    for member, reason in found.beside:
+        new = others.pop(id(member.source), None)
+        if new is not None and (member.part is not member.source or member.repetition is not None):
+            return
+        beside.append((member if new is None else UnionMember(new, new), reason))
+    if others:
+        return  # a part in the table has changed
+    table, _ = split_table(found.node)
+    assert table is not None
+    node = _with_table(changed, table, beside)
+    changed.derived(_TABLE, lambda: Rolled(node, found.table, beside))
 
 
 def _rolled(root: Node) -> Rolled:
@@ -177,10 +205,15 @@ def _roll(root: Node) -> Rolled:
     table = found.table()
     beside = _whole([(m, reasons[id(m)]) for m in members if id(m) in reasons])
     made: dict[str, Any] = {"children": tuple(k.node for k in table.kinds), "table": table}
-    node: Node = TableNode(PARTS, root.flat, place=root.place, **made)
-    if beside:
-        node = Node(UNION, root.flat, (node, *(m.part for m, _ in beside)), place=root.place)
-    return Rolled(node, table, beside)
+    node = TableNode(PARTS, root.flat, place=root.place, **made)
+    return Rolled(_with_table(root, node, beside), table, beside)
+
+
+def _with_table(root: Node, table: TableNode, beside: Sequence[tuple[UnionMember, str]]) -> Node:
+    """Return the union of a table and of what is beside it."""
+    if not beside:
+        return table
+    return Node(UNION, root.flat, (table, *(m.part for m, _ in beside)), place=root.place)
 
 
 def _whole(beside: Sequence[tuple[UnionMember, str]]) -> list[tuple[UnionMember, str]]:
