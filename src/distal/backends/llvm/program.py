@@ -43,8 +43,8 @@ CHUNK_COST = 400
 # latency of each other. Smooth unions have 7, hard unions 13 or more; with 7, a frame took 1.2
 # times as long.
 PARALLEL = 10
-# A function of this cost is called for each vector in any case, unless it has a loop of more rounds:
-# the function of all parts of a table has the short loops of some kinds.
+# A function of this cost is called for each vector in any case, unless it has a loop of more
+# rounds. The function of all parts of a table has the short loops of some kinds.
 LARGE_COST = 3000
 FEW_ROUNDS = 64
 # Arrays are on a thread's stack, with a value for each lane; ``devices.threads`` enlarges it.

@@ -72,9 +72,9 @@ def bound(
             data = given[texture]
             assert isinstance(data, Texture2D)
             given[name] = Number(VEC2, measuring.largest_rise(data, rule.name, place))
+    if all([type(value) is Number for value in given.values()]):
+        return given, {}
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
-    if len(numbers) == len(given):
-        return numbers, {}
     constants = {name: value for name, value in given.items() if name not in numbers}
     return numbers, constants
 

@@ -137,26 +137,49 @@ def plain_number(
         limit: The limit of each number.
         is_color: Whether components must not be negative.
     """
-    if is_plain_scalar(value):
-        if type_ is not FLOAT or not -LARGEST_FLOAT <= value <= LARGEST_FLOAT:
+    plain: Plain | None
+    if type_ is FLOAT:
+        plain = plain_float(value, limit)
+        if is_color and plain is not None and plain < 0.0:
             return None
-        plain: Plain = float(value)
-    elif type(value) in _SEQUENCES:
-        if not isinstance(type_, Vector) or type_.kind is not Kind.FLOAT:
-            return None
-        if len(value) != type_.size or not all([is_plain_scalar(c) for c in value]):
-            return None
-        if not all([-LARGEST_FLOAT <= c <= LARGEST_FLOAT for c in value]):
-            return None
-        plain = tuple(map(float, value))
+    elif isinstance(type_, Vector) and type_.kind is Kind.FLOAT:
+        plain = plain_floats(value, type_.size, limit, is_color=is_color)
     else:
         return None
-    if is_color and min(components(plain)) < 0.0:
+    return None if plain is None else Number(type_, plain)
+
+
+def plain_float(value: Any, limit: Limit) -> float | None:
+    """Return a float or an int as a float; None if it is another value, or beyond its limit."""
+    if not is_plain_scalar(value) or not -LARGEST_FLOAT <= value <= LARGEST_FLOAT:
         return None
-    if limit is not Limit.ANY and complaint(plain, limit) is not None:
+    kept = True if limit is Limit.ANY else _keeps(limit, value, value, (value,))
+    return float(value) if kept else None
+
+
+def plain_floats(
+    value: Any, size: int, limit: Limit, *, is_color: bool
+) -> tuple[float, ...] | None:
+    """Return a tuple or a list of floats and ints; None if it is another value, or beyond limits.
+
+    Args:
+        value: The value.
+        size: The number of components.
+        limit: The limit of each.
+        is_color: Whether they must not be negative.
+    """
+    if type(value) not in _SEQUENCES or len(value) != size:
         return None
-    assert type_ is not None
-    return Number(type_, plain)
+    for c in value:
+        if not (isinstance(c, float) or type(c) is int) or not -LARGEST_FLOAT <= c <= LARGEST_FLOAT:
+            return None
+    floats = tuple(map(float, value))
+    if limit is Limit.ANY and not is_color:
+        return floats
+    least = min(floats)
+    if is_color and least < 0.0:
+        return None
+    return floats if _keeps(limit, least, max(floats), floats) else None
 
 
 def choice(value: Any, asked: Asked) -> int | bool:
@@ -370,20 +393,30 @@ def _reach(end: str) -> str:
 def complaint(known: Plain, limit: Limit) -> str | None:
     """Return the limit that a number violates, in words, or None."""
     parts = components(known)
-    match limit:
-        case Limit.POSITIVE:
-            kept = all(c > 0.0 for c in parts)
-        case Limit.NOT_NEGATIVE:
-            kept = all(c >= 0.0 for c in parts)
-        case Limit.NOT_ZERO:
-            kept = all(c != 0.0 for c in parts)
-        case Limit.UNIT:
-            kept = abs(math.hypot(*parts) - 1.0) <= _UNIT_TOLERANCE
-        case Limit.FRACTION:
-            kept = all(0.0 <= c <= 1.0 for c in parts)
-        case Limit.ANY:
-            kept = True
-    return None if kept else limit.value
+    return None if _keeps(limit, min(parts), max(parts), parts) else limit.value
+
+
+def _keeps(limit: Limit, least: float, largest: float, parts: Sequence[float]) -> bool:
+    """Return whether numbers are within a limit.
+
+    Args:
+        limit: The limit.
+        least: The least number.
+        largest: The largest number.
+        parts: The numbers.
+    """
+    if limit is Limit.POSITIVE:
+        return least > 0.0
+    if limit is Limit.NOT_NEGATIVE:
+        return least >= 0.0
+    if limit is Limit.FRACTION:
+        return least >= 0.0 and largest <= 1.0
+    if limit is Limit.NOT_ZERO:
+        return 0.0 not in parts
+    if limit is Limit.UNIT:
+        return abs(math.hypot(*parts) - 1.0) <= _UNIT_TOLERANCE
+    assert limit is Limit.ANY, limit
+    return True
 
 
 def _direction_hint(known: Plain, limit: Limit) -> str | None:

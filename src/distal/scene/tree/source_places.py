@@ -53,9 +53,12 @@ _inside: dict[str, bool] = {}
 def author_place() -> Span | None:
     """Return the innermost call outside this package, or None if there is none."""
     frame: FrameType | None = sys._getframe(1)
-    while frame is not None and _is_inside(frame):
+    while frame is not None:
+        inside = _inside.get(frame.f_code.co_filename)
+        if not (_is_inside(frame) if inside is None else inside):
+            return _span(frame)
         frame = frame.f_back
-    return None if frame is None else _span(frame)
+    return None
 
 
 def _is_inside(frame: FrameType) -> bool:
