@@ -36,6 +36,14 @@ class _BlockUses:
     whole: dict[str, int] = field(default_factory=lambda: defaultdict(int))
     partial: set[str] = field(default_factory=set)
     inner: list[_BlockUses] = field(default_factory=list)
+    _exposed: set[str] | None = None
+
+    @property
+    def exposed(self) -> set[str]:
+        """The names that the block may read before it assigns them."""
+        if self._exposed is None:
+            self._exposed = exposed_reads(self.statements)
+        return self._exposed
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +217,7 @@ def _place(block: _BlockUses, name: str, blocks: dict[int, list[BlockLocal]]) ->
     """Find the innermost block for a name, or several blocks if their uses are independent."""
     direct = name in block.reads or name in block.whole or name in block.partial
     holders = [inner for inner in block.inner if _mentions(inner, name)]
-    separate = all(name not in exposed_reads(h.statements) for h in holders)
+    separate = all(name not in h.exposed for h in holders)
     if direct or not (len(holders) == 1 or separate):
         sites = list(_sites(block, name))
         once = sites == [block] and not _partly(block, name)
@@ -275,8 +283,11 @@ def _flow(statements: list[ast.stmt]) -> tuple[set[str], set[str] | frozenset[st
 
 def _loads(node: ast.AST) -> set[str]:
     """Return the names that are read; assigning to a part, or ``+=``, also reads the name."""
-    loads = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
-    return loads - (_whole_targets(node) - _reads_in(node))
+    names = [n for n in ast.walk(node) if isinstance(n, ast.Name)]
+    targets = _whole_targets(node)
+    if targets:
+        targets -= {n.id for n in names if isinstance(n.ctx, ast.Load)}
+    return {n.id for n in names} - targets
 
 
 def _whole_targets(node: ast.AST) -> set[str]:
@@ -296,8 +307,3 @@ def _flat_targets(target: ast.expr) -> Iterator[ast.expr]:
             yield from _flat_targets(element)
     else:
         yield target
-
-
-def _reads_in(node: ast.AST) -> set[str]:
-    """Return the names that a statement reads in its value or in a target such as ``a[i]``."""
-    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import assert_never
+from operator import attrgetter
+from typing import Any, Final, assert_never, get_args
 
 from distal.ir.contents import append_unseen, contents, nodes_of
 from distal.ir.nodes import (
@@ -86,40 +87,43 @@ def nodes_in(*roots: Expr) -> Sequence[Expr]:
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
     """Return the expressions directly in a statement (including the target of an Assign)."""
-    match stmt:
-        case Let(_, value) | Var(_, value) | Return(value):
-            return (value,)
-        case Assign(target, value):
-            return (target, value)
-        case If(condition) | While(condition):
-            return (condition,)
-        case For(_, start, stop):
-            return (start, stop)
-        case Break() | Continue():
-            return ()
-        case _:
-            assert_never(stmt)
+    return _EXPRESSIONS[type(stmt)](stmt)
 
 
 def blocks(stmt: Stmt) -> tuple[tuple[Stmt, ...], ...]:
     """Return the blocks directly inside a statement."""
-    match stmt:
-        case If(_, then, otherwise):
-            return (then, otherwise)
-        case For(_, _, _, _, body) | While(_, body):
-            return (body,)
-        case Let() | Var() | Assign() | Break() | Continue() | Return():
-            return ()
-        case _:
-            assert_never(stmt)
+    found = _BLOCKS.get(type(stmt))
+    return () if found is None else found(stmt)
 
 
-def statements_in(body: tuple[Stmt, ...]) -> Iterator[Stmt]:
-    """Yield every statement of a block and of the blocks inside it, in order."""
+# Tables instead of match statements, as in ``ir.operands``.
+_EXPRESSIONS: Final[dict[type, Callable[[Any], tuple[Expr, ...]]]] = {
+    **dict.fromkeys((Let, Var, Return), lambda s: (s.value,)),
+    Assign: attrgetter("target", "value"),
+    **dict.fromkeys((If, While), lambda s: (s.condition,)),
+    For: attrgetter("start", "stop"),
+    **dict.fromkeys((Break, Continue), lambda s: ()),
+}
+_BLOCKS: Final[dict[type, Callable[[Any], tuple[tuple[Stmt, ...], ...]]]] = {
+    If: attrgetter("then", "otherwise"),
+    **dict.fromkeys((For, While), lambda s: (s.body,)),
+}
+assert set(_EXPRESSIONS) == set(get_args(Stmt)), "a statement without expressions"
+
+
+def statements_in(body: tuple[Stmt, ...]) -> list[Stmt]:
+    """Return every statement of a block and of the blocks inside it, in order."""
+    found: list[Stmt] = []
+    _append_statements(body, found)
+    return found
+
+
+def _append_statements(body: tuple[Stmt, ...], found: list[Stmt]) -> None:
     for stmt in body:
-        yield stmt
-        for block in blocks(stmt):
-            yield from statements_in(block)
+        found.append(stmt)
+        if type(stmt) in _BLOCKS:
+            for block in _BLOCKS[type(stmt)](stmt):
+                _append_statements(block, found)
 
 
 def expressions_in(body: tuple[Stmt, ...]) -> Sequence[Expr]:
@@ -177,11 +181,14 @@ def map_statement(
     span = stmt.span
     match stmt:
         case Let(name, value):
-            return Let(name, expr(value), span=span)
+            mapped = expr(value)
+            return stmt if mapped is value else Let(name, mapped, span=span)
         case Var(name, value):
-            return Var(name, expr(value), span=span)
+            mapped = expr(value)
+            return stmt if mapped is value else Var(name, mapped, span=span)
         case Return(value):
-            return Return(expr(value), span=span)
+            mapped = expr(value)
+            return stmt if mapped is value else Return(mapped, span=span)
         case Assign(target, value):
             return Assign(expr(target), expr(value), span=span)
         case If(condition, then, otherwise):

@@ -184,8 +184,9 @@ class _Inliner:
                 before.append(Let(name, arg, span=callee.function.span))
                 reads[Read(param.name, param.type)] = Read(name, param.type)
         renaming = _Renaming(self._names, reads)
-        before.extend(renaming.block(callee.straight.body))
-        self._mutable.update(_assigned(tuple(before)))
+        inserted = renaming.block(callee.straight.body)
+        before.extend(inserted)
+        self._mutable.update(_assigned(inserted))
         return renaming.expr(callee.straight.value)
 
 

@@ -167,7 +167,9 @@ class _Sharing:
                 bound.add(binding)
                 site, uses = UseSite(binding.region, binding.position), 1
             for operand, lazy in _operands(e):
-                self._use(operand, site._replace(lazy=site.lazy or lazy), uses)
+                self._use(
+                    operand, site._replace(lazy=True) if lazy and not site.lazy else site, uses
+                )
 
     # Decide where a value is bound.
 

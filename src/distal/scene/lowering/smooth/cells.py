@@ -171,7 +171,7 @@ def celled_for(table_from: int | None, root: Node, *, exact: bool) -> Node:
                 union.place,
                 f"without lists, {MOST_WITHOUT:,} shapes are possible",
             )
-    return exact_cells(found.node) if exact else found.node
+    return exact_cells(found.node) if exact and found.grids else found.node
 
 
 def exact_cells(root: Node) -> Node:
