@@ -45,8 +45,8 @@ def timed(stage, function):
 
 
 driver.run_passes = timed("passes", driver.run_passes)
-cpu.emit_for = timed("text", cpu.emit_for)
-cpu.compile_object = timed("llvm", cpu.compile_object)
+cpu.emit_modules = timed("text", cpu.emit_modules)
+cpu.compile_objects = timed("llvm", cpu.compile_objects)
 
 
 def part(i):

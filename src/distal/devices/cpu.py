@@ -11,12 +11,13 @@ import json
 import struct
 import time
 from collections.abc import Callable, Mapping, Sequence
+from itertools import accumulate, pairwise
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.backends.llvm import TARGET, emit_for
+from distal.backends.llvm import TARGET, emit_modules
 from distal.backends.llvm.layout import (
     BATCH,
     FRAME,
@@ -34,7 +35,7 @@ from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
 from distal.devices.features import chosen_level
-from distal.devices.jit import compile_object
+from distal.devices.jit import compile_objects
 from distal.devices.kernel_key import kernel_key
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
@@ -79,8 +80,8 @@ def prepare(
         passes = passes or importlib.import_module("distal.compiler.driver").run_passes
         shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
         with paused_collection():
-            artifact = emit_for(shaped, lanes)
-        kernel = compile_object(artifact.text, level), {**artifact.interface, "lanes": lanes.count}
+            texts, interface = emit_modules(shaped, lanes, most=threads.usable_threads())
+        kernel = compile_objects(texts, level), {**interface, "lanes": lanes.count}
         cache.store(key, _stored(*kernel))
     code, interface = kernel
     lanes = interface["lanes"]
@@ -93,22 +94,24 @@ def prepare(
         "compile_s": time.perf_counter() - started,
     }
     types = {r.name: r.type for r in module.resources}
-    return CpuKernel(Executable(code), interface, precision, lanes, stats, types)
+    return CpuKernel(Executable(*code), interface, precision, lanes, stats, types)
 
 
 # Kernels as bytes of the cache
 
 
-def _stored(code: bytes, interface: dict[str, Any]) -> bytes:
-    header = json.dumps(interface).encode()
-    return struct.pack("<I", len(header)) + header + code
+def _stored(code: Sequence[bytes], interface: dict[str, Any]) -> bytes:
+    header = json.dumps({**interface, "object_sizes": [len(each) for each in code]}).encode()
+    return struct.pack("<I", len(header)) + header + b"".join(code)
 
 
-def _loaded(data: bytes | None) -> tuple[bytes, dict[str, Any]] | None:
+def _loaded(data: bytes | None) -> tuple[Sequence[bytes], dict[str, Any]] | None:
     if data is None:
         return None
     (size,) = struct.unpack_from("<I", data)
-    return data[4 + size :], json.loads(data[4 : 4 + size])
+    interface = json.loads(data[4 : 4 + size])
+    ends = list(accumulate(interface["object_sizes"], initial=4 + size))
+    return [data[a:b] for a, b in pairwise(ends)], interface
 
 
 # Kernels as callable functions

@@ -17,13 +17,18 @@ _LOADER_BYTES: Final = 16 * 2**20
 
 
 class Executable:
-    """An object file loaded into executable memory; the memory is freed with this object."""
+    """Object files loaded into executable memory; the memory is freed with this object.
 
-    def __init__(self, code: bytes) -> None:
+    Args:
+        code: The object files, which may call each other.
+    """
+
+    def __init__(self, *code: bytes) -> None:
         llvm = llvm_binding()
-        require(_LOADER_BYTES + 4 * len(code), "loading machine code")
+        require(_LOADER_BYTES + 4 * sum(map(len, code)), "loading machine code")
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine_here())
-        self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        for each in code:
+            self._engine.add_object_file(llvm.ObjectFileRef.from_data(each))
         self._engine.finalize_object()
 
     def function(self, name: str) -> Callable[[int], None]:

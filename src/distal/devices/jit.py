@@ -5,16 +5,22 @@ Input: a module's text and a feature level. Output: an object file.
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import os
 import subprocess
 import sys
+import threading
+from collections.abc import Sequence
+from concurrent.futures import Future
+from contextlib import suppress
 from functools import cache
 from typing import Any, Final
 
 from distal.devices.features import CpuLevel, level_named
 from distal.devices.features import machine as architecture_here
 from distal.devices.memory_limit import is_limited, require
+from distal.devices.threads import start_threads
 from distal.diagnostics import printable
 from distal.packages import loading
 
@@ -81,6 +87,38 @@ def compile_object(text: str, level: CpuLevel, *, assembly: bool = False) -> Any
     return _compiled(text, level, assembly)
 
 
+def compile_objects(texts: Sequence[str], level: CpuLevel) -> list[bytes]:
+    """Return the object file of each module; they are compiled at the same time.
+
+    Args:
+        texts: The modules in LLVM's language.
+        level: The CPU feature level to compile for.
+
+    Raises:
+        PackageError: LLVM is missing or cannot be loaded.
+        MemoryError: A limit of this process leaves too little memory for LLVM.
+    """
+    if len(texts) == 1 or is_limited():
+        return [compile_object(text, level) for text in texts]
+    llvm_binding()
+    made: list[Future[bytes]] = [Future() for _ in texts]
+
+    def work(i: int) -> None:
+        try:
+            made[i].set_result(_compiled(texts[i], level, False))
+        except BaseException as error:
+            made[i].set_exception(error)
+
+    workers = [threading.Thread(target=work, args=(i,)) for i in range(1, len(texts))]
+    started: list[threading.Thread] = []
+    with suppress(MemoryError):
+        start_threads(workers, started)
+    work(0)
+    for i in range(1 + len(started), len(texts)):
+        work(i)
+    return [each.result() for each in made]
+
+
 def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
     """Compile in a separate process, because LLVM ends its process if it gets no memory."""
     path = os.pathsep.join(filter(None, sys.path))
@@ -118,9 +156,31 @@ def _compiled(text: str, level: CpuLevel, assembly: bool) -> Any:
     machine = llvm.Target.from_triple(triple).create_target_machine(
         cpu=level.cpu, features=features, opt=2, codemodel="jitdefault"
     )
-    module = llvm.parse_assembly(text)
+    # A context of its own: several threads compile at the same time.
+    module = llvm.parse_assembly(text, llvm.create_context())
     module.triple = triple
     module.data_layout = str(machine.target_data)
     manager, builder = _passes(llvm, machine)
-    manager.run(module, builder)
-    return machine.emit_assembly(module) if assembly else machine.emit_object(module)
+    if assembly:
+        manager.run(module, builder)
+        return machine.emit_assembly(module)
+    library = llvm.ffi.lib
+    _unlocked(library.LLVMPY_RunNewModulePassManager)(manager, module, builder)
+    with llvm.ffi.OutputString() as problem:
+        emit = _unlocked(library.LLVMPY_TargetMachineEmitToMemory)
+        buffer = emit(machine, module, 1, problem)
+        if not buffer:
+            raise RuntimeError(str(problem))
+    try:
+        size = library.LLVMPY_GetBufferSize(buffer)
+        return ctypes.string_at(library.LLVMPY_GetBufferStart(buffer), size)
+    finally:
+        library.LLVMPY_DisposeMemoryBuffer(buffer)
+
+
+def _unlocked(function: Any) -> Any:
+    """Return a function of LLVM without llvmlite's lock, which admits one thread at a time.
+
+    LLVM's own rule is that threads use contexts of their own.
+    """
+    return getattr(function, "_cfn", function)

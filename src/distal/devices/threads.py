@@ -84,7 +84,7 @@ def run(
     workers = [threading.Thread(target=worker, daemon=True) for _ in range(count)]
     started: list[threading.Thread] = []
     try:
-        _start(workers, started)
+        start_threads(workers, started)
         _watch(started, work, progress, cancel)
     except BaseException:
         work.stop[0] = 1
@@ -112,7 +112,12 @@ def _checked(threads: int | None) -> int | None:
     return number
 
 
-def _start(workers: list[threading.Thread], started: list[threading.Thread]) -> None:
+def start_threads(workers: list[threading.Thread], started: list[threading.Thread]) -> None:
+    """Start threads with a large stack; those that the system starts are added to ``started``.
+
+    Raises:
+        MemoryError: The system starts none, and ``started`` is empty.
+    """
     with _STARTING:
         previous = threading.stack_size(_STACK_BYTES)
         try:

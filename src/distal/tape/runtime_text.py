@@ -63,4 +63,4 @@ def runtime_text(lanes: Lanes) -> str:
         value_drivers.trace_code,
     ):
         program.define(write(one, program.declarations))
-    return program.text("tape") + "\n!1 = !{i32 1}\n"
+    return program.program("tape").text() + "\n!1 = !{i32 1}\n"

@@ -7,11 +7,17 @@ machine code.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any, Final
+
 from distal.backends.base import Artifact
 from distal.backends.llvm.lanes import Lanes
 from distal.backends.llvm.layout import description
 from distal.ir.nodes import Module
 from distal.ir.target import FramePlace, Target
+
+# The least mean length of the modules of one program, in characters: they take .15 s to compile.
+LEAST_LENGTH: Final = 300_000
 
 TARGET = Target(
     name="llvm",
@@ -28,6 +34,20 @@ TARGET = Target(
 
 def emit_for(module: Module, lanes: Lanes) -> Artifact:
     """Return the LLVM text of a module for one shape of vectors."""
+    (text,), interface = emit_modules(module, lanes, most=1)
+    return Artifact(text, interface)
+
+
+def emit_modules(
+    module: Module, lanes: Lanes, *, most: int
+) -> tuple[Sequence[str], dict[str, Any]]:
+    """Return a module as texts of LLVM modules that are compiled at the same time, and its interface.
+
+    Args:
+        module: The module after the passes.
+        lanes: The shape of vectors.
+        most: The largest number of LLVM modules.
+    """
     # Imported here, because a kernel from the cache needs none of it.
     from distal.backends.llvm.kernels import kernels  # noqa: PLC0415
     from distal.backends.llvm.program import LaneProgram  # noqa: PLC0415
@@ -37,7 +57,7 @@ def emit_for(module: Module, lanes: Lanes) -> Artifact:
     interface = description(module)
     interface["target"] = TARGET.name
     interface["frame_apart"] = frame_apart
-    return Artifact(program.text(module.entry), interface)
+    return program.program(module.entry).texts(most, LEAST_LENGTH), interface
 
 
 def emit(module: Module, target: Target) -> Artifact:
@@ -46,4 +66,4 @@ def emit(module: Module, target: Target) -> Artifact:
     return emit_for(module, Lanes())
 
 
-__all__ = ["TARGET", "Lanes", "emit", "emit_for"]
+__all__ = ["TARGET", "Lanes", "emit", "emit_for", "emit_modules"]

@@ -20,6 +20,7 @@ from distal.backends.llvm.layout import (
     TILE_HEIGHT,
     TILE_WIDTH,
 )
+from distal.backends.llvm.modules import LlvmFunction
 from distal.backends.llvm.pixels import channels, chunk_pixels, interleaved, pixel_address
 from distal.backends.llvm.program import LaneProgram, prologue
 from distal.backends.llvm.storage import Storage
@@ -31,6 +32,8 @@ from distal.ir.types import FLOAT, VEC4, Kind, Scalar
 # The length of the per-frame values that one function computes, in nodes. The time of LLVM's
 # instruction selection grows with the square of a block's stores: 12900 lines took 2.9 s.
 FRAME_LENGTH = 1000
+
+_JOB = (("ptr noalias", "%job"),)
 
 
 def kernels(program: LaneProgram) -> bool:
@@ -49,7 +52,7 @@ def kernels(program: LaneProgram) -> bool:
 
 
 def _define(program: LaneProgram, name: str, writer: LlvmWriter) -> None:
-    program.define(f"define void @{name}(ptr noalias %job) #0 {{\n{writer.text()}\n}}")
+    program.define(LlvmFunction("void", f"@{name}", _JOB, writer.text(), exported=True))
 
 
 def _frame(program: LaneProgram) -> None:
@@ -67,8 +70,7 @@ def _frame(program: LaneProgram) -> None:
             _frame_values(program, part, group)
             part.writer.line("ret void")
             name = f"frame_part.{number}"
-            text = part.writer.text()
-            program.define(f"define internal void @{name}(ptr noalias %job) #0 {{\n{text}\n}}")
+            program.define(LlvmFunction("void", f"@{name}", _JOB, part.writer.text()))
             writer.line(f"call void @{name}(ptr %job)")
     writer.line("ret void")
     _define(program, FRAME, writer)

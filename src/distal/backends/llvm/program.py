@@ -17,6 +17,7 @@ from distal.backends.llvm.costs import LaneCosts
 from distal.backends.llvm.expressions import LaneExpressions
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves, leaf_count, leaf_kinds
 from distal.backends.llvm.layout import JOB_OFFSET, KernelLayout
+from distal.backends.llvm.modules import LlvmFunction, LlvmProgram
 from distal.backends.llvm.statements import Statements
 from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import Uniformity
@@ -78,7 +79,7 @@ class LaneProgram:
             name for f in module.functions for e in roots_in(f.body) for name in contents(e).called
         )
         self._variants: dict[tuple[str, int, tuple[bool, ...], bool], tuple[str, bool]] = {}
-        self._definitions: list[str] = []
+        self._definitions: list[LlvmFunction | str] = []
         self._tables: dict[Leaves, str] = {}
 
     def may_be_long(self) -> bool:
@@ -272,18 +273,18 @@ class LaneProgram:
     ) -> None:
         arithmetic = self.arithmetic(lanes)
         writer = arithmetic.writer
-        params = ["ptr %job"]
+        params = [("ptr", "%job")]
         mask: Mask = None
         if masked:
             mask = tuple(f"%mask{c}" for c in range(lanes.chunks))
-            params += [f"{lanes.vector(Kind.BOOL)} {m}" for m in mask]
+            params += [(lanes.vector(Kind.BOOL), m) for m in mask]
         bound: list[Leaves] = []
         for p, (param, vary) in enumerate(zip(function.params, varying, strict=True)):
             leaves = []
             for i, kind in enumerate(leaf_kinds(param.type)):
                 count = lanes.chunks if vary else 1
                 names = tuple(f"%p{p}.{i}.{c}" for c in range(count))
-                params += [f"{lanes.type(kind, uniform=not vary)} {n}" for n in names]
+                params += [(lanes.type(kind, uniform=not vary), n) for n in names]
                 leaves.append(Leaf(kind, names, not vary))
             bound.append(tuple(leaves))
         prologue(writer)
@@ -301,10 +302,8 @@ class LaneProgram:
         ):
             packed = writer.value(f"insertvalue {returned} {packed}, {type} {name}, {i}")
         writer.line(f"ret {returned} {packed}")
-        self._definitions.append(
-            f"; {function.source_name}\n"
-            f"define internal {returned} {symbol}({', '.join(params)}) #0 {{\n{writer.text()}\n}}"
-        )
+        source = function.source_name
+        self.define(LlvmFunction(returned, symbol, params, writer.text(), comment=source))
 
     def run(
         self,
@@ -339,25 +338,18 @@ class LaneProgram:
 
     # The module
 
-    def define(self, text: str) -> None:
-        """Add a definition."""
-        self._definitions.append(text)
+    def define(self, definition: LlvmFunction | str) -> None:
+        """Add a definition; as a text, only in a program that is one module."""
+        self._definitions.append(definition)
 
-    def text(self, name: str) -> str:
-        """Return the whole LLVM module."""
+    def program(self, name: str) -> LlvmProgram:
+        """Return the whole program."""
         bits = _REGISTER_BITS[self.lanes.level]
         attributes = (
             f'attributes #0 = {{ nounwind "no-builtins" "min-legal-vector-width"="{bits}" '
             f'"prefer-vector-width"="{bits}" }}'
         )
-        parts = (
-            f'source_filename = "{_escaped(name)}"',
-            *self._definitions,
-            *sorted(self.declarations),
-            attributes,
-            "!0 = !{}",
-        )
-        return "\n\n".join(parts) + "\n"
+        return LlvmProgram(_escaped(name), self._definitions, sorted(self.declarations), attributes)
 
 
 def prologue(writer: LlvmWriter) -> None:
