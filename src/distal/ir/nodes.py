@@ -23,6 +23,7 @@ from typing import Any, ClassVar, Final, TypeAlias
 
 from distal.diagnostics import Span
 from distal.ir.interning import Interned, discriminate_number, interned
+from distal.ir.quick_init import quick_init
 from distal.ir.types import Type
 
 FRAME_TIME: Final = "frame.time"
@@ -33,6 +34,8 @@ class UnaryOp(Enum):
 
     NEGATE: float and int, vectors, matrices (uint wraps). NOT: bool, bvec. INVERT: int, uint.
     """
+
+    __hash__ = object.__hash__
 
     __hash__ = object.__hash__  # Enum.__hash__ is a Python function: too slow for every node
 
@@ -51,6 +54,8 @@ class BinaryOp(Enum):
     SHL SHR: ints, the count taken & 31; SHR keeps an int's sign. The two operands of a shift
     have the same type.
     """
+
+    __hash__ = object.__hash__
 
     __hash__ = object.__hash__
 
@@ -75,6 +80,8 @@ class CompareOp(Enum):
 
     __hash__ = object.__hash__
 
+    __hash__ = object.__hash__
+
     EQ = "=="
     NE = "!="
     LT = "<"
@@ -88,6 +95,8 @@ class LogicalOp(Enum):
 
     Since expressions have no side effects, short circuit changes the cost only, not the result.
     """
+
+    __hash__ = object.__hash__
 
     __hash__ = object.__hash__
 
@@ -423,6 +432,7 @@ Expr: TypeAlias = (
 )
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class Let:
     """Bind an immutable local."""
@@ -432,6 +442,7 @@ class Let:
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class Var:
     """Bind a local that Assign may change."""
@@ -441,6 +452,7 @@ class Var:
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class Assign:
     """Assign to a Var or to a part of it.
@@ -453,6 +465,7 @@ class Assign:
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class If:
     """Run one of two blocks, selected by a bool condition."""
@@ -463,6 +476,7 @@ class If:
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class For:
     """``for name in range(start, stop, step)``: a loop at run time with a constant step.
@@ -480,6 +494,7 @@ class For:
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class While:
     """Run the body while the condition holds."""
@@ -503,6 +518,7 @@ class Continue:
     span: Span | None = field(default=None, repr=False, kw_only=True)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class Return:
     """Return a value from the function."""

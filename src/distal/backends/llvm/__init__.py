@@ -41,7 +41,7 @@ def emit_for(module: Module, lanes: Lanes) -> Artifact:
 def emit_modules(
     module: Module, lanes: Lanes, *, most: int
 ) -> tuple[Sequence[str], dict[str, Any]]:
-    """Return a module as texts of LLVM modules that are compiled at the same time, and its interface.
+    """Return a module as texts of LLVM modules to be compiled at the same time, and its interface.
 
     Args:
         module: The module after the passes.

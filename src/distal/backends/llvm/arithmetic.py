@@ -7,7 +7,7 @@ Does not depend on IR nodes, variables or control flow.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves
@@ -50,6 +50,7 @@ class LaneArithmetic:
         self.writer = writer
         self.declarations = declarations
         self._scopes: list[dict[object, Any]] = [{}]
+        self._typed: dict[tuple[object, ...], str] = {}  # templates with types
 
     def enter(self) -> None:
         """Begin code that may not run; values of ``once`` in it are not used after ``leave``."""
@@ -102,12 +103,33 @@ class LaneArithmetic:
             template: ``{0}`` is the first operand, ``{t0}`` its type, ``{r}`` the result's type.
             operands: The operands.
         """
-        lanes, uniform = self.lanes, all(o.uniform for o in operands)
-        types = {f"t{i}": lanes.type(o.kind, uniform=uniform) for i, o in enumerate(operands)}
-        types["r"] = lanes.type(result, uniform=uniform)
-        rows = zip(*(o.names if uniform else self.vectors(o) for o in operands), strict=True)
-        names = tuple(self.writer.value(template.format(*row, **types)) for row in list(rows))
-        return Leaf(result, names, uniform)
+        uniform = all([o.uniform for o in operands])
+        key = (template, uniform, result, *[o.kind for o in operands])
+        typed = self._typed.get(key)
+        if typed is None:
+            typed = self._typed[key] = self._with_types(result, template, operands, uniform)
+        write = self.writer.value
+        if uniform:
+            return Leaf(result, (write(typed.format(*[o.names[0] for o in operands])),), True)
+        columns = [self.vectors(o) for o in operands]
+        rows = zip(*columns, strict=True)
+        return Leaf(result, tuple([write(typed.format(*row)) for row in rows]), False)
+
+    def _with_types(
+        self, result: Kind, template: str, operands: Sequence[Leaf], uniform: bool
+    ) -> str:
+        """Return a template in which types are filled in; see ``apply``.
+
+        Args:
+            result: The kind of the result.
+            template: The template.
+            operands: The operands.
+            uniform: Whether all operands are uniform.
+        """
+        typed = template.replace("{r}", self.lanes.type(result, uniform=uniform))
+        for i, operand in enumerate(operands):
+            typed = typed.replace(f"{{t{i}}}", self.lanes.type(operand.kind, uniform=uniform))
+        return typed
 
     def intrinsic(self, name: str, result: Kind, *operands: Leaf, rest: str = "") -> Leaf:
         """Write a call of an overloaded LLVM intrinsic.

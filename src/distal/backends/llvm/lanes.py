@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import assert_never
 
+from distal.ir.quick_init import quick_init
 from distal.ir.types import (
     Array,
     Buffer,
@@ -96,6 +97,7 @@ class Lanes:
                 assert_never(kind)
 
 
+@quick_init
 @dataclass(frozen=True, slots=True)
 class Leaf:
     """One scalar of a value.
