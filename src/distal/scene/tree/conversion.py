@@ -43,6 +43,7 @@ _WORDS: Final = {2: "two", 3: "three", 4: "four"}
 # A direction written with six digits is accepted as having length 1.
 _UNIT_TOLERANCE: Final = 1e-5
 _SEQUENCES: Final = (tuple, list)
+_UNWRAPPED: Final = (float, Expression, tuple, list, int)
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -219,6 +220,8 @@ def resource(value: Any, asked: Asked) -> TextureValue | Buffer:
 
 def unwrapped(value: Any) -> Any:
     """Convert NumPy scalars, arrays and vectors to plain numbers and tuples."""
+    if type(value) in _UNWRAPPED:
+        return value
     if isinstance(value, VectorValue):
         return tuple(value)
     convert: Callable[[], object] | None = getattr(value, "tolist", None)

@@ -115,7 +115,8 @@ class PartKind:
 
 def kinds_of(members: Sequence[UnionMember]) -> list[PartKind]:
     """Return the kinds of parts, in the order of the first part of each."""
-    reader = _StructureReader()
+    lifter = ConstantLifter()
+    reader = _StructureReader(lifter)
     grouped: dict[Hashable, tuple[list[UnionMember], list[list[Number]]]] = {}
     for member in members:
         structure, numbers = reader.read(member.part)
@@ -124,7 +125,7 @@ def kinds_of(members: Sequence[UnionMember]) -> list[PartKind]:
             group = grouped[structure] = ([], [])
         group[0].append(member)
         group[1].append(numbers)
-    return [_kind(*group) for group in grouped.values()]
+    return [_kind(*group, lifter) for group in grouped.values()]
 
 
 class _StructureReader:
@@ -134,8 +135,8 @@ class _StructureReader:
     so that equal sequences are equal trees.
     """
 
-    def __init__(self) -> None:
-        self._lifter = ConstantLifter()
+    def __init__(self, lifter: ConstantLifter) -> None:
+        self._lifter = lifter
         self._rules: dict[Rule, Hashable] = {}
         self._known: dict[Hashable, int] = {}
 
@@ -225,9 +226,16 @@ def _constant(value: Any) -> Hashable:
     return (getattr(value, "type", None), plain) if plain is not None else id(value)
 
 
-def _kind(members: Sequence[UnionMember], every: Sequence[Sequence[Number]]) -> PartKind:
-    """Return the kind of these parts; ``every`` has the numbers of each."""
-    lifter = ConstantLifter()
+def _kind(
+    members: Sequence[UnionMember], every: Sequence[Sequence[Number]], lifter: ConstantLifter
+) -> PartKind:
+    """Return the kind of parts of equal structure.
+
+    Args:
+        members: The parts.
+        every: The numbers of each.
+        lifter: Splits expressions.
+    """
     columns: list[Column] = []
     numbers: dict[int, ColumnNumber] = {}
     values: list[Sequence[Plain]] = []
