@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from distal import Box, Material, Plane, Shape, Sphere, Torus, by_cell, stripes, time
+from distal import (
+    Box,
+    DistantLight,
+    Material,
+    Plane,
+    Scene,
+    Shape,
+    Sphere,
+    Torus,
+    by_cell,
+    stripes,
+    time,
+)
 from distal.lang import func, length, slider, vec3
 from distal.scene.lowering.parts.flatten import members_of
 from distal.scene.lowering.parts.kind_boxes import bounds_of, columns_of
@@ -15,6 +29,8 @@ from distal.scene.lowering.parts.table import (
     INFINITE,
     LEAST_PARTS,
     RARE,
+    _rolled,
+    keep_table,
     rolled,
 )
 
@@ -174,3 +190,30 @@ def test_copies_without_a_box_stay_one_repetition():
     found = rolled(row()[0].union([*row()[1:], slabs]).node)
     assert found.table.count == LEAST_PARTS
     assert [(m.part.rule.name, why) for m, why in found.beside] == [("repeat at", INFINITE)]
+
+
+def test_a_ground_in_the_looks_material_keeps_the_table():
+    parts = [Sphere(0.3 + 0.01 * i).translate(float(i), 0, 0) for i in range(2 * LEAST_PARTS)]
+    whole = parts[0].union(parts[1:]) | Plane() | Plane(y=-2.0).paint("red")
+    before = rolled(whole.node)
+    scene = Scene(whole, lights=DistantLight((1, 2, 1)))
+    kept, fresh = rolled(scene.shape.node), _rolled(scene.shape.node)
+    assert kept.table is not None
+    assert kept.table is before.table
+    # It is what rolling the tree would give.
+    assert [m.part for m, _ in kept.beside] == [m.part for m, _ in fresh.beside]
+    assert [reason for _, reason in kept.beside] == [INFINITE, INFINITE]
+    assert [n.rule for n in kept.node.children] == [n.rule for n in fresh.node.children]
+    first, second = (m.part for m, _ in kept.beside)
+    assert first.material is not None and first is not whole.node.children[-2]
+    assert second is whole.node.children[-1]
+
+
+def test_a_changed_part_of_the_table_is_rolled_again():
+    parts = [Sphere(0.3 + 0.01 * i).translate(float(i), 0, 0) for i in range(2 * LEAST_PARTS)]
+    whole = parts[0].union(parts[1:]).node
+    changed = replace(whole, children=(parts[0].paint("red").node, *whole.children[1:]))
+    before = rolled(whole)
+    keep_table(whole, changed)
+    assert rolled(changed).table is not before.table
+    assert len(rolled(changed).table.kinds) == 2

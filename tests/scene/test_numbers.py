@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -26,6 +27,7 @@ from distal.lang import (
 )
 from distal.lang.expressions import Expression, time
 from distal.scene.tree.arguments import Number, arguments
+from distal.scene.tree.conversion import Asked, number, plain_number
 from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from distal.scene.tree.source_places import author_place
 
@@ -357,3 +359,26 @@ def test_numbers_that_do_not_go_together():
 def test_a_list_of_points_is_a_list_of_plain_numbers(points, error, message):
     with pytest.raises(error, match=re.escape(message)):
         PolylineTube(points)
+
+
+ODD = (
+    *(0.0, -0.0, 1.0, 0.5, -1.0, 2, True, 1e39, -1e300, 10**400, math.nan, math.inf, "red", None),
+    *(np.float64(0.5), np.float32(0.5), np.int64(2), np.float64(math.nan), time, ONE),
+    *((1.0, 0.0, 0.0), [0.6, 0, 0.8], (1.0, math.nan, 0.0), (0.0, 1.0), (1, 2, 10**400)),
+    *((True, 0.0, 1.0), (0.1, -0.2, 0.3), (np.float64(0.5),) * 3, np.ones(3), (time, 0.0, 1.0)),
+)
+
+
+@pytest.mark.parametrize("limit", Limit)
+@pytest.mark.parametrize("type_", [FLOAT, VEC3])
+@pytest.mark.parametrize("is_color", [False, True])
+def test_quickly_converted_numbers_are_those_of_the_whole_conversion(limit, type_, is_color):
+    quick = 0
+    for value in ODD:
+        found = plain_number(value, type_, limit, is_color=is_color)
+        if found is None:
+            continue  # the whole conversion decides
+        quick += 1
+        assert found == number(value, Asked("n", "Thing", type_, limit, is_color))
+        assert type(found.value) is (float if type_ is FLOAT else tuple)
+    assert quick >= 1

@@ -12,6 +12,7 @@ import pytest
 from distal.backends.llvm import TARGET, Lanes, emit_for
 from distal.backends.llvm.chains import Chains
 from distal.backends.llvm.costs import LaneCosts
+from distal.backends.llvm.program import FEW_ROUNDS
 from distal.compiler.driver import run_passes
 from distal.devices import cpu, reference
 from distal.frontend import lower
@@ -102,3 +103,22 @@ def test_calls_of_vectors_give_the_values_of_the_reference(combine: str, level: 
     (found,) = (kernel.evaluate([points], {}, {}),)
     wanted = reference.prepare(module, precision=64).evaluate([points.astype(float)], {}, {})
     assert np.allclose(found, wanted, rtol=2e-5, atol=2e-5)
+
+
+def test_a_large_function_with_a_short_loop_computes_one_vector() -> None:
+    def text(rounds: int) -> str:
+        source = from_text(
+            "@func\n"
+            f"def field(p: vec3) -> float:\n    total = length(p)\n    for i in range({rounds}):\n"
+            "        total = min(total, length(p - float(i)))\n"
+            + "".join(
+                f"    total = min(total, length(sqrt(abs(p * {i}.5)) + sqrt(abs(p - {i}.25))))\n"
+                for i in range(SPHERES)
+            )
+            + "    return total\n"
+            "@func\ndef scene(p: vec3) -> float:\n    return field(p) + field(p + vec3(0.5))\n"
+        )
+        return emit_for(run_passes(lower(source), TARGET, 32), LANES).text
+
+    assert definitions(text(8)) == ["field.v.1"]
+    assert definitions(text(FEW_ROUNDS + 1)) == ["field.v"]
