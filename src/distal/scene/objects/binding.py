@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from distal.diagnostics import Span
 from distal.fields import boxes
@@ -73,7 +73,7 @@ def bound(
             assert isinstance(data, Texture2D)
             given[name] = Number(VEC2, measuring.largest_rise(data, rule.name, place))
     if all([type(value) is Number for value in given.values()]):
-        return given, {}
+        return cast("dict[str, Number]", given), {}
     numbers = {name: value for name, value in given.items() if isinstance(value, Number)}
     constants = {name: value for name, value in given.items() if name not in numbers}
     return numbers, constants

@@ -30,7 +30,6 @@ from distal.ir.types import (
     Texture,
     Type,
     Vector,
-    component_count,
 )
 from distal.lang.expressions import Symbolic
 from distal.lang.functions import Func
@@ -86,7 +85,9 @@ class FunctionParameter:
     def __post_init__(self) -> None:
         is_vector = isinstance(self.type, Vector) and self.type.kind is Kind.FLOAT
         is_named_color = self.name == "color" or self.name.endswith("_color")
-        size = component_count(self.type) if is_vector else int(self.type is FLOAT)
+        size = int(self.type is FLOAT)
+        if isinstance(self.type, Vector) and is_vector:
+            size = self.type.size
         if is_named_color and size == 1:
             size = 0  # not converted quickly
         object.__setattr__(self, "is_vector", is_vector)

@@ -142,12 +142,12 @@ class _StructureReader:
 
     def read(self, part: Node) -> tuple[Hashable, list[Number]]:
         """Return the structure of a tree, and its numbers in the order of the tree."""
-        structure: list[Hashable] = []
+        structure: list[Any] = []
         numbers: list[Number] = []
         self._node(part, structure, numbers)
         return tuple(structure), numbers
 
-    def _node(self, node: Node, structure: list[Hashable], numbers: list[Number]) -> None:
+    def _node(self, node: Node, structure: list[Any], numbers: list[Number]) -> None:
         rule, constants, children = node.rule, node.constants, node.children
         if rule not in self._rules:
             # Rules that are equal in all that matters have one number.
@@ -166,7 +166,7 @@ class _StructureReader:
             self._node(child, structure, numbers)
 
     def _number(
-        self, name: str, number: Number, structure: list[Hashable], numbers: list[Number]
+        self, name: str, number: Number, structure: list[Any], numbers: list[Number]
     ) -> None:
         """Read a number: its type, with the structure of an expression.
 
@@ -183,7 +183,7 @@ class _StructureReader:
         else:
             structure += (name, number.type)
 
-    def _value(self, value: Any, structure: list[Hashable], numbers: list[Number]) -> None:
+    def _value(self, value: Any, structure: list[Any], numbers: list[Number]) -> None:
         """Read a material, or another object among the values of a call."""
         if isinstance(value, Node):
             structure.append(Node)

@@ -96,7 +96,7 @@ def rows_of(kinds: Sequence[PartKind]) -> Rows:
         )
         fits = np.ones(len(kind.members), bool)
         for reason, keeps in rules:
-            for i in np.flatnonzero(fits & ~keeps):
+            for i in np.flatnonzero(fits & ~keeps).tolist():
                 refused[id(kind.members[i])] = reason
             fits &= keeps
         if fits.any():
