@@ -82,6 +82,13 @@ def test_a_square_of_pixels_is_well_distributed_too(corner):
         assert set(fullest_and_emptiest(np.asarray(one), 3)) == {(1, 1)}
 
 
+def test_one_sample_of_each_pixel_is_well_distributed_over_squares():
+    y, x = np.mgrid[0:16, 0:16]
+    pixels = np.stack([x.ravel(), y.ravel()], 1).astype(np.int32)
+    found = np.asarray(dithered_pair(pixels, 0, 0, 4))
+    assert set(fullest_and_emptiest(found, 8)) == {(1, 1)}
+
+
 def test_more_samples_than_planned_are_distributed_anew():
     pixels = np.tile(np.array([(7, 2)], np.int32), (64, 1))
     found = np.asarray(dithered_pair(pixels, np.arange(64, dtype=np.int32), 4, 0))

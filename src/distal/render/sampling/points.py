@@ -13,7 +13,7 @@ Decision 38 has the measurements that this choice is based on.
 
 from __future__ import annotations
 
-from distal.lang import func, ivec2, pcg, struct, uint, vec2, vec3
+from distal.lang import func, ivec2, pcg, select, struct, uint, vec2, vec3
 
 FROM_24_BITS = 5.9604644775390625e-08
 # Distances of the seeds of successive decisions and of a decision's numbers: 2^32 divided by the
@@ -126,7 +126,7 @@ def dithered_stream(pixel: ivec2, sample: int, bits: int, seed: uint) -> Stream:
     Args:
         pixel: Column and row, from 0 to 65535.
         sample: The number of the pixel's sample, from 0.
-        bits: The binary logarithm of the number of samples of a pixel, 1 to 30.
+        bits: The binary logarithm of the number of samples of a pixel, 0 to 30.
         seed: Selects one of many sets of numbers.
 
     Source: Abdalla Ahmed and Peter Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo
@@ -136,7 +136,7 @@ def dithered_stream(pixel: ivec2, sample: int, bits: int, seed: uint) -> Stream:
     count = uint(bits)
     curve = spread_bits(uint(pixel.x)) | (spread_bits(uint(pixel.y)) << uint(1))
     repeated = uint(sample) >> count
-    far = curve >> (uint(32) - count)
+    far = select(bits > 0, curve >> (uint(32) - count), uint(0))
     inside = uint(sample) & ((uint(1) << count) - uint(1))
     together = pcg(far + pcg(repeated + pcg(seed)))
     return Stream(together, reversed_bits((curve << count) | inside))
