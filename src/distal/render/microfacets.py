@@ -65,6 +65,12 @@ def mean_white_loss(alpha: float) -> float:
 
 
 @func
+def mean_fresnel_metal(color: vec3) -> vec3:
+    """Return the mean of ``material.fresnel_metal`` over the hemisphere, weighted by the cosine."""
+    return (20.0 * color + 1.0) / 21.0
+
+
+@func
 def passed_on(reflectance: vec3, alpha: float) -> vec3:
     """Return the fraction that comes back of the light which facets pass on to each other.
 

@@ -1,9 +1,10 @@
 """Scattering: where light goes that meets a surface, sampled and evaluated for paths.
 
 Input: a ``Surface``, the unit direction to where the path came from (``view``), the unit normal
-``n`` on that side, and whether that side is the inside of the solid. Output: ``Scattering`` (a
-random direction) or ``Response`` (how much of the light of a given direction goes to ``view``).
-Does not depend on geometry or lights.
+``n`` on that side, and whether that side is the inside of the solid. Output: ``Scattering``
+(``sample``: a random direction) or ``Response`` (``respond``: how much of the light of a given
+direction goes to ``view``). Where both are wanted, ``meet`` computes once what they share, for
+``sample_from`` and ``respond_to``. Does not depend on geometry or lights.
 
 A surface has at most three lobes, whose weights are those of direct light (``material.shares``),
 taken at each facet:
@@ -33,6 +34,7 @@ from distal.render.microfacets import (
     facet_density,
     masking_root,
     mean_coat_reflectance,
+    mean_fresnel_metal,
     mean_white_loss,
     passed_on,
     white_loss,
@@ -110,6 +112,25 @@ class Lobes:
     through_specular: bool
 
 
+@struct
+class Meeting:
+    """A surface as a path meets it: what all directions of the light share.
+
+    Attributes:
+        surface: The material.
+        axes: The normal on the view's side, and two vectors along the surface.
+        view: Unit direction to where the path came from, along the axes.
+        inside: Whether that side is the inside of the solid.
+        lobes: The lobes at this view.
+    """
+
+    surface: Surface
+    axes: Axes
+    view: vec3
+    inside: bool
+    lobes: Lobes
+
+
 @func
 def facing(axes: Axes, view: vec3) -> vec3:
     """Return the view along the axes, moved above the surface if it is not."""
@@ -130,7 +151,7 @@ def under_coat(surface: Surface, cosine: float, alpha: float, eta: float) -> vec
 def mean_under_coat(surface: Surface, alpha: float, eta: float) -> vec3:
     """Return the mean of ``under_coat`` over the hemisphere, weighted by the cosine."""
     clear = mean_coat_reflectance(alpha, eta)
-    metal = (20.0 * surface.color + 1.0) / 21.0
+    metal = mean_fresnel_metal(surface.color)
     return 1.0 - surface.fresnel * mix(vec3(clear), metal, surface.metal)
 
 
@@ -144,8 +165,8 @@ def between_facets(surface: Surface, alpha: float) -> vec3:
     whole = surface.diffuse + surface.specular + surface.transmission
     tint = mix(WHITE, surface.color, surface.metal)
     plain = surface.specular * (1.0 - surface.fresnel) * passed_on(tint, alpha)
-    mean = (20.0 * surface.color + 1.0) / 21.0
-    metal = whole * surface.fresnel * surface.metal * passed_on(mean, alpha)
+    reflected = passed_on(mean_fresnel_metal(surface.color), alpha)
+    metal = whole * surface.fresnel * surface.metal * reflected
     return (plain + metal) / max(mean_white_loss(alpha), 1e-9)
 
 
@@ -184,19 +205,30 @@ def mirror_share(mirrored: vec3, transmitted: vec3) -> float:
 
 
 @func
-def respond_along(surface: Surface, lobes: Lobes, v: vec3, light: vec3, inside: bool) -> Response:
-    """Return the response to light of a direction; all directions are along the axes.
+def meet(surface: Surface, view: vec3, n: vec3, inside: bool) -> Meeting:
+    """Return a surface as a path meets it, for ``respond_to`` and ``sample_from``.
 
     Args:
         surface: The material.
-        lobes: Its lobes at this view.
-        v: Unit direction to the view.
-        light: Unit direction to the light.
-        inside: Whether the view is on the inside.
+        view: Unit direction to where the path came from.
+        n: Unit normal on that side.
+        inside: Whether that side is the inside of the solid.
+    """
+    axes = axes_about(n)
+    v = facing(axes, view)
+    return Meeting(surface, axes, v, inside, lobes_of(surface, v.z, inside))
+
+
+@func
+def respond_along(meeting: Meeting, light: vec3) -> Response:
+    """Return the response to light of a unit direction along the axes.
 
     Source: Bruce Walter et al., "Microfacet Models for Refraction through Rough Surfaces" (2007);
         Heitz (2014) for the masking of reflected light and of visible facets.
     """
+    surface = meeting.surface
+    lobes = meeting.lobes
+    v = meeting.view
     above = light.z > 0.0
     alpha = lobes.alpha
     cosine = abs(light.z)
@@ -217,7 +249,7 @@ def respond_along(surface: Surface, lobes: Lobes, v: vec3, light: vec3, inside: 
     seen = to_view > 0.0 and (to_light > 0.0) == above and middle.z > 0.0
     specular = lobes.mirror_specular if above else lobes.through_specular
     if seen and not specular:
-        facet = shares(surface, min(to_view, 1.0), inside)
+        facet = shares(surface, min(to_view, 1.0), meeting.inside)
         root_v = masking_root(v.z, alpha)
         root_l = masking_root(cosine, alpha)
         visible = 2.0 * facet_density(middle, alpha) * to_view / (v.z + root_v)
@@ -233,36 +265,26 @@ def respond_along(surface: Surface, lobes: Lobes, v: vec3, light: vec3, inside: 
 
 
 @func
-def respond(surface: Surface, view: vec3, light: vec3, n: vec3, inside: bool) -> Response:
-    """Return how much of the light of a direction goes to the view, and ``sample``'s density.
+def respond_to(meeting: Meeting, light: vec3) -> Response:
+    """Return how much of the light of a direction goes to the view, and ``sample_from``'s density.
 
     Args:
-        surface: The material.
-        view: Unit direction to where the path came from.
+        meeting: The surface, made by ``meet``.
         light: Unit direction to the light, on either side.
-        n: Unit normal on the view's side.
-        inside: Whether that side is the inside of the solid.
     """
-    axes = axes_about(n)
-    v = facing(axes, view)
-    lobes = lobes_of(surface, v.z, inside)
-    return respond_along(surface, lobes, v, along_axes(axes, light), inside)
+    return respond_along(meeting, along_axes(meeting.axes, light))
 
 
 @func
-def sample(surface: Surface, view: vec3, n: vec3, inside: bool, u: vec3) -> Scattering:
+def sample_from(meeting: Meeting, u: vec3) -> Scattering:
     """Return a random direction in which a path goes on.
 
     Args:
-        surface: The material.
-        view: Unit direction to where the path came from.
-        n: Unit normal on the view's side.
-        inside: Whether that side is the inside of the solid.
+        meeting: The surface, made by ``meet``.
         u: Three random numbers in [0, 1); the third chooses the lobe.
     """
-    axes = axes_about(n)
-    v = facing(axes, view)
-    lobes = lobes_of(surface, v.z, inside)
+    lobes = meeting.lobes
+    v = meeting.view
     evenly = u.z < lobes.even
     # What is left of the third number is uniform again.
     choice = min((u.z - lobes.even) / max(1.0 - lobes.even, 1e-9), 0.99999994)
@@ -270,7 +292,7 @@ def sample(surface: Surface, view: vec3, n: vec3, inside: bool, u: vec3) -> Scat
     if not lobes.mirror_specular:
         facet = visible_facet(v, lobes.alpha, u.xy)
     to_view = clamp(dot(v, facet), 0.0, 1.0)
-    of_facet = shares(surface, to_view, inside)
+    of_facet = shares(meeting.surface, to_view, meeting.inside)
     picked = mirror_share(of_facet.mirrored, of_facet.transmitted)
     mirrors = evenly or choice < picked
     inverse = 1.0 / lobes.eta
@@ -288,10 +310,38 @@ def sample(surface: Surface, view: vec3, n: vec3, inside: bool, u: vec3) -> Scat
             chance = (1.0 - lobes.even) * select(mirrors, picked, 1.0 - picked)
             weight = select(mirrors, of_facet.mirrored, of_facet.transmitted) / max(chance, 1e-9)
         else:
-            found = respond_along(surface, lobes, v, light, inside)
+            found = respond_along(meeting, light)
             density = found.density
             weight = found.value / max(density, 1e-30)
-    return Scattering(into_space(axes, light), weight, density, not mirrors, specular)
+    return Scattering(into_space(meeting.axes, light), weight, density, not mirrors, specular)
+
+
+@func
+def respond(surface: Surface, view: vec3, light: vec3, n: vec3, inside: bool) -> Response:
+    """Return how much of the light of a direction goes to the view, and ``sample``'s density.
+
+    Args:
+        surface: The material.
+        view: Unit direction to where the path came from.
+        light: Unit direction to the light, on either side.
+        n: Unit normal on the view's side.
+        inside: Whether that side is the inside of the solid.
+    """
+    return respond_to(meet(surface, view, n, inside), light)
+
+
+@func
+def sample(surface: Surface, view: vec3, n: vec3, inside: bool, u: vec3) -> Scattering:
+    """Return a random direction in which a path goes on.
+
+    Args:
+        surface: The material.
+        view: Unit direction to where the path came from.
+        n: Unit normal on the view's side.
+        inside: Whether that side is the inside of the solid.
+        u: Three random numbers in [0, 1); the third chooses the lobe.
+    """
+    return sample_from(meet(surface, view, n, inside), u)
 
 
 @func

@@ -1,0 +1,92 @@
+"""Random numbers and scattering on shader targets: the same bits, and the same light."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import distal
+from distal.lang import Frame, image, ivec2, normalize, select, vec3, vec4
+from distal.lang.render_options import RenderOptions
+from distal.render import scatter
+from distal.render.material import Surface
+from distal.render.sampling import points
+from distal.runtime.executor import PythonExecutor
+from tests import egl, gpu
+from tests.glsl import run_glsl
+
+SIZE = (24, 16)
+UP = vec3(0.0, 0.0, 1.0)
+
+
+@image
+def numbers(frame: Frame) -> vec4:
+    """Two samples' numbers of each pixel; multiples of 2^-24 are exact."""
+    pixel = ivec2(int(frame.coord.x), int(frame.coord.y))
+    here = points.triple(points.scattered_stream(pixel, 77, 5), 3)
+    there = points.pair(points.dithered_stream(pixel, 6, 4, 5), 3)
+    return vec4(here.x, here.z, there)
+
+
+@image
+def scattered(frame: Frame) -> vec4:
+    """The mean weight and value of a few samples, by roughness and by transmission."""
+    pixel = ivec2(int(frame.coord.x), int(frame.coord.y))
+    share = frame.coord / frame.resolution
+    surface = Surface(
+        vec3(0.9, 0.7, 0.5), 0.5 * (1.0 - share.x), 0.2, 0.6 * share.x, 1.5, share.y, 0.2,
+        fresnel=share.x,
+    )  # fmt: skip
+    view = normalize(vec3(0.5, 0.2, 0.7))
+    total = vec3(0.0)
+    for k in range(4):
+        stream = points.scattered_stream(pixel, k, 5)
+        meeting = scatter.meet(surface, view, UP, k == 3)
+        found = scatter.sample_from(meeting, points.triple(stream, 0))
+        light = select(found.specular, UP, found.direction)
+        value = scatter.respond_to(meeting, light).value
+        total += found.weight + value / (1.0 + value)
+    return vec4(0.1 * total, 1.0)
+
+
+@cache
+def expected(number: int) -> np.ndarray:
+    what = (numbers, scattered)[number]
+    options = RenderOptions(size=SIZE, device="reference")
+    return PythonExecutor().render(what, options).array
+
+
+def compare(found: np.ndarray, number: int) -> None:
+    if number == 0:
+        assert np.array_equal(found, expected(0))
+    else:
+        # A sample at the border of two lobes may fall on the other side; few pixels do.
+        off = np.abs(found - expected(1)).max(-1)
+        assert np.quantile(off, 0.98) < 2e-3
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_cpu(number: int) -> None:
+    picture = PythonExecutor().render((numbers, scattered)[number], RenderOptions(size=SIZE))
+    compare(picture.array, number)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_glsl(number: int) -> None:
+    try:
+        egl.context()
+    except egl.EglUnavailableError as error:
+        pytest.skip(str(error))
+    compare(run_glsl(distal.compile((numbers, scattered)[number], "glsl-es300"), SIZE), number)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_wgsl(number: int) -> None:
+    try:
+        gpu.device()
+    except gpu.GpuUnavailableError as error:
+        pytest.skip(str(error))
+    text = distal.compile((numbers, scattered)[number], "wgsl")
+    compare(gpu.run_wgsl(text, SIZE, path="fragment"), number)
