@@ -86,6 +86,13 @@ def test_a_ball_has_the_same_radiance_from_everywhere():
         assert seen.radiance[0] == pytest.approx(3.0 / 0.25, rel=1e-5)
 
 
+def test_an_emitting_ball_is_a_point_light_with_a_radius():
+    light = lights.point_light(ORIGIN, vec3(1.0, 2.0, 2.0), 0.25, vec3(7.0, 5.0, 3.0), 0.5)
+    seen = emitters.seen_light(light, tuple(MIDDLE))
+    assert tuple(seen.radiance) == pytest.approx((7.0, 5.0, 3.0), rel=1e-5)
+    assert seen.distance == pytest.approx(2.5, rel=1e-5)
+
+
 def test_inside_of_a_ball_light_is_everywhere():
     light = lights.point_light(ORIGIN, vec3(0.1, 0.0, 0.0), 3.0, radius=0.5)
     found = emitters.sample_light(light, SAMPLES)

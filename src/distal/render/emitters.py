@@ -6,7 +6,8 @@ that ``render.declarations.light`` declares needs nothing more for paths.
 
 A light of non-zero size is a uniformly bright ball (a cone of directions, if it is far away). Its
 radiance follows from what it sends to a white surface, so that paths and direct light agree without
-occlusion. The inside of the ball is bright, too.
+occlusion. The inside of the ball is bright, too. A ball in the scene of radius r that emits e is
+``point_light(p, middle, r * r, e, r)``.
 
 ``radiance`` is that of the language: an even background of radiance 1 lets a white matte surface
 show 1.
