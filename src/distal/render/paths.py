@@ -42,7 +42,7 @@ from distal.render.march import PASSED, Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
 from distal.render.sampling.points import Stream, pair, single, triple
-from distal.render.scatter import all_specular, emitted, respond, sample
+from distal.render.scatter import Meeting, all_specular, emitted, meet, respond_to, sample_from
 from distal.render.segment import landing
 from distal.render.shade import Lit, Shading
 from distal.render.trace import facing_normal
@@ -175,7 +175,7 @@ def start_from(vertex: Vertex, direction: vec3) -> Start:
 @func
 def light_on(
     vertex: Vertex,
-    view: vec3,
+    meeting: Meeting,
     next_hit: Callable[[Ray, float, float, int], Hit],
     lights: Callable[[int, vec3], LightSample],
     light_count: int,
@@ -186,7 +186,7 @@ def light_on(
 
     Args:
         vertex: The surface.
-        view: Unit direction to the eye.
+        meeting: The surface and the direction to the eye, for its response.
         next_hit: The next surface along a ray from a surface.
         lights: The light with a given index, from 0, at a point.
         light_count: How many lights there are, at least one.
@@ -196,7 +196,7 @@ def light_on(
     count = float(light_count)
     which = min(int(single(stream, decision + WHICH_LIGHT) * count), light_count - 1)
     light = sample_light(lights(which, vertex.p), pair(stream, decision + PLACE_ON_LIGHT))
-    found = respond(vertex.surface, view, light.direction, vertex.n, vertex.side < 0.0)
+    found = respond_to(meeting, light.direction)
     color = found.value * light.weight * count
     start = start_from(vertex, light.direction)
     if brightest(color) <= 0.0 or start.side < 0.0:
@@ -287,12 +287,12 @@ def path_light(
             emission = emitted(material, inside)
             color += throughput * mix(fog(here.direction), emission, clear)
             throughput = throughput * clear
-        view = -here.direction
+        meeting = meet(material, -here.direction, vertex.n, inside)
         if light_count > 0 and not all_specular(material):
-            direct = light_on(vertex, view, next_hit, lights, light_count, stream, decision)
+            direct = light_on(vertex, meeting, next_hit, lights, light_count, stream, decision)
             color += throughput * direct.color
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
-        onward = sample(material, view, vertex.n, inside, triple(stream, decision + DIRECTION))
+        onward = sample_from(meeting, triple(stream, decision + DIRECTION))
         throughput = throughput * onward.weight
         likely = 1.0
         if i >= SURE:
