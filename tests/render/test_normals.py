@@ -54,3 +54,17 @@ def test_a_normal_is_the_gradients_direction(kind: str) -> None:
     assert steep.sum() > 150
     found = np.asarray(function(p))
     np.testing.assert_allclose(found[steep], (gradient / size)[steep], atol=4.0 * error)
+
+
+def test_tangents_are_unit_vectors_across():
+    rng = np.random.default_rng(5)
+    random = rng.normal(size=(400, 3))
+    # Next to straight down, where the sum of 1 and a component cancels.
+    angle, near = rng.uniform(0.0, 2.0 * np.pi, 400), 10.0 ** rng.uniform(-7.0, -1.0, 400)
+    down = np.stack([near * np.cos(angle), -np.sqrt(1.0 - near**2), near * np.sin(angle)], axis=1)
+    axes = np.concatenate([np.eye(3), -np.eye(3)])
+    every = np.concatenate([random, down, axes])
+    n = (every / np.linalg.norm(every, axis=1, keepdims=True)).astype(np.float32)
+    found = normals.tangent(n)
+    assert np.abs(np.linalg.norm(found, axis=1) - 1.0).max() < 1e-6
+    assert np.abs(np.sum(found * n, axis=1)).max() < 1e-6

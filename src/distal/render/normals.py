@@ -5,7 +5,7 @@ Input: a field and a point. Output: a unit vector, never NaN.
 
 from __future__ import annotations
 
-from distal.lang import Field3, dot, func, gradient, inversesqrt, max, select, vec2, vec3
+from distal.lang import Field3, abs, dot, func, gradient, inversesqrt, max, select, vec2, vec3
 
 # The methods; the choice is a constant at compile time.
 EXACT = 0  # the field's own derivative
@@ -28,7 +28,9 @@ def tangent(n: vec3) -> vec3:
     Source: Jeppe Revall Frisvad, "Building an Orthonormal Basis from a 3D Unit Vector Without
         Normalization" (2012).
     """
-    a = 1.0 / max(1.0 + n.y, 1e-6)
+    # 1 / (1 + n.y), without the cancellation next to straight down.
+    flat = max(n.x * n.x + n.z * n.z, 1e-20)
+    a = select(n.y < 0.0, (1.0 - n.y) / flat, 1.0 / (1.0 + abs(n.y)))
     return vec3(1.0 - n.x * n.x * a, -n.x, -n.x * n.z * a)
 
 
