@@ -142,7 +142,9 @@ class _FrameEntries:
                 self._write(e)
 
     def _is_worth(self, e: Expr) -> bool:
-        if not is_carried(e.type) or not children(e) or not node_cost(e, self._costs.calls):
+        if not (is_carried(e.type) or is_exploded(e.type)) or not children(e):
+            return False
+        if not node_cost(e, self._costs.calls):
             return False
         return self._costs.of(e) >= LEAST_COST
 
