@@ -103,6 +103,8 @@ class SceneLowering:
         self.composer = ShapeComposer(assembly, [self.node])
         self._rays = RayFunctions(self.composer, self.node, self._function)
         self._view_numbers: dict[str, Expr] = {}
+        self._cameras: dict[str, FunctionRef] = {}
+        self._steers: dict[str, tuple[Expr, ...]] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
         }
@@ -521,8 +523,7 @@ class SceneLowering:
             asked["rig"] = body.let("rig", self.composer.call(steer.rig, asked))
             return self.composer.call(steer.steered_ray, asked)
 
-        params = (("uv", VEC2), ("resolution", VEC2))
-        return self._function("steered_ray", params, make, (resolution,))
+        return self._camera_function("steered_ray", make, resolution)
 
     def lens(self, body: StatementList, resolution: Expr) -> Expr:
         """Return what a movement has to know of the camera, for a picture of some pixels."""
@@ -533,8 +534,12 @@ class SceneLowering:
 
     def steer(self, body: StatementList, prefix: str) -> Expr:
         """Return the five numbers of a ``Steering``, which are uniforms with this prefix."""
-        numbers = [self._assembly.number(f"{prefix}{n}", t, v) for n, t, v in steering.NUMBERS]
-        return body.let("steer", Construct(tuple(numbers), self._assembly.struct(steer.Steer)))
+        if prefix not in self._steers:
+            self._steers[prefix] = tuple(
+                self._assembly.number(f"{prefix}{n}", t, v) for n, t, v in steering.NUMBERS
+            )
+        steered = Construct(self._steers[prefix], self._assembly.struct(steer.Steer))
+        return body.let("steer", steered)
 
     def elevation(self) -> str:
         """Add the function that returns the camera's elevation above its target."""
@@ -563,5 +568,17 @@ class SceneLowering:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             return self._scene.camera.emit(self.composer, given)
 
-        params = (("uv", VEC2), ("resolution", VEC2))
-        return self._function("camera_ray", params, make, (resolution,))
+        return self._camera_function("camera_ray", make, resolution)
+
+    def _camera_function(
+        self,
+        name: str,
+        make: Callable[[StatementList, Mapping[str, Expr]], Expr],
+        resolution: Expr,
+    ) -> FunctionRef:
+        """Return a camera for a picture of this size; its function is defined once."""
+        if name not in self._cameras:
+            params = (("uv", VEC2), ("resolution", VEC2))
+            self._cameras[name] = self._function(name, params, make, (resolution,))
+        known = self._cameras[name]
+        return FunctionRef(known.name, (resolution,), known.type)
