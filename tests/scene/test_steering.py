@@ -17,6 +17,11 @@ from distal import (
     Scene,
     Sphere,
 )
+from distal.backends import get_target
+from distal.compiler.driver import run_passes
+from distal.frontend import lower
+from distal.ir.nodes import Call
+from distal.ir.walk import nodes_in
 from distal.lang import slider
 from distal.lang.render_options import RenderOptions
 from distal.scene.steering import Steering
@@ -135,3 +140,30 @@ def test_a_target_that_is_a_parameter_is_what_it_turns_around():
     found = seen.render(options, steering=Steering(yaw=0.9))
     wanted = OrbitCamera(4.0, azimuth=0.9, target=(0.0, 1.0, 0.0), fov=FOV)
     assert_alike(found.array, picture(wanted))
+
+
+def test_the_numbers_of_a_movement_are_one_uniform_each():
+    # A second set under other names would stay at rest: hosts set the names of `settings`.
+    for view in ("color", "depth"):
+        module = module_of(view)
+        names = [u.name for u in module.uniforms if u.name.startswith("View_")]
+        of_range = {"View_low", "View_middle", "View_high"}
+        assert sorted(set(names) - of_range) == sorted(Steering().settings)
+
+
+def test_the_frame_part_computes_the_camera_once():
+    # The lens needs four rays, the threshold of a hit two; drivers write out every call.
+    calls = [
+        e.function
+        for e in nodes_in(*(value for _, value in module_of("color").frame))
+        if isinstance(e, Call)
+    ]
+    rays = [name for name in calls if name.startswith("through_screen")]
+    assert len(rays) <= 6
+    assert not [name for name in calls if name.startswith(("camera_ray", "steered_ray", "lens"))]
+    assert calls.count("rig") <= 1
+
+
+def module_of(view):
+    image = scene_of(front()).view(view, steered=True, encoded=True, sampled=True)
+    return run_passes(lower(image.text()), get_target("glsl-es300"))

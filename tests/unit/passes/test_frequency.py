@@ -7,6 +7,7 @@ import pytest
 from distal.ir import build
 from distal.ir.nodes import (
     Assign,
+    Builtin,
     Call,
     CompareOp,
     Construct,
@@ -30,6 +31,7 @@ from distal.ir.nodes import (
 from distal.ir.target import FramePlace, Target
 from distal.ir.types import BOOL, FLOAT, INT, VEC3, Struct, Type, component_count
 from distal.ir.verify import verify
+from distal.ir.walk import nodes_in
 from distal.passes.per_frame.frequency import VERTEX_LIMIT, run
 from tests.unit.passes.random_modules import Generator, check, context, value
 
@@ -245,6 +247,43 @@ def test_structs_travel_field_by_field_and_only_what_is_read() -> None:
     assert module.frame == (("cam_zoom", build.field(call("make", time, type=camera), "zoom")),)
     assert module.function("shade").body == (Return(build.multiply(x, frame("cam_zoom"))),)
     assert [p.name for p in module.function("shade").params] == ["x"]
+
+
+def test_a_struct_of_which_several_fields_are_read_is_computed_once() -> None:
+    pair = Struct("Pair", (("low", FLOAT), ("high", FLOAT)), False)
+    made = Construct((doubled(build.read("t", FLOAT)), build.read("t", FLOAT)), pair)
+    make = function("make", {"t": FLOAT}, Return(made))
+    whole = call("make", wave, type=pair)
+    low, high = build.field(whole, "low"), build.field(whole, "high")
+    module = hoisted(make, entry(Return(build.add(build.multiply(x, low), high))))
+    shared, *fields = module.frame
+    assert shared[1] == whole
+    both = [build.field(frame(shared[0], pair), name) for name in ("low", "high")]
+    assert [value for _, value in fields] == both
+
+
+def test_long_functions_are_written_out_to_share_what_they_have_in_common() -> None:
+    angle, t = build.read("angle", FLOAT), build.read("t", FLOAT)
+    slow = time
+    for _ in range(8):
+        slow = build.builtin("sin", slow)
+    turned = function(
+        "turned",
+        {"angle": FLOAT},
+        Let("base", slow),
+        Return(build.builtin("atan", build.multiply(angle, build.read("base", FLOAT)))),
+    )
+    short = function("short", {"t": FLOAT}, Return(doubled(t)))
+    calls = build.add(
+        call("turned", one),
+        build.add(call("turned", two), call("short", build.builtin("cos", time))),
+    )
+    module = hoisted(turned, short, entry(Return(build.multiply(x, calls))))
+    values = dict(module.frame)
+    assert values["base"] == slow
+    names = [e.name for e in nodes_in(*values.values()) if isinstance(e, Builtin)]
+    assert names.count("sin") == 8 and names.count("atan") == 2
+    assert [f.name for f in module.functions] == ["short", "entry"]
 
 
 def test_values_are_written_over_earlier_values() -> None:

@@ -33,6 +33,7 @@ from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs
 from distal.passes.naming import FreshNames, local_names
 from distal.passes.per_frame.choice import Picking
+from distal.passes.per_frame.expand import Expansion
 from distal.passes.per_frame.finish import finished
 from distal.passes.per_frame.forms import FlowWalk, Forming, Here, hoistable_calls
 from distal.passes.per_frame.values import (
@@ -93,7 +94,8 @@ class _Hoisting:
         self._module = module
         self.costs = Costs(function_costs(module.functions))
         self.forming = Forming(context.precision, hoistable_calls(module.functions))
-        self.frame_values = FrameValues(self.costs)
+        self.expansion = Expansion(module.functions, self.forming, self.costs)
+        self.frame_values = FrameValues(self.costs, self.expansion.names)
         self.keeps_constants = not context.target.inline
         self.params = {f.name: f.params for f in module.functions}
         self.calls: dict[str, _Calls] = {}
@@ -219,6 +221,8 @@ class _Rewriting:
 
     def _carried(self, form: Expr, hint: NameHint, rate: int) -> Expr:
         """Return an expression for a form: read from the frame, passed by callers, or computed."""
+        if not _leaves(form, Read):
+            form = self._hoisting.expansion.expanded(form)
         if isinstance(form.type, Struct):
             parts = []
             for field_name, type in form.type.fields:

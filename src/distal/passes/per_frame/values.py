@@ -7,6 +7,7 @@ module's per-frame values, each expressed in terms of earlier ones.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Final, NamedTuple
@@ -81,10 +82,14 @@ class FrameValue:
 
 
 class FrameValues:
-    """All per-frame values of a module."""
+    """All per-frame values of a module.
 
-    def __init__(self, costs: Costs) -> None:
+    ``names`` has the author's names of parts of the values.
+    """
+
+    def __init__(self, costs: Costs, names: Mapping[Expr, str]) -> None:
         self.costs = costs
+        self._names = names
         self._values: dict[Expr, FrameValue] = {}
 
     def read(self, form: Expr, hint: NameHint, rate: int) -> Expr:
@@ -120,17 +125,17 @@ class FrameValues:
     def entries(self, wanted: set[str]) -> list[tuple[str, str | None, Expr]]:
         """Return name, name hint and value of everything that the wanted values need, in order."""
         values = [v for v in self._values.values() if v.name in wanted]
-        return _FrameEntries(values, self.costs).entries
+        return _FrameEntries(values, self.costs, self._names).entries
 
 
 class _FrameEntries:
     """Writes forms in terms of each other, and of new values for the parts that they share."""
 
-    def __init__(self, values: list[FrameValue], costs: Costs) -> None:
+    def __init__(self, values: list[FrameValue], costs: Costs, names: Mapping[Expr, str]) -> None:
         self.entries: list[tuple[str, str | None, Expr]] = []
         self._costs = costs
         self._names = {s.form: s.name for s in values}
-        self._hints = {s.form: s.hint for s in values}
+        self._hints = {**names, **{s.form: s.hint for s in values if s.hint}}
         self._done: dict[Expr, Expr] = {}
         self._deep = FreshNames(())
         users: Counter[Expr] = Counter()
