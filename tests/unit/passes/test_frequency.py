@@ -282,7 +282,7 @@ def test_long_functions_are_written_out_to_share_what_they_have_in_common() -> N
     values = dict(module.frame)
     assert values["base"] == slow
     names = [e.name for e in nodes_in(*values.values()) if isinstance(e, Builtin)]
-    assert names.count("sin") == 8 and names.count("atan") == 2
+    assert (names.count("sin"), names.count("atan")) == (8, 2)
     assert [f.name for f in module.functions] == ["short", "entry"]
 
 
