@@ -32,6 +32,7 @@ from distal.render.part_tree import (
     beyond_box,
     box_count,
     inverse_of,
+    is_first_nearer,
     span_in_box,
     squared,
 )
@@ -232,7 +233,7 @@ def nearest_listed(
     listed: PartList,
     own: OwnParts,
     p: vec3,
-    known: NearestPart,
+    limit: float,
 ) -> NearestPart:
     """Return the part nearest to a point, of those near a ray or another point.
 
@@ -242,13 +243,15 @@ def nearest_listed(
         listed: The list.
         own: The parts that count.
         p: The point.
-        known: A part that is near, or -1; its distance limits the search.
+        limit: Parts that are farther away do not count.
     """
     is_whole = listed.count > MOST_LISTED
-    best = known.distance
-    part = known.part
+    best = limit
+    part = -1
+    # A search of the whole tree begins at a leaf near the point, as that of ``nearest_part``.
+    descends = is_whole
     box = 0
-    for i in range(box_count(boxes) if is_whole else listed.count):
+    for i in range(2 * box_count(boxes) if is_whole else listed.count):
         if not is_whole:
             box = listed.boxes[i]
         elif box >= box_count(boxes):
@@ -258,13 +261,20 @@ def nearest_listed(
         following = int(low.w)
         of = int(high.w)
         bit = select(is_whole, own.others >> (box & 31), own.listed >> i) & 1
-        counts = bit == 1 or of < 0
-        if anywhere(counts and beyond_box(p, low, high) <= squared(best)):
+        counts = bit == 1 or of < 0 or descends
+        if descends and of < 0:
+            following = int(boxes[2 * (box + 1)].w)
+            if anywhere(is_first_nearer(boxes, p, box + 1, following)):
+                following = box + 1
+        elif anywhere(descends or (counts and beyond_box(p, low, high) <= squared(best))):
             if of < 0:
                 following = box + 1
             else:
                 d = select(counts, distance(p, of), best)
                 part = select(d < best, of, part)
                 best = min(best, d)
+                if descends:
+                    following = 0
+                    descends = False
         box = following
     return NearestPart(best, part)

@@ -14,13 +14,8 @@ from distal.lang import Buffer, func, gradient, length, max, min, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
-from distal.render.part_lists import (
-    MOST_LISTED,
-    nearest_listed,
-    parts_along,
-    parts_around,
-)
-from distal.render.part_tree import NearestPart, near_part
+from distal.render.part_lists import nearest_listed, parts_along, parts_around
+from distal.render.part_tree import NearestPart
 from distal.render.shade import Shading, occlusion_in
 from distal.render.shadow_ray import OPEN, Edge, find_edge
 from distal.render.shadows import Opening, above_planes, opening
@@ -71,10 +66,7 @@ def edge_of_parts(
         return Edge(0.0, False, False)
 
     def found_at(p: vec3) -> NearestPart:
-        known = NearestPart(UNBOUNDED, -1)
-        if listed.count > MOST_LISTED:
-            known = near_part(boxes, distance, p)
-        return nearest_listed(boxes, distance, listed, own, p, known)
+        return nearest_listed(boxes, distance, listed, own, p, UNBOUNDED)
 
     def nearest(p: vec3) -> float:
         d = found_at(p).distance
@@ -202,7 +194,7 @@ def occlusion_of_parts(
     def nearest(q: vec3) -> float:
         # The surface at p is not farther away.
         most = max(slope, 1.0) * length(q - p)
-        d = nearest_listed(boxes, distance, listed, own, q, NearestPart(most, -1)).distance
+        d = nearest_listed(boxes, distance, listed, own, q, most).distance
         if has_others:
             d = min(d, others(q))
         return d

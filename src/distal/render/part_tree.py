@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.boxes import everywhere
+from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
     Buffer,
     abs,
@@ -95,68 +96,67 @@ def box_count(boxes: Buffer[vec4]) -> int:
 
 
 @func
-def near_leaf(boxes: Buffer[vec4], p: vec3) -> int:
-    """Return a part whose box is near a point: at each box, the child whose box is nearer."""
-    box = 0
-    part = int(boxes[1].w)
-    for _ in range(box_count(boxes)):
-        if part >= 0:
-            break
-        first = box + 1
-        second = int(boxes[2 * first].w)
-        to_first = beyond_box(p, boxes[2 * first], boxes[2 * first + 1])
-        to_second = beyond_box(p, boxes[2 * second], boxes[2 * second + 1])
-        box = second
-        if anywhere(to_first < to_second):
-            box = first
-        part = int(boxes[2 * box + 1].w)
-    return part
+def is_first_nearer(boxes: Buffer[vec4], p: vec3, first: int, second: int) -> bool:
+    """Return whether the first of two boxes is nearer to a point.
+
+    Args:
+        boxes: The tree.
+        p: The point.
+        first: The number of a box.
+        second: The number of the other box.
+    """
+    to_first = beyond_box(p, boxes[2 * first], boxes[2 * first + 1])
+    to_second = beyond_box(p, boxes[2 * second], boxes[2 * second + 1])
+    return to_first < to_second
 
 
 @func
 def nearest_part(
-    boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3, known: NearestPart
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    p: vec3,
+    limit: float,
+    begins_near: bool,
 ) -> NearestPart:
     """Return the part nearest to a point.
+
+    A search that begins near goes down to a leaf near the point first, whose distance limits the
+    rest. Both are one loop, so that the distance of a part stands in the code once.
 
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
         p: The point.
-        known: A part that is near, or -1; its distance limits the search.
+        limit: Parts that are farther away do not count.
+        begins_near: Whether the search begins near the point; the same for all pixels.
     """
-    best = known.distance
-    part = known.part
+    best = limit
+    part = -1
+    descends = begins_near
     box = 0
-    for _ in range(box_count(boxes)):
+    for _ in range(2 * box_count(boxes)):
         if box >= box_count(boxes):
             break
         low = boxes[2 * box]
         high = boxes[2 * box + 1]
         following = int(low.w)
-        if anywhere(beyond_box(p, low, high) <= squared(best)):
-            of = int(high.w)
+        of = int(high.w)
+        if descends and of < 0:
+            following = int(boxes[2 * (box + 1)].w)
+            if anywhere(is_first_nearer(boxes, p, box + 1, following)):
+                following = box + 1
+        elif anywhere(descends or beyond_box(p, low, high) <= squared(best)):
             if of < 0:
                 following = box + 1
             else:
                 d = distance(p, of)
                 part = select(d < best, of, part)
                 best = min(d, best)
+                if descends:
+                    following = 0
+                    descends = False
         box = following
     return NearestPart(best, part)
-
-
-@func
-def near_part(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> NearestPart:
-    """Return a part near a point, with its distance: where a search begins, to be short.
-
-    Args:
-        boxes: The tree.
-        distance: The signed distance of a point to a part.
-        p: The point.
-    """
-    first = near_leaf(boxes, p)
-    return NearestPart(distance(p, first), first)
 
 
 @func
@@ -170,7 +170,7 @@ def nearest_of_all(
         distance: The signed distance of a point to a part.
         p: The point.
     """
-    return nearest_part(boxes, distance, p, near_part(boxes, distance, p))
+    return nearest_part(boxes, distance, p, UNBOUNDED, True)
 
 
 @func
@@ -201,18 +201,6 @@ def distance_to_parts(
         p: The point.
     """
     return field(p, part_at(boxes, distance, p))
-
-
-@func
-def contains(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> bool:
-    """Return whether a point is inside of a part.
-
-    Args:
-        boxes: The tree.
-        distance: The signed distance of a point to a part.
-        p: The point.
-    """
-    return nearest_part(boxes, distance, p, NearestPart(0.0, -1)).part >= 0
 
 
 @func
@@ -320,16 +308,26 @@ def first_of_parts(
         steps: Maximum number of steps in one part.
     """
     other = others(ray)
-    if other.side < 0.0 or contains(boxes, distance, ray.origin):
+    way = other
+    inside = other.side < 0.0
+    p = ray.origin
+    # First the parts around the origin, then the part at the end of a way out of them.
+    for i in range(2):
+        at_end = i == 1
+        limit = select(at_end, UNBOUNDED, 0.0)
+        nearest = nearest_part(boxes, distance, p, limit, at_end)
+        if at_end:
+            part = select(nearest.distance <= others_field(p), nearest.part, -1)
+            return Hit(way.t, way.found, way.steps, way.side, way.lost, part)
+        inside = inside or nearest.part >= 0
+        if not inside:
+            break
 
-        def field(p: vec3) -> float:
-            return min(nearest_of_all(boxes, distance, p).distance, others_field(p))
+        def field(q: vec3) -> float:
+            return min(nearest_of_all(boxes, distance, q).distance, others_field(q))
 
         way = march(field, ray, everywhere(), numbers, steps)
-        end = ray.origin + way.t * ray.direction
-        nearest = nearest_of_all(boxes, distance, end)
-        part = select(nearest.distance <= others_field(end), nearest.part, -1)
-        return Hit(way.t, way.found, way.steps, way.side, way.lost, part)
+        p = ray.origin + way.t * ray.direction
     far = select(other.found, other.t, numbers.far)
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
     hit = trace_parts(boxes, distance, ray, limited, steps)
