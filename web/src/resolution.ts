@@ -53,8 +53,11 @@ export class Resolution {
     return this.#scale;
   }
 
-  /** Rows of so many pixels that fit one submission, at least one; `Infinity` where all do. */
+  /**
+   * Rows of so many pixels that fit one submission; `Infinity` where all do. An even number: GPUs
+   * shade squares of 2 x 2 pixels, so a band of one row takes as long as one of two.
+   */
   rows(width: number): number {
-    return Math.max(1, Math.floor(BAND_MS / ((this.cost ?? 0) * width)));
+    return 2 * Math.max(1, Math.floor(BAND_MS / (2 * (this.cost ?? 0) * width)));
   }
 }
