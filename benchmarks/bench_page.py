@@ -1,11 +1,14 @@
-"""Size of the raymarcher's page, and time to its first picture.
+"""Size of pages, and time to their first picture.
 
 The goals: at most 60 kB; the first frame in headless Chromium on SwiftShader within 1.5 s of the
 navigation, at 320x240. The page itself marks the moment its first picture is finished
 (``distal:first-frame``); times count from the start of the navigation. Each run is a context of its
 own, so that no compiled shader is left from the run before.
 
-    .venv/bin/python benchmarks/bench_page.py [EXAMPLE …]
+Besides examples there are ``sphere``, one in the default look, and a number, so many parts of three
+kinds.
+
+    .venv/bin/python benchmarks/bench_page.py [EXAMPLE | sphere | NUMBER …]
 """
 
 from __future__ import annotations
@@ -14,11 +17,13 @@ import statistics
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 # The tests' browser is looked for where the repository is, wherever this is started from.
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import distal
+from distal import Box, Camera, DistantLight, Plane, Scene, Sphere, Torus, union
 from tests.browser import BrowserUnavailableError, offline_page
 
 RUNS = 7
@@ -35,6 +40,27 @@ def first_frame_s(page: Path) -> float:
         return float(found.json_value()) / 1000.0
 
 
+def parts(count: int) -> Scene:
+    """So many parts of three kinds on a floor, in the sun."""
+    side = round(count**0.5)
+    step = 4.0 / side
+    shapes = (Sphere(0.3 * step), Box(0.3 * step), Torus(0.3 * step, 0.1 * step).rotate(x=1.0))
+    placed = [
+        shapes[i % 3].translate((i % side + 0.5) * step - 2.0, 0.5 * step, i // side * step - 2.0)
+        for i in range(count)
+    ]
+    camera = Camera((3.0, 3.0, 4.0), target=(0.0, 0.0, 0.0))
+    sun = DistantLight((1.0, 2.0, 1.5), angle=0.01)
+    return Scene(union(placed) | Plane(), camera=camera, lights=sun)
+
+
+def seen(name: str) -> Any:
+    """The object of a word of the command line."""
+    if name == "sphere":
+        return Scene(Sphere(0.5))
+    return parts(int(name)) if name.isdigit() else distal.load(f"example:{name}")
+
+
 def main() -> int:
     """Measure and print; 1 where a goal is missed."""
     names = sys.argv[1:] or ["raymarcher"]
@@ -42,7 +68,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             page = Path(folder, f"{name}.html")
-            made = distal.load(f"example:{name}").export(page)
+            made = seen(name).export(page)
             print(made)
             try:
                 first_frame_s(page)  # starts the browser
