@@ -85,7 +85,7 @@ class Landing:
 
 
 @struct
-class Way:
+class SegmentState:
     """The state of a segment.
 
     Attributes:
@@ -180,7 +180,7 @@ def segment_between(
     first = select(starts, clamp(START * noise / max(rise, 1e-6), noise, max(reach, noise)), 0.0)
     # A crossing in a first step as short as this is the next face.
     shortest = select(starts, 4.0 * noise / max(rise, 1e-3), first)
-    way = Way(t, 0.0, rise, 0.0, 0.0, first, reach, 0.0, 0.0, False)
+    way = SegmentState(t, 0.0, rise, 0.0, 0.0, first, reach, 0.0, 0.0, False)
     around = side
     taken = 0
     for _ in range(min(steps, MOST_STEPS)):
@@ -210,7 +210,9 @@ def share_of(free: float, below: float) -> float:
 
 
 @func
-def moved(way: Way, value: float, noise: float, end: float, shortest: float, widening: bool) -> Way:
+def moved(
+    way: SegmentState, value: float, noise: float, end: float, shortest: float, widening: bool
+) -> SegmentState:
     """Return the state of a segment after one more evaluation of the field.
 
     All choices are between numbers, not between branches: the CPU computes many rays together.
@@ -271,7 +273,7 @@ def moved(way: Way, value: float, noise: float, end: float, shortest: float, wid
     close = enters and agrees and below * way.step <= 4.0 * noise * (free + below)
     t = select(exact, at, select(passes, end + 1.0, t))
     high = select(exact, 0.0, high)
-    return Way(t, free, rise, bend, last, step, reach, high, below, exact or close)
+    return SegmentState(t, free, rise, bend, last, step, reach, high, below, exact or close)
 
 
 @func
