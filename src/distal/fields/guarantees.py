@@ -4,11 +4,12 @@ Input: ``@func`` functions, and bounds on their slopes, boxes and growth. Output
 ``Operator`` declarations, in their order. Does not depend on the object model that reads them, or
 on rendering.
 
-Values are bound by parameter name. Some names have a fixed meaning: ``p`` the point, ``d`` a
-distance, ``a`` and ``b`` two distances, ``field`` a function of a point, ``cell`` the index of the
-repetition that contains the point, ``slope``/``slope_a``/``slope_b`` Lipschitz bounds (bounds on
-|gradient|), ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and ``side_growth`` (with
-``_a``, ``_b``; without a suffix on two children: the larger) how fast the box grows with the level.
+Values are bound by parameter name. Some names have a fixed meaning: ``p`` the point, ``direction``
+that of a line, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a function of a point,
+``cell`` the index of the repetition that contains the point, ``slope``/``slope_a``/``slope_b``
+Lipschitz bounds (bounds on |gradient|), ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and
+``side_growth`` (with ``_a``, ``_b``; without a suffix on two children: the larger) how fast the box
+grows with the level.
 Every other parameter is a number of the shape, or a choice (int, bool) that is fixed when the scene
 is compiled.
 
@@ -205,6 +206,9 @@ class Primitive:
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
         linear: Whether the value is linear in p, as for a plane: rays meet it in closed form.
+        chord: For a convex solid: ``(p, direction, *numbers) -> vec2``, the distances at which the
+            line through p in a unit direction enters and leaves it (``fields.chords``), in closed
+            form; x > y if the line misses it. None if it is not known.
     """
 
     name: str
@@ -224,6 +228,7 @@ class Primitive:
     approximates: Approximation | None = None
     normalize: Func | None = None
     proved: Proven | None = None
+    chord: Func | None = None
 
     @property
     def flat(self) -> bool:
@@ -272,6 +277,8 @@ class Operator:
         cuts: Whether the second shape is subtracted, so that its ``cut_material`` is shown.
         local: Whether it changes the shapes only where they meet.
         linear: Whether the value is linear in p if that of the child is.
+        turn: For a rigid move or a uniform scale: ``(p, …) -> vec3``, as ``point`` for a unit
+            direction p. Chords of the child are those of the result, with ``finish`` for lengths.
         approximates: What the operator replaces by simpler pieces, or None.
     """
 
@@ -295,6 +302,7 @@ class Operator:
     cuts: bool = False
     local: bool = True
     linear: bool = False
+    turn: Func | None = None
     approximates: Approximation | None = None
 
     @property
@@ -378,6 +386,7 @@ def primitive(
     linear: bool = False,
     measured: Mapping[str, str] | None = None,
     approximates: Approximation | None = None,
+    chord: Func | None = None,
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -396,6 +405,7 @@ def primitive(
         linear: Whether the value is linear in p.
         measured: The numbers that are measured from the shape's data.
         approximates: What the shape replaces by simpler pieces.
+        chord: The function of the part of a line inside of a convex solid.
     """
 
     def declare(distance: F) -> F:
@@ -416,6 +426,7 @@ def primitive(
             linear,
             measured or {},
             approximates,
+            chord=chord,
         )
         return distance
 

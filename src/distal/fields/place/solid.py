@@ -38,6 +38,12 @@ def translated(p: vec3, offset: vec3) -> vec3:
 
 
 @func
+def same_direction(p: vec3) -> vec3:
+    """Return a direction before an operator that keeps all directions."""
+    return p
+
+
+@func
 def translated_bounds(bounds: Bounds, offset: vec3) -> Bounds:
     """Return the box, translated."""
     return Bounds(bounds.low + offset, bounds.high + offset)
@@ -338,6 +344,7 @@ TRANSLATE = operator(
     point=translated,
     keeps=EXACT,
     linear=True,
+    turn=same_direction,
     bounds=translated_bounds,
     growth=Growth.KEPT,
 )
@@ -346,6 +353,7 @@ ROTATE = operator(
     point=rotated,
     keeps=EXACT,
     linear=True,
+    turn=rotated,
     bounds=rotated_bounds,
     limits={"axis": Limit.UNIT},
     growth=Growth.TURNED,
@@ -355,6 +363,7 @@ ROTATE_X = operator(
     point=rotated_x,
     keeps=EXACT,
     linear=True,
+    turn=rotated_x,
     bounds=rotated_x_bounds,
     growth=Growth.TURNED,
 )
@@ -363,6 +372,7 @@ ROTATE_Y = operator(
     point=rotated_y,
     keeps=EXACT,
     linear=True,
+    turn=rotated_y,
     bounds=rotated_y_bounds,
     growth=Growth.TURNED,
 )
@@ -371,6 +381,7 @@ ROTATE_Z = operator(
     point=rotated_z,
     keeps=EXACT,
     linear=True,
+    turn=rotated_z,
     bounds=rotated_z_bounds,
     growth=Growth.TURNED,
 )
@@ -379,6 +390,7 @@ ROTATE_EULER = operator(
     point=rotated_euler,
     keeps=EXACT,
     linear=True,
+    turn=rotated_euler,
     bounds=rotated_euler_bounds,
     growth=Growth.TURNED,
 )
@@ -387,6 +399,7 @@ ROTATE_QUATERNION = operator(
     point=rotated_quaternion,
     keeps=EXACT,
     linear=True,
+    turn=rotated_quaternion,
     bounds=rotated_quaternion_bounds,
     limits={"quaternion": Limit.UNIT},
     growth=Growth.TURNED,
@@ -396,6 +409,7 @@ ROTATE_MATRIX = operator(
     point=rotated_matrix,
     keeps=EXACT,
     linear=True,
+    turn=rotated_matrix,
     bounds=rotated_matrix_bounds,
     requires=orthonormal_requirement,
     growth=Growth.TURNED,
@@ -405,6 +419,7 @@ ORIENT = operator(
     point=oriented,
     keeps=EXACT,
     linear=True,
+    turn=oriented,
     bounds=oriented_bounds,
     requires=direction_requirement,
     growth=Growth.TURNED,
@@ -415,6 +430,7 @@ SCALE = operator(
     finish=scaled_value,
     keeps=EXACT,
     linear=True,
+    turn=same_direction,
     bounds=scaled_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,

@@ -17,6 +17,8 @@ from distal.lang.functions import Func
 # The default ends of shapes between two points.
 LOW_END: Final = vec3(0.0, -0.5, 0.0)
 HIGH_END: Final = vec3(0.0, 0.5, 0.0)
+# The axis of upright shapes.
+UPWARD: Final = vec3(0.0, 1.0, 0.0)
 
 
 @func

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.chords import in_box
 from distal.fields.constants import HALF_ROOT, ROOT_THREE
 from distal.fields.guarantees import (
     EXACT,
@@ -17,7 +18,7 @@ from distal.fields.guarantees import (
     Limit,
     primitive,
 )
-from distal.lang import abs, func, length, max, min, select, sqrt, vec3
+from distal.lang import abs, func, length, max, min, select, sqrt, vec2, vec3
 
 UNIT_CUBE: Final = vec3(1.0)
 
@@ -46,7 +47,13 @@ def box_bounds(size: vec3) -> Bounds:
     return Bounds(-0.5 * size, 0.5 * size)
 
 
-@primitive("Box", EXACT, bounds=box_bounds)
+@func
+def box_chord(p: vec3, direction: vec3, size: vec3) -> vec2:
+    """Return the part of a line inside."""
+    return in_box(p, direction, 0.5 * size)
+
+
+@primitive("Box", EXACT, bounds=box_bounds, chord=box_chord)
 @func
 def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     """Box with sides along the axes, centred at the origin.
@@ -65,7 +72,14 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     return corner(abs(p) - 0.5 * size)
 
 
-@primitive("BoxCheap", INSIDE_AND_BOUND, bounds=box_bounds, growth=ROOT_THREE, side_growth=1.0)
+@primitive(
+    "BoxCheap",
+    INSIDE_AND_BOUND,
+    bounds=box_bounds,
+    growth=ROOT_THREE,
+    side_growth=1.0,
+    chord=box_chord,
+)
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     """Box without a square root; outside, next to edges and corners, a lower bound.

@@ -6,14 +6,17 @@ profile, in coordinates of the distance from the axis and the height above the m
 
 from __future__ import annotations
 
+from distal.fields.chords import in_cone
 from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
+    UPWARD,
     apart,
     around_axis,
     around_y,
+    axis_direction,
     balls_bounds,
     below_pi,
     discs_bounds,
@@ -80,9 +83,16 @@ def capped_cone_requires(bottom: float, top: float) -> str | None:
     return None if bottom > 0.0 or top > 0.0 else "bottom or top must be above 0"
 
 
+@func
+def capped_cone_chord(p: vec3, direction: vec3, bottom: float, top: float, height: float) -> vec2:
+    """Return the part of a line inside."""
+    return in_cone(p, direction, UPWARD, bottom, top, height)
+
+
 @primitive(
     "CappedCone",
     EXACT,
+    chord=capped_cone_chord,
     bounds=capped_cone_bounds,
     limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE},
     requires=capped_cone_requires,
@@ -124,9 +134,20 @@ def capped_cone_between_requires(
     return "start_radius or end_radius must be above 0"
 
 
+@func
+def capped_cone_between_chord(
+    p: vec3, direction: vec3, start: vec3, end: vec3, start_radius: float, end_radius: float
+) -> vec2:
+    """Return the part of a line inside."""
+    axis = axis_direction(start, end)
+    height = max(length(end - start), TINY)
+    return in_cone(p - 0.5 * (start + end), direction, axis, start_radius, end_radius, height)
+
+
 @primitive(
     "CappedConeBetween",
     EXACT,
+    chord=capped_cone_between_chord,
     bounds=capped_cone_between_bounds,
     limits={"start_radius": Limit.NOT_NEGATIVE, "end_radius": Limit.NOT_NEGATIVE},
     requires=capped_cone_between_requires,
@@ -166,7 +187,13 @@ def cone_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(radius, -0.5 * height, 0.5 * height)
 
 
-@primitive("Cone", EXACT, bounds=cone_bounds)
+@func
+def cone_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec2:
+    """Return the part of a line inside."""
+    return in_cone(p, direction, UPWARD, radius, 0.0, height)
+
+
+@primitive("Cone", EXACT, bounds=cone_bounds, chord=cone_chord)
 @func
 def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cone with its tip at the top.
@@ -193,7 +220,13 @@ def cone_cheap_growth(radius: float, height: float) -> float:
     return max(side / radius, length(vec2((side + radius) / height, 1.0)))
 
 
-@primitive("ConeCheap", INSIDE_AND_BOUND, bounds=cone_bounds, growth=cone_cheap_growth)
+@primitive(
+    "ConeCheap",
+    INSIDE_AND_BOUND,
+    bounds=cone_bounds,
+    growth=cone_cheap_growth,
+    chord=cone_chord,
+)
 @func
 def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cone as the maximum of side and base; a lower bound beyond tip and rim.
@@ -222,7 +255,21 @@ def cone_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
     return discs_bounds(start, end, radius, 0.0)
 
 
-@primitive("ConeBetween", EXACT, bounds=cone_between_bounds, requires=apart)
+@func
+def cone_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radius: float) -> vec2:
+    """Return the part of a line inside."""
+    axis = axis_direction(start, end)
+    height = max(length(end - start), TINY)
+    return in_cone(p - 0.5 * (start + end), direction, axis, radius, 0.0, height)
+
+
+@primitive(
+    "ConeBetween",
+    EXACT,
+    bounds=cone_between_bounds,
+    requires=apart,
+    chord=cone_between_chord,
+)
 @func
 def cone_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5

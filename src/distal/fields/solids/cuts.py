@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from distal.fields.chords import below_face, in_ball, in_both
 from distal.fields.constants import PI
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
@@ -40,9 +41,16 @@ def cut_sphere_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(select(height > 0.0, rim_radius(radius, height), radius), height, radius)
 
 
+@func
+def cut_sphere_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec2:
+    """Return the part of a line in the ball and above the plane."""
+    return in_both(in_ball(p, direction, radius), below_face(height - p.y, -direction.y))
+
+
 @primitive(
     "CutSphere",
     EXACT,
+    chord=cut_sphere_chord,
     bounds=cut_sphere_bounds,
     limits={"height": Limit.ANY},
     requires=_plane_cuts_ball,

@@ -5,15 +5,18 @@ Input: a point and the numbers of a shape. Output: the distance.
 
 from __future__ import annotations
 
+from distal.fields.chords import in_capsule, in_cylinder, in_round
 from distal.fields.constants import TINY
 from distal.fields.flats.edges import inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
+    UPWARD,
     apart,
     around_axis,
     around_y,
+    axis_direction,
     balls_bounds,
     discs_bounds,
     upright_bounds,
@@ -21,7 +24,13 @@ from distal.fields.solids.axes import (
 from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
 
 
-@primitive("InfiniteCylinder", EXACT)
+@func
+def infinite_cylinder_chord(p: vec3, direction: vec3, radius: float) -> vec2:
+    """Return the part of a line inside."""
+    return in_round(vec3(p.x, 0.0, p.z), vec3(direction.x, 0.0, direction.z), radius)
+
+
+@primitive("InfiniteCylinder", EXACT, chord=infinite_cylinder_chord)
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
     """Infinite cylinder around the y axis.
@@ -55,7 +64,13 @@ def cylinder_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(radius, -0.5 * height, 0.5 * height)
 
 
-@primitive("Cylinder", EXACT, bounds=cylinder_bounds)
+@func
+def cylinder_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec2:
+    """Return the part of a line inside."""
+    return in_cylinder(p, direction, UPWARD, 0.5 * height, radius)
+
+
+@primitive("Cylinder", EXACT, bounds=cylinder_bounds, chord=cylinder_chord)
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cylinder, centred at the origin.
@@ -81,7 +96,21 @@ def cylinder_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
     return discs_bounds(start, end, radius, radius)
 
 
-@primitive("CylinderBetween", EXACT, bounds=cylinder_between_bounds, requires=apart)
+@func
+def cylinder_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radius: float) -> vec2:
+    """Return the part of a line inside."""
+    axis = axis_direction(start, end)
+    half = 0.5 * length(end - start)
+    return in_cylinder(p - 0.5 * (start + end), direction, axis, half, radius)
+
+
+@primitive(
+    "CylinderBetween",
+    EXACT,
+    bounds=cylinder_between_bounds,
+    requires=apart,
+    chord=cylinder_between_chord,
+)
 @func
 def cylinder_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.5
@@ -148,7 +177,19 @@ def capsule_bounds(radius: float, height: float) -> Bounds:
     return upright_bounds(radius, -0.5 * height - radius, 0.5 * height + radius)
 
 
-@primitive("Capsule", EXACT, bounds=capsule_bounds, limits={"height": Limit.NOT_NEGATIVE})
+@func
+def capsule_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec2:
+    """Return the part of a line inside."""
+    return in_capsule(p, direction, UPWARD, 0.5 * height, radius)
+
+
+@primitive(
+    "Capsule",
+    EXACT,
+    bounds=capsule_bounds,
+    limits={"height": Limit.NOT_NEGATIVE},
+    chord=capsule_chord,
+)
 @func
 def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
     """Upright capsule: a cylinder with half balls at its ends.
@@ -186,7 +227,15 @@ def capsule_between_bounds(start: vec3, end: vec3, radius: float) -> Bounds:
     return balls_bounds(start, end, radius, radius)
 
 
-@primitive("CapsuleBetween", EXACT, bounds=capsule_between_bounds)
+@func
+def capsule_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radius: float) -> vec2:
+    """Return the part of a line inside."""
+    axis = axis_direction(start, end)
+    half = 0.5 * length(end - start)
+    return in_capsule(p - 0.5 * (start + end), direction, axis, half, radius)
+
+
+@primitive("CapsuleBetween", EXACT, bounds=capsule_between_bounds, chord=capsule_between_chord)
 @func
 def capsule_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4

@@ -9,12 +9,13 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from distal.fields.chords import below_face, in_both, in_box
 from distal.fields.constants import HALF_ROOT, ROOT_THREE
 from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, primitive
 from distal.fields.ordering import larger_first, largest_first
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
 from distal.fields.solids.boxes import UNIT_CUBE, box_bounds
-from distal.fields.solids.regular import DIAGONAL
+from distal.fields.solids.regular import DIAGONAL, octahedron_chord
 from distal.lang import (
     Buffer,
     abs,
@@ -54,7 +55,7 @@ def face_edge(height: float, past_edge: float, past_end: float) -> float:
     return select(past_edge > 0.0, length(vec3(height, past_edge, max(past_end, 0.0))), height)
 
 
-@primitive("Octahedron", EXACT, bounds=sphere_bounds)
+@primitive("Octahedron", EXACT, bounds=sphere_bounds, chord=octahedron_chord)
 @func
 def octahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular octahedron with its vertices on the axes.
@@ -163,9 +164,21 @@ def convex_polyhedron_requires(planes: Any) -> str | None:
     return None
 
 
+@func
+def convex_polyhedron_chord(p: vec3, direction: vec3, planes: Buffer[vec4], size: vec3) -> vec2:
+    """Return the part of a line below all planes."""
+    chord = in_box(p, direction, 0.5 * size)
+    for i in range(count_of(planes)):
+        plane = planes[i]
+        below = below_face(dot(p, plane.xyz) - plane.w, dot(direction, plane.xyz))
+        chord = in_both(chord, below)
+    return chord
+
+
 @primitive(
     "ConvexPolyhedron",
     INSIDE_AND_BOUND,
+    chord=convex_polyhedron_chord,
     bounds=box_bounds,
     requires=convex_polyhedron_requires,
     growth=ROOT_THREE,

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.chords import between_faces, in_both
 from distal.fields.constants import PI
 from distal.fields.flats.edges import fold_past, fold_sectors, inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
@@ -20,6 +21,7 @@ DIAGONALS: Final = vec2(1.0, 0.6)
 # Half of the side length, and the distance of the corners, for a side at distance 1.
 TRIANGLE_HALF_SIDE: Final = math.sqrt(3.0)
 HEXAGON_HALF_SIDE: Final = math.tan(math.pi / 6.0)
+HEXAGON_SIDE: Final = math.cos(math.pi / 6.0)
 HEXAGON_REACH: Final = 1.0 / math.cos(math.pi / 6.0)
 OCTAGON_HALF_SIDE: Final = math.tan(math.pi / 8.0)
 
@@ -70,7 +72,24 @@ def hex_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("HexPrism", EXACT, bounds=hex_prism_bounds)
+@func
+def hex_prism_chord(p: vec3, direction: vec3, apothem: float, height: float) -> vec2:
+    """Return the part of a line inside: between four pairs of faces."""
+    aslant = HEXAGON_SIDE * p.x
+    turned = HEXAGON_SIDE * direction.x
+    return in_both(
+        in_both(
+            between_faces(p.y, direction.y, 0.5 * height),
+            between_faces(p.z, direction.z, apothem),
+        ),
+        in_both(
+            between_faces(aslant + 0.5 * p.z, turned + 0.5 * direction.z, apothem),
+            between_faces(aslant - 0.5 * p.z, turned - 0.5 * direction.z, apothem),
+        ),
+    )
+
+
+@primitive("HexPrism", EXACT, bounds=hex_prism_bounds, chord=hex_prism_chord)
 @func
 def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular hexagon; two sides face along z.

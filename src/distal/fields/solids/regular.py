@@ -14,10 +14,11 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from distal.fields.chords import between_faces, in_both
 from distal.fields.constants import ROOT_THREE
 from distal.fields.guarantees import INSIDE_AND_BOUND, primitive
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
-from distal.lang import abs, func, max, vec3
+from distal.lang import abs, func, max, vec2, vec3, vec4
 from distal.lang.functions import Func
 
 GOLDEN: Final = (1.0 + math.sqrt(5.0)) / 2.0
@@ -101,7 +102,30 @@ def along_faces(q: vec3) -> float:
     )
 
 
-@primitive("OctahedronCheap", INSIDE_AND_BOUND, bounds=sphere_bounds, growth=1.0 / OCTAHEDRON_FACE)
+@func
+def octahedron_chord(p: vec3, direction: vec3, radius: float) -> vec2:
+    """Return the part of a line inside: between four pairs of faces."""
+    # Heights above the pairs of faces, times the square root of 3.
+    levels = vec4(p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.y + p.z - p.x)
+    rises = vec4(
+        direction.x + direction.y + direction.z,
+        direction.x + direction.y - direction.z,
+        direction.x - direction.y + direction.z,
+        direction.y + direction.z - direction.x,
+    )
+    return in_both(
+        in_both(between_faces(levels.x, rises.x, radius), between_faces(levels.y, rises.y, radius)),
+        in_both(between_faces(levels.z, rises.z, radius), between_faces(levels.w, rises.w, radius)),
+    )
+
+
+@primitive(
+    "OctahedronCheap",
+    INSIDE_AND_BOUND,
+    bounds=sphere_bounds,
+    growth=1.0 / OCTAHEDRON_FACE,
+    chord=octahedron_chord,
+)
 @func
 def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
     """Octahedron as the maximum of its faces' planes; a lower bound beyond edges.

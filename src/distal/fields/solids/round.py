@@ -7,17 +7,18 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.fields.chords import in_ball, in_round
 from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, primitive
 from distal.fields.solids.axes import sphere_bounds
 from distal.fields.solids.regular import along_vertices
-from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec3
+from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec2, vec3
 
 EGG: Final = vec3(0.5, 0.75, 0.5)
 HALF_BALL: Final = vec3(0.5)
 
 
-@primitive("Sphere", EXACT, bounds=sphere_bounds)
+@primitive("Sphere", EXACT, bounds=sphere_bounds, chord=in_ball)
 @func
 def sphere(p: vec3, radius: float = 1.0) -> float:
     """Ball, centred at the origin.
@@ -71,12 +72,19 @@ def ellipsoid_growth(radii: vec3) -> float:
     return 0.5 * (ratio + 1.0 / ratio)
 
 
+@func
+def ellipsoid_chord(p: vec3, direction: vec3, radii: vec3) -> vec2:
+    """Return the part of a line inside: that of the ball which the ellipsoid is stretched from."""
+    return in_round(p / radii, direction / radii, 1.0)
+
+
 @primitive(
     "Ellipsoid",
     LOWER_BOUND,
     slope=ellipsoid_slope,
     bounds=ellipsoid_bounds,
     growth=ellipsoid_growth,
+    chord=ellipsoid_chord,
 )
 @func
 def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:

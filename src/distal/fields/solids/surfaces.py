@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.fields.chords import below_face, between_faces
 from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, UNBOUNDED, Bounds, primitive
 from distal.fields.solids.cones import opening
@@ -23,7 +24,13 @@ CORNER_C: Final = vec3(0.5, 0.0, -0.5)
 CORNER_D: Final = vec3(-0.5, 0.0, -0.5)
 
 
-@primitive("Plane", EXACT, linear=True)
+@func
+def plane_chord(p: vec3, direction: vec3, y: float) -> vec2:
+    """Return the part of a line below the plane."""
+    return below_face(p.y - y, direction.y)
+
+
+@primitive("Plane", EXACT, linear=True, chord=plane_chord)
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
     """Ground: the half space below a horizontal plane.
@@ -42,7 +49,13 @@ def plane(p: vec3, y: float = 0.0) -> float:
     return p.y - y
 
 
-@primitive("HalfSpace", EXACT, linear=True)
+@func
+def half_space_chord(p: vec3, direction: vec3, normal: vec3, offset: float) -> vec2:
+    """Return the part of a line below the plane."""
+    return below_face(dot(p, normal) - offset, dot(direction, normal))
+
+
+@primitive("HalfSpace", EXACT, linear=True, chord=half_space_chord)
 @func
 def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     """Half space on one side of a plane.
@@ -69,7 +82,13 @@ def slab_bounds(thickness: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("Slab", EXACT, bounds=slab_bounds)
+@func
+def slab_chord(p: vec3, direction: vec3, thickness: float) -> vec2:
+    """Return the part of a line between the two planes."""
+    return between_faces(p.y, direction.y, 0.5 * thickness)
+
+
+@primitive("Slab", EXACT, bounds=slab_bounds, chord=slab_chord)
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:
     """Infinite horizontal slab, centred at y = 0.
