@@ -34,6 +34,9 @@ from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
 from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March, march, march_between
 
+# Rounding errors of a place, for each unit of its coordinates.
+ROUNDING = 2e-6
+
 
 @struct
 class NearestPart:
@@ -233,23 +236,53 @@ def march_part(
 
 
 @func
+def meet_part(
+    chord: Callable[[vec3, vec3, int], vec2], part: int, ray: Ray, far: float, numbers: March
+) -> Hit:
+    """Return where a ray from outside enters a part, in closed form.
+
+    A ray that starts on the surface, by rounding just below it, has entered if it goes on inside.
+
+    Args:
+        chord: Where a line enters and leaves a part.
+        part: The part.
+        ray: Ray.
+        far: The distance along the ray where it ends.
+        numbers: The other parameters of the march.
+    """
+    ends = chord(ray.origin, ray.direction, part)
+    p = abs(ray.origin)
+    noise = ROUNDING * (p.x + p.y + p.z)
+    t = max(ends.x, numbers.near)
+    is_ahead = ends.x >= numbers.near - noise and ends.y > numbers.near + noise
+    return Hit(t, ends.x <= ends.y and is_ahead and t < far, 1, 1.0)
+
+
+@func
 def trace_parts(
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
+    chord: Callable[[vec3, vec3, int], vec2],
+    has_chord: Callable[[int], bool],
     ray: Ray,
     numbers: March,
     steps: int,
+    some_chords: bool,
 ) -> Hit:
     """March to the first part along a ray that starts outside of all parts.
 
-    Each part is marched alone, inside of its box, and only up to the nearest hit so far.
+    Each part is marched alone, inside of its box, and only up to the nearest hit so far; a part
+    with a chord is met in closed form.
 
     Args:
         boxes: The tree.
         distance: The signed distance of a point to a part.
+        chord: Where a line enters and leaves a part.
+        has_chord: Whether that is known of a part.
         ray: Ray.
         numbers: The parameters of the march.
         steps: Maximum number of steps in one part.
+        some_chords: Whether it is known of any part; a constant.
     """
     inverse = inverse_of(ray.direction)
     # A ray that passes a surface within the threshold has hit it.
@@ -273,7 +306,11 @@ def trace_parts(
             if of < 0:
                 following = box + 1
             elif meets:
-                hit = march_part(distance, of, ray, span, t, numbers, steps)
+                hit = Hit(t, False, 0, 1.0)
+                if some_chords and has_chord(of):
+                    hit = meet_part(chord, of, ray, t, numbers)
+                else:
+                    hit = march_part(distance, of, ray, span, t, numbers, steps)
                 taken += hit.steps
                 lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
                 if hit.found and hit.t < t:
@@ -289,9 +326,12 @@ def first_of_parts(
     others_field: Callable[[vec3], float],
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
+    chord: Callable[[vec3, vec3, int], vec2],
+    has_chord: Callable[[int], bool],
     ray: Ray,
     numbers: March,
     steps: int,
+    some_chords: bool,
 ) -> Hit:
     """March to the first surface of the parts and of what is beside them.
 
@@ -303,9 +343,12 @@ def first_of_parts(
         others_field: Signed distance of what is beside the parts.
         boxes: The tree.
         distance: The signed distance of a point to a part.
+        chord: Where a line enters and leaves a part.
+        has_chord: Whether that is known of a part.
         ray: Ray.
         numbers: The parameters of the march.
         steps: Maximum number of steps in one part.
+        some_chords: Whether it is known of any part; a constant.
     """
     other = others(ray)
     way = other
@@ -330,7 +373,7 @@ def first_of_parts(
         p = ray.origin + way.t * ray.direction
     far = select(other.found, other.t, numbers.far)
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
-    hit = trace_parts(boxes, distance, ray, limited, steps)
+    hit = trace_parts(boxes, distance, chord, has_chord, ray, limited, steps, some_chords)
     taken = other.steps + hit.steps
     lost = select(hit.found, PASSED, max(hit.lost, other.lost))
     if hit.found or not other.found:

@@ -10,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from distal.ir.build import add, cast, compare, index, integer, multiply, swizzle
+from distal.fields.chords import missed
+from distal.ir.build import add, boolean, cast, compare, index, integer, multiply, swizzle
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Param, Read, Return
-from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Kind, Type
+from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Kind, Type
 from distal.render import part_tree
+from distal.scene.lowering.chords import chord_of, has_chord
 from distal.scene.lowering.parts.kinds import Column, PartKind
 from distal.scene.lowering.parts.table import PartTable
 from distal.scene.tree.values import StatementList
@@ -29,6 +31,10 @@ POINT: Final = Read("p", VEC3)
 
 # Adds the statements of one kind, and returns its value.
 OfKind: TypeAlias = "Callable[[StatementList, PartKind], Expr]"
+
+
+def _has_chord(body: StatementList, kind: PartKind) -> Expr:
+    return boolean(has_chord(kind.node))
 
 
 class PartFunctions:
@@ -50,6 +56,15 @@ class PartFunctions:
         self._field_of = self.distance_of
         if table.needs_factors:
             self._field_of = self.of_part("part_field", params, FLOAT, self._field)
+        if table.boxes is not None:
+            self._add_chords()
+
+    def _add_chords(self) -> None:
+        """Add the chords of the kinds that have some, for the scene code of ``render``."""
+        self.given["some_chords"] = boolean(any(has_chord(k.node) for k in self._table.kinds))
+        line = (("p", VEC3), ("direction", VEC3), ("part", INT))
+        self.given["chord"] = self.of_part("part_chord", line, VEC2, self._chord)
+        self.given["has_chord"] = self.of_part("has_chord", line[2:], BOOL, _has_chord)
 
     def _read(self, column: Column) -> Expr:
         """Return the numbers of a column, in the row of ``PART``."""
@@ -76,6 +91,14 @@ class PartFunctions:
         if kind.factor is None:
             return value
         return body.let("d", multiply(value, self._read(Column(kind.factor, FLOAT))))
+
+    def _chord(self, body: StatementList, kind: PartKind) -> Expr:
+        """Return where a line enters and leaves the part; nowhere if that is not known."""
+        if not has_chord(kind.node):
+            return self._composer.call(missed, {})
+        values = self._composer.values.all(kind.node)
+        line = (POINT, Read("direction", VEC3))
+        return chord_of(self._composer, body, kind.node, line, ZERO_CELL, values)
 
     def distance(self, p: Expr) -> Expr:
         """Return the value of the author's field of the part nearest to a point."""

@@ -16,12 +16,14 @@ from typing import Final, TypeAlias
 from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
 from distal.ir.build import boolean, builtin, cast, compare, integer, multiply
+from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Call, CompareOp, Const, Expr, FunctionRef, If, Return
-from distal.ir.types import FLOAT, INT, VEC3, Kind, Type
+from distal.ir.nodes import Call, CompareOp, Const, Construct, Expr, FunctionRef, If, Return
+from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
 from distal.render import (
+    closed_hits,
     part_segments,
     part_shading,
     part_tree,
@@ -33,6 +35,7 @@ from distal.render import (
 )
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
+from distal.scene.lowering.chords import chord_of, has_chord
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.union_parts import parts_of
@@ -46,6 +49,8 @@ MOST_STEPS: Final = 4096
 # rays, and at least this many. With as many, .2 % of the pixels of a ball on a floor lost one.
 SHADOW_STEPS: Final = 2
 LEAST_SHADOW_STEPS: Final = 64
+# The most solids with chords that are met in closed form; more of them are marched.
+MOST_SOLIDS: Final = 15
 
 # What the marches take besides the ray and the fields.
 _TAKEN: Final = (
@@ -59,6 +64,8 @@ _TAKEN: Final = (
     "farthest_plane",
     "steep",
     "look",
+    "count",
+    "has_planes",
 )
 
 # Adds a function to the program: its name, its parameters, its body, captured values.
@@ -120,6 +127,8 @@ class RayFunctions:
         self._define = define
         self._planes, others = split_planes(root)
         self._others = [node for node in others if not isinstance(node, TableNode)]
+        is_closed = len(self._others) <= MOST_SOLIDS and all(map(has_chord, self._others))
+        self._solids = self._others if is_closed else []
         self._beside = [*self._planes, *self._others]
         tables = [node for node in others if isinstance(node, TableNode)]
         self._table = composer.table(tables[0]) if tables else None
@@ -179,15 +188,50 @@ class RayFunctions:
         self, body: StatementList, params: Params, given: Mapping[str, Expr], *, hybrid: bool
     ) -> FunctionRef:
         """Return the function ``(ray) -> Hit`` of all shapes but those of the table."""
-        if self._table is None and (hybrid or not self._planes):
+        if self._table is None and (hybrid or not (self._planes or self._solids)):
             field = self._field(self._root) if hybrid else self._safe_field(self._root)
             return self._bound(trace.first_surface, params, given, {"field": field})
+        if self._solids and not hybrid:
+            return self._first_of_solids(params, given)
         values = {**given, **self._without_planes(body)}
         if not self._planes:
             functions = {"field": self._others_field()}
             return self._bound(trace.first_surface, params, values, functions)
         functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
         return self._bound(trace.first_surface_or_plane, params, values, functions)
+
+    def _first_of_solids(self, params: Params, given: Mapping[str, Expr]) -> FunctionRef:
+        """Return the function ``(ray) -> Hit`` of solids that all have chords, and of planes."""
+        values = {
+            **given,
+            "count": integer(len(self._solids) + len(self._planes)),
+            "has_planes": boolean(bool(self._planes)),
+        }
+        functions = {
+            "solids": self._along_solids(),
+            "planes": self._planes_field() if self._planes else self._nothing(),
+            "nearest_plane": self._nearest_plane(),
+        }
+        return self._bound(closed_hits.first_surface_of_solids, params, values, functions)
+
+    def _along_solids(self) -> FunctionRef:
+        """Return the function ``(ray, t, below) -> Passed``: the solids along a ray from a place.
+
+        Planes count only for rays from below one.
+        """
+        composer = self._composer
+        ray, passed = (composer.assembly.struct(s) for s in (Ray, closed_hits.Passed))
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            found: Expr = Construct((constant_number(UNBOUNDED), given["t"]), passed)
+            for node in (*self._solids, *self._planes):
+                chord = Call(self._chord(node).name, (given["ray"],), VEC2)
+                step = closed_hits.pass_plane if is_linear(node) else closed_hits.pass_chord
+                asked = {**given, "passed": found, "chord": chord}
+                found = body.let("passed", composer.call(step, asked))
+            return found
+
+        return self._define("along_solids", [("ray", ray), ("t", FLOAT), ("below", BOOL)], make, [])
 
     def shadow(
         self, body: StatementList, given: Mapping[str, Expr], *, casts: bool, hybrid: bool
@@ -212,6 +256,16 @@ class RayFunctions:
             return self._bound(shadows.soft_shadow, params, values, {"field": field})
         values |= self._without_planes(body)
         return self._bound(shadows.shadow_beside_planes, params, values, self._fields())
+
+    def _chord(self, node: Node) -> FunctionRef:
+        """Return the function ``(ray) -> vec2``: where a ray enters and leaves a solid."""
+        composer = self._composer
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            line = (field_of(given["ray"], "origin"), field_of(given["ray"], "direction"))
+            return chord_of(composer, body, node, line, ZERO_CELL, composer.values.all(node))
+
+        return self._define("chord", [("ray", composer.assembly.struct(Ray))], make, [])
 
     def _shadow_of_parts(
         self, body: StatementList, params: Params, given: Mapping[str, Expr]
