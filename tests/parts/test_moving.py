@@ -13,6 +13,7 @@ from distal import (
     Capsule,
     DistantLight,
     Plane,
+    RoundBox,
     Scene,
     Shape,
     Sphere,
@@ -193,8 +194,9 @@ def test_boxes_of_all_times_show_the_same_as_those_of_the_picture(monkeypatch):
 
 
 def test_the_steps_view_and_the_probe_see_parts_where_they_are():
+    # A ball without a chord, so that it is marched.
     dots = [
-        Sphere(0.1)
+        RoundBox(0.2, 0.2, 0.2, rounding=0.1)
         .translate(0.3 * i - 2.3, np.sin(time * 0.5 + 1e-3 * i), 0.0)
         .named(f"dot {i}")
         .paint((0.05 * i, 0.2, 0.2 + 0.1 * np.sin(time)))
