@@ -18,6 +18,7 @@ from distal import (
     Box,
     Camera,
     DistantLight,
+    Environment,
     HemisphereLight,
     Material,
     Plane,
@@ -139,3 +140,32 @@ def test_a_lamp_and_a_glowing_ball_are_alike(size, material):
     assert glowing[1].max() < 0.05 * lamp[0].max()
     # The disc of a lamp is as wide as its tangent says, that of a ball as its sine.
     assert apart <= allowed + lamp[0].max() * size**2 / 18.0, (lamp, glowing)
+
+
+def spotted(rows=16, columns=32):
+    """A dim panorama with one bright place, in its upper half."""
+    light = np.full((rows, columns, 3), 0.02, np.float32)
+    light[3, 20] = (90.0, 60.0, 30.0)
+    return light
+
+
+@pytest.mark.parametrize("turn", [0.0, 2.5])
+def test_a_bright_place_of_an_environment_is_sampled(turn):
+    image = spotted()
+    rows = len(image)
+    # A floor sees the upper half by the sine of the height; texels are interpolated.
+    fine = 100
+    down = (np.arange(rows * fine // 2) + 0.5) / fine - 0.5
+    low = np.clip(np.floor(down).astype(int), 0, rows - 2)
+    part = np.clip(down - low, 0.0, 1.0)[:, None]
+    bands = image.mean(axis=1)
+    band = (1.0 - part) * bands[low] + part * bands[low + 1]
+    height = 0.5 * math.pi - math.pi * (down + 0.5) / rows
+    ring = np.sin(height) * np.cos(height) * (math.pi / (rows * fine)) * 2.0
+    expected = 0.5 * 1.5 * (ring[:, None] * band).sum(axis=0)
+    light = Environment(image, intensity=1.5, turn=turn)
+    mean, sigma = estimate(
+        Plane(), (1, 2, 1), (0, 0, 0), 64, lights=light, default_material=matte((0.5,) * 3)
+    )
+    assert (sigma <= 0.008 * expected).all(), (sigma, expected)
+    assert (np.abs(mean - expected) <= 4.0 * sigma + 1e-3 * expected).all(), (mean, sigma, expected)

@@ -31,7 +31,7 @@ def brightness_table(texels: Any) -> tuple[int, int, list[tuple[float, float, fl
     """
     height, width = int(texels.shape[0]), int(texels.shape[1])
     rows, columns = min(height, MOST_ROWS), min(width, MOST_COLUMNS)
-    brightness = texels[..., :3].max(axis=-1)
+    brightness = between_texels(texels[..., :3].max(axis=-1))
     areas, lights = [], []
     for row in range(rows - 1, -1, -1):
         top, bottom = math.cos(math.pi * row / rows), math.cos(math.pi * (row + 1) / rows)
@@ -54,6 +54,22 @@ def brightness_table(texels: Any) -> tuple[int, int, list[tuple[float, float, fl
         for threshold, other, chance, area in zip(thresholds, others, chances, areas, strict=True)
     ]
     return rows, columns, cells
+
+
+def between_texels(values: Any) -> Any:
+    """Return the mean of the interpolated picture over the area of each texel.
+
+    Linear interpolation gives an eighth of it to each neighbor across, and along. The picture ends
+    at its top and bottom, and is closed around.
+
+    Args:
+        values: Array (height, width).
+    """
+    across = 0.75 * values + 0.125 * values[:, range(-1, values.shape[1] - 1)]
+    across += 0.125 * values[:, [*range(1, values.shape[1]), 0]]
+    above = across[[0, *range(values.shape[0] - 1)]]
+    below = across[[*range(1, values.shape[0]), values.shape[0] - 1]]
+    return 0.75 * across + 0.125 * (above + below)
 
 
 def alias_table(chances: list[float]) -> tuple[list[float], list[int]]:

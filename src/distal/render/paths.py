@@ -34,17 +34,18 @@ from distal.lang import (
 )
 from distal.render.bounce import ALL_INSIDE, FLATTEST
 from distal.render.camera import Ray
-from distal.render.emitters import power_share, sample_light, seen_light
+from distal.render.emitters import Emission, power_share, sample_light, seen_light
 from distal.render.footprint import THIN, Cone, Footprint, continued, footprint_at
 from distal.render.lights import LightSample
 from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import PASSED, Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
-from distal.render.sampling.points import Stream, pair, single, triple
+from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import Meeting, all_specular, emitted, meet, respond_to, sample_from
 from distal.render.segment import landing
 from distal.render.shade import Lit, Shading
+from distal.render.surroundings import DirectionSample
 from distal.render.trace import facing_normal
 
 # The first segments of a path are always followed; later ones with this probability at most.
@@ -69,6 +70,7 @@ def met_lights(
     sampled: float,
     lights: Callable[[int, vec3], LightSample],
     light_count: int,
+    chance: float,
 ) -> vec3:
     """Return the light of all discs that a ray meets before a surface, weighted.
 
@@ -79,12 +81,13 @@ def met_lights(
             only possible one, so that the discs cannot be sampled.
         lights: The light with a given index at a point.
         light_count: How many lights there are.
+        chance: The probability with which a surface chooses each of them.
     """
     total = vec3(0.0)
     for i in range(light_count):
         seen = seen_light(lights(i, ray.origin), ray.direction)
         if seen.density > 0.0 and seen.distance < length:
-            total += seen.radiance * power_share(sampled, seen.density / float(light_count))
+            total += seen.radiance * power_share(sampled, seen.density * chance)
     return total
 
 
@@ -179,8 +182,12 @@ def light_on(
     next_hit: Callable[[Ray, float, float, int], Hit],
     lights: Callable[[int, vec3], LightSample],
     light_count: int,
-    stream: Stream,
-    decision: int,
+    around: Callable[[vec3], vec3],
+    directions: Callable[[vec3], DirectionSample],
+    has_directions: bool,
+    chance: float,
+    u: vec3,
+    which: float,
 ) -> Lit:
     """Return the light of one of the lights, chosen at random, that a surface sends to the eye.
 
@@ -189,21 +196,30 @@ def light_on(
         meeting: The surface and the direction to the eye, for its response.
         next_hit: The next surface along a ray from a surface.
         lights: The light with a given index, from 0, at a point.
-        light_count: How many lights there are, at least one.
-        stream: The random numbers of the path.
-        decision: The number of the first decision of this segment.
+        light_count: How many lights there are.
+        around: Ambient light from a direction.
+        directions: Random directions for ambient light, by three random numbers.
+        has_directions: Whether there are such directions; a constant.
+        chance: The probability with which each light is chosen.
+        u: Random numbers for the place on the light.
+        which: A random number that chooses the light.
     """
-    count = float(light_count)
-    which = min(int(single(stream, decision + WHICH_LIGHT) * count), light_count - 1)
-    light = sample_light(lights(which, vertex.p), pair(stream, decision + PLACE_ON_LIGHT))
+    index = int(which / chance)
+    light = Emission(vertex.n, UNBOUNDED, vec3(0.0), 0.0)
+    if index < light_count:
+        light = sample_light(lights(index, vertex.p), u.xy)
+    elif has_directions:
+        far = directions(u)
+        weight = around(far.direction) / max(far.density, 1e-30)
+        light = Emission(far.direction, UNBOUNDED, weight, far.density)
     found = respond_to(meeting, light.direction)
-    color = found.value * light.weight * count
+    color = found.value * light.weight / chance
     start = start_from(vertex, light.direction)
     if brightest(color) <= 0.0 or start.side < 0.0:
         return Lit(vec3(0.0), False)
     hit = next_hit(start.ray, start.side, start.slope, start.part)
     is_open = not hit.found or hit.t >= light.distance
-    shared = power_share(light.density / count, found.density)
+    shared = power_share(light.density * chance, found.density)
     return Lit(color * select(is_open, shared, 0.0), hit.lost != PASSED)
 
 
@@ -216,6 +232,9 @@ def path_light(
     surface: Callable[[vec3, Footprint, int], Surface],
     lights: Callable[[int, vec3], LightSample],
     around: Callable[[vec3], vec3],
+    directions: Callable[[vec3], DirectionSample],
+    directions_density: Callable[[vec3], float],
+    has_directions: bool,
     background: Callable[[vec3], vec3],
     fog: Callable[[vec3], vec3],
     numbers: March,
@@ -238,6 +257,9 @@ def path_light(
         surface: The material at a point of a part, averaged over a footprint.
         lights: The light with a given index, from 0, at a point.
         around: Ambient light from a direction.
+        directions: Random directions for ambient light, by three random numbers.
+        directions_density: The density of such a direction.
+        has_directions: Whether there are such directions; a constant.
         background: Light from a direction without a surface, as the camera sees it.
         fog: Color of the fog in a direction.
         numbers: The parameters of the march.
@@ -257,6 +279,8 @@ def path_light(
     throughput = vec3(1.0)
     alpha = 0.0
     lost = 0
+    choices = light_count + 1 if has_directions else light_count
+    chance = 1.0 / float(max(choices, 1))
     start = Start(ray, 0.0, 0.0, -1)
     width = cone
     seen = True  # only mirrors and clear glass are between the camera and the ray
@@ -269,10 +293,12 @@ def path_light(
         lost = merged(lost, merged(reason(hit.lost), select(i == 0 and inside, INSIDE, 0)))
         if not seen and not inside:
             length = hit.t if hit.found else UNBOUNDED
-            color += throughput * met_lights(here, length, chosen, lights, light_count)
+            color += throughput * met_lights(here, length, chosen, lights, light_count, chance)
         if not hit.found:
             if not inside:
                 far = background(here.direction) if seen else around(here.direction)
+                if has_directions and not seen:
+                    far = far * power_share(chosen, directions_density(here.direction) * chance)
                 color += throughput * far
             elif i == 0:
                 alpha = ALL_INSIDE
@@ -288,8 +314,13 @@ def path_light(
             color += throughput * mix(fog(here.direction), emission, clear)
             throughput = throughput * clear
         meeting = meet(material, -here.direction, vertex.n, inside)
-        if light_count > 0 and not all_specular(material):
-            direct = light_on(vertex, meeting, next_hit, lights, light_count, stream, decision)
+        if choices > 0 and not all_specular(material):
+            u = triple(stream, decision + PLACE_ON_LIGHT)
+            which = single(stream, decision + WHICH_LIGHT)
+            direct = light_on(
+                vertex, meeting, next_hit, lights, light_count, around, directions,
+                has_directions, chance, u, which,
+            )  # fmt: skip
             color += throughput * direct.color
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
         onward = sample_from(meeting, triple(stream, decision + DIRECTION))

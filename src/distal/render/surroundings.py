@@ -42,6 +42,12 @@ class DirectionSample:
 
 
 @func
+def no_direction() -> DirectionSample:
+    """Return a direction of ambient light that is not sampled."""
+    return DirectionSample(vec3(0.0, 1.0, 0.0), 0.0)
+
+
+@func
 def sample_surroundings(
     table: Buffer[vec3], rows: int, columns: int, turn: float, u: vec3
 ) -> DirectionSample:

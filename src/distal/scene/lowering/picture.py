@@ -38,6 +38,7 @@ from distal.render import (
     settings,
     shade,
     steer,
+    surroundings,
     tonemap,
     views,
 )
@@ -248,7 +249,6 @@ class SceneLowering:
             "surface": self.surface(),
             "lights": self._lights(),
             "ambient": self._ambient("n"),
-            "around": self._ambient("direction"),
             "background": self._background(),
             "fog": self._fog(),
             "camera": self._camera_of(resolution, steered=steered),
@@ -275,6 +275,8 @@ class SceneLowering:
             on_surface = {**given, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
             given["next_hit"] = rays.next_hit(body, on_surface)
+        if paths:
+            given |= {"around": self._ambient("direction"), **self._directions()}
         return given
 
     @property
@@ -491,6 +493,26 @@ class SceneLowering:
             return total
 
         return self._function("ambient" if of == "n" else "around", ((of, VEC3),), make)
+
+    def _directions(self) -> dict[str, Expr]:
+        """Return random directions for ambient light, by name of ``paths.path_light``."""
+        known = next((d for light in self._scene.lights if (d := light.directions)), None)
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            if known is None:
+                return self.composer.call(surroundings.no_direction, {})
+            return known[0].emit(self.composer, given)
+
+        def density(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            return number(0.0) if known is None else known[1].emit(self.composer, given)
+
+        return {
+            "directions": self._function("directions", (("u", VEC3),), make),
+            "directions_density": self._function(
+                "directions_density", (("direction", VEC3),), density
+            ),
+            "has_directions": boolean(known is not None),
+        }
 
     def _background(self) -> FunctionRef:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:

@@ -22,6 +22,8 @@ from distal.lang.resources import Texture2D
 from distal.render import ambient as ambient_library
 from distal.render import environment as environment_library
 from distal.render import sky as library
+from distal.render import surroundings
+from distal.render.brightness import brightness_table
 from distal.render.declarations import BACKGROUNDS
 from distal.scene.objects.declared import (
     declared_call,
@@ -143,9 +145,10 @@ class Environment(Surroundings):
         TypeError: An argument has the wrong type.
     """
 
-    __slots__ = ("_ambient", "_texture")
+    __slots__ = ("_ambient", "_directions", "_texture")
 
     _ambient: FunctionCall | None
+    _directions: tuple[FunctionCall, FunctionCall] | None
     _texture: Texture2D
 
     def __init__(
@@ -163,6 +166,7 @@ class Environment(Surroundings):
             radiance=whole,
             _texture=texture,
             _ambient=None,
+            _directions=None,
         )
 
     @property
@@ -170,13 +174,30 @@ class Environment(Surroundings):
         """``(n) -> vec3``, the diffuse light that a surface with normal n receives."""
         if self._ambient is None:
             whole = self.background
-            pixels = image_files.texture_light(self._texture, "Environment", whole.place)
-            harmonics = BufferData(environment_library.harmonics(pixels))
+            harmonics = BufferData(environment_library.harmonics(self._pixels()))
             values = {**whole.values, "harmonics": harmonics}
             call = FunctionCall(whole.what, environment_light, values, whole.place)
             self._keep(_ambient=call)
         assert self._ambient is not None
         return self._ambient
+
+    @property
+    def directions(self) -> tuple[FunctionCall, FunctionCall]:
+        """Random directions, denser where the picture is brighter, and their density."""
+        if self._directions is None:
+            whole = self.background
+            rows, columns, cells = brightness_table(self._pixels())
+            values = {"rows": rows, "columns": columns, "table": BufferData(cells)}
+            calls = tuple(
+                FunctionCall(whole.what, f, {**values, "turn": whole.values["turn"]}, whole.place)
+                for f in (surroundings.sample_surroundings, surroundings.surroundings_density)
+            )
+            self._keep(_directions=calls)
+        assert self._directions is not None
+        return self._directions
+
+    def _pixels(self) -> Any:
+        return image_files.texture_light(self._texture, "Environment", self.background.place)
 
 
 CLASSES: Final = {

@@ -57,6 +57,14 @@ class Light(SceneObject):
             radiance=call_of_part(call, self.declaration.radiance),
         )
 
+    @property
+    def directions(self) -> tuple[FunctionCall, FunctionCall] | None:
+        """Random directions for ``radiance``, if it is too uneven for those of a surface.
+
+        ``(u) -> DirectionSample`` and the density, ``(direction) -> float``.
+        """
+        return None
+
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the light calls."""
         for call in (self.sample, self.ambient):
