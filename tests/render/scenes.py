@@ -12,6 +12,7 @@ from distal.render import (
     march,
     material,
     patterns,
+    segment,
     shade,
     shadows,
     sky,
@@ -98,6 +99,11 @@ def first_hit(ray: Ray) -> march.Hit:
 
 
 @func
+def next_hit(ray: Ray, side: float, slope: float, part: int) -> march.Hit:
+    return segment.segment(field, ray, side, slope, everywhere(), numbers(), STEPS)
+
+
+@func
 def shadow(origin: vec3, light: LightSample, sample: int, samples: int) -> shadows.Opening:
     return shadows.soft_shadow(field, origin, light, everywhere(), numbers(), 48)
 
@@ -128,7 +134,7 @@ def mirrored(frame: Frame) -> vec4:
 @image
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
-        ray_of(frame), first_hit, first_hit, field, field_of, surface, occlusion, lights, ambient,
+        ray_of(frame), first_hit, next_hit, field, field_of, surface, occlusion, lights, ambient,
         background, haze, shadow, numbers(), shade.Shading(0.0, 0.0), 2, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)

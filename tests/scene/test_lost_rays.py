@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
-from distal import Box, Camera, DistantLight, Plane, Scene, Sphere
+from distal import Box, Camera, DistantLight, Plane, RoundBox, Scene, Sphere
 from distal.render.lost_rays import LOWEST, MARK
 
 SIZE = (64, 48)
@@ -36,7 +36,8 @@ def test_a_picture_that_answers_every_ray_says_nothing(samples):
 def test_rays_that_run_out_of_steps_are_counted():
     """With two steps no ray gets to a ball that fills most of the picture."""
     camera = Camera((0.0, 0.0, 2.2))
-    scene = Scene(Box((1.9, 1.9, 1.9)).rotate(y=0.7), camera=camera, steps=2, shadows=False,
+    block = RoundBox((1.9, 1.9, 1.9), 0.05).rotate(y=0.7)
+    scene = Scene(block, camera=camera, steps=2, shadows=False,
                   lights=DistantLight((1, 2, 3)), background="#fff")  # fmt: skip
     picture, messages = told(scene, samples=1)
     whole = Scene(scene.shape, camera=camera, shadows=False, lights=DistantLight((1, 2, 3)),

@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 import distal
-from distal import Box, Camera, OrthographicCamera, Plane, Scene, Sphere, matte, mirror
+from distal import (
+    Box,
+    Camera,
+    OrthographicCamera,
+    Plane,
+    RoundBox,
+    Scene,
+    Sphere,
+    matte,
+    mirror,
+)
 from distal.lang import Frame, image, slider, struct, vec3, vec4
 from distal.scene.checks.probe import probe
 from distal.scene.checks.probe_image import probe_image
@@ -36,7 +46,7 @@ def test_rows_count_from_the_top():
 
 def test_a_pixel_sees_what_the_picture_shows_there():
     scene = Scene(
-        Box(1.2).paint("#ff0000") | Sphere(0.8).translate(1.0, 0.3, 0.0).paint("#00ff00"),
+        RoundBox(1.2, 0.1).paint("#ff0000") | Sphere(0.8).translate(1.0, 0.3, 0.0).paint("#00ff00"),
         camera=Camera((1.0, 2.0, 5.0)),
         floor=False,
     )
@@ -53,7 +63,7 @@ def test_a_pixel_sees_what_the_picture_shows_there():
         color = tuple(round(float(c)) for c in found.seen.surface.color)
         assert tuple(materials[y, x, :3]) == pytest.approx(color, abs=1e-3)
         assert normals[y, x, :3] == pytest.approx(0.5 + 0.5 * np.array(found.seen.normal), abs=1e-3)
-        assert found.path[-1].name == ("Box" if color[0] else "Sphere")
+        assert found.path[-1].name == ("RoundBox" if color[0] else "Sphere")
     assert steps > 5
 
 
@@ -69,7 +79,7 @@ def test_a_ray_that_meets_nothing_says_how_it_ended():
     level = {"camera": OrthographicCamera((0, 0, 5), height=2), "floor": False}
     corner = probe(Scene(Sphere(1.0), **level), (1, 1), (50, 50))
     assert corner.ended == "left the box"
-    few = Scene(Sphere(1.0), **level, steps=1)
+    few = Scene(Sphere(0.9).round(0.1), **level, steps=1)
     assert probe(few, (8, 8), (50, 50)).ended == "ran out of steps"
 
 

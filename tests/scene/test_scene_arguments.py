@@ -50,6 +50,7 @@ OTHERS = {
     "fog_density": 0.08,
     "shadows": False,
     "ambient_occlusion": 0.7,
+    "mode": "path",
     "bounces": 0,
     "normals": "forward",
     "march": "heightfield",
