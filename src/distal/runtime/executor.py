@@ -10,7 +10,7 @@ import threading
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final, cast
 from weakref import WeakKeyDictionary
@@ -34,22 +34,19 @@ from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
 from distal.lang.render_options import (
     PATH_SAMPLES,
-    Progress,
     Refinement,
     RenderOptions,
     checked_time,
 )
-from distal.lang.resources import MovingBuffer
 from distal.loading import loaded_from
 from distal.render import film
-from distal.runtime import accumulation, film_files, glow, sampling
+from distal.runtime import accumulation, glow, sampling
 from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
-from distal.runtime.fingerprints import fingerprint
 from distal.runtime.kernels import KernelCache, automatic_device
-from distal.runtime.lost_rays import LostRays
 from distal.runtime.lowered import Lowered, Types
+from distal.runtime.passes import Passes, moved_resources, over_picture
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 if TYPE_CHECKING:
@@ -157,8 +154,8 @@ class PythonExecutor:
                 kept = film.PASS_NUMBERS if adaptive or refined else ()
                 parts = tuple(part.frozen(numbers, kept) for part in parts)
             kernels = [self.kernels.kernel(part, device, 32) for part in parts]
-        moved = _moved(parts[0].resources, values, options.time)
-        passes = _Passes(kernels, parts, run.declared, (values, others), options, moved)
+        moved = moved_resources(parts[0].resources, values, options.time)
+        passes = Passes(kernels, parts, run.declared, (values, others), options, moved)
         contrast = self._contrast(device) if adaptive else None
         compiled = time.perf_counter()
         linear: NDArray[np.float32] | None = None
@@ -221,7 +218,7 @@ class PythonExecutor:
         """Render a step of ``runtime.glow``; the first two are those of the whole picture."""
         lowered = self._lower(step, None)
         kernel = self.kernels.kernel(lowered, device, 32)
-        return _over(kernel, lowered.resources, size, numbers, light, options)
+        return over_picture(kernel, lowered.resources, size, numbers, light, options)
 
     def draw(
         self, image: Image | Composed, target: DrawTarget, options: RenderOptions
@@ -251,7 +248,7 @@ class PythonExecutor:
             target.format,
             *options.size,
             uniforms,
-            _moved(run.parts[0].resources, values, options.time),
+            moved_resources(run.parts[0].resources, values, options.time),
             samples=(options.settings or {}).get(film.SAMPLES, 1),
             progress=options.progress,
             cancel=options.cancel,
@@ -499,91 +496,6 @@ class PythonExecutor:
             return lowered
 
 
-@dataclass(frozen=True, slots=True)
-class _Passes:
-    """The kernels of one picture with everything that they are called with."""
-
-    kernels: Sequence[Kernel]
-    parts: Sequence[Lowered]
-    declared: DeclaredUniforms
-    values: tuple[Mapping[str, Any], Mapping[str, Any]]
-    options: RenderOptions
-    resources: Mapping[str, Any]
-    lost: LostRays = field(default_factory=LostRays)
-
-    def light(
-        self,
-        size: tuple[int, int],
-        numbers: Mapping[str, Any],
-        buffers: Mapping[Any, Any],
-        progress: Progress | None,
-    ) -> NDArray[np.float32]:
-        """Render the first kernel; see ``sampling.Programs``.
-
-        Linear light of a scene carries marks of lost rays, which are counted and removed.
-        """
-        parameters, others = self.values
-        changed = {**others, **numbers, "resolution": (float(size[0]), float(size[1]))}
-        own = self.parts[0].resources
-        pixels = self.kernels[0].render(
-            *size,
-            self.declared.for_kernel(0, parameters, changed),
-            {name: buffers.get(own[name], now) for name, now in self.resources.items()},
-            threads=self.options.threads,
-            progress=progress,
-            cancel=self.options.cancel,
-        )
-        if len(self.parts) > 1:
-            self.lost.remove_marks(pixels)
-        return pixels
-
-    def accumulated(self, refinement: Refinement) -> accumulation.Film:
-        """Render samples until there are enough of them."""
-
-        def rendered(first: int, count: int, progress: Progress | None) -> NDArray[np.float32]:
-            numbers = {film.FIRST_SAMPLE: first, film.SAMPLES: count}
-            return self.light(self.options.size, numbers, {}, progress)
-
-        size, progress = self.options.size, self.options.progress
-        if refinement.film is None:
-            exposed = accumulation.Film.empty(*size)
-            accumulation.accumulate(exposed, rendered, refinement, None, progress)
-            return exposed
-        file = film_files.FilmFile(refinement.film, self._fingerprint)
-        exposed = file.load(*size)
-        try:
-            accumulation.accumulate(exposed, rendered, refinement, file.keep, progress)
-        finally:
-            file.write(exposed)
-        return exposed
-
-    @property
-    def _fingerprint(self) -> str:
-        """The fingerprint of the picture without its number of samples."""
-        parameters, others = self.values
-        numbers = self.declared.for_kernel(0, parameters, others)
-        numbers = {n: v for n, v in numbers.items() if n not in film.PASS_NUMBERS}
-        parts = [self.parts[0].digest, numbers, self.options.size]
-        return fingerprint(parts, self.resources)
-
-    def shown(self, light: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Encode linear light for display by the second kernel."""
-        return self.kernels[1].map_pixels(
-            light,
-            self.declared.for_kernel(1, *self.values),
-            self.parts[1].resources,
-            threads=self.options.threads,
-            cancel=self.options.cancel,
-        )
-
-    def contrast(
-        self, kernel: Kernel, resources: Mapping[str, Any], shown: NDArray[np.float32]
-    ) -> NDArray[np.float32]:
-        """Return the contrast of each pixel of display values with its neighbours."""
-        height, width, _ = shown.shape
-        return _over(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
-
-
 def _samples(
     options: RenderOptions, adaptive: bool, exposed: accumulation.Film | None
 ) -> int | None:
@@ -591,43 +503,6 @@ def _samples(
     if exposed is not None:
         return exposed.samples
     return None if adaptive else options.samples or 1
-
-
-def _moved(
-    resources: Mapping[str, Any], params: Mapping[str, Any], seconds: float
-) -> dict[str, Any]:
-    """Return resources in which buffers of what moves have the numbers of one picture."""
-    return {
-        name: source.at(params, seconds) if isinstance(source, MovingBuffer) else source
-        for name, source in resources.items()
-    }
-
-
-def _over(
-    kernel: Kernel,
-    resources: Mapping[str, Any],
-    size: tuple[int, int],
-    numbers: Mapping[str, Any],
-    light: NDArray[np.float32],
-    options: RenderOptions,
-) -> NDArray[np.float32]:
-    """Render a picture that reads another one, as a buffer of colors.
-
-    Args:
-        kernel: The kernel of the picture.
-        resources: Its buffers by name.
-        size: Width and height in pixels.
-        numbers: Its other uniforms by name.
-        light: The picture that it reads, (height, width, 4).
-        options: The threads, and the event that ends the work early.
-    """
-    return kernel.render(
-        *size,
-        {**numbers, "resolution": (float(size[0]), float(size[1]))},
-        dict.fromkeys(resources, light.reshape(-1, 4)),
-        threads=options.threads,
-        cancel=options.cancel,
-    )
 
 
 class _ValueOf(Composed):
