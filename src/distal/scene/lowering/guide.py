@@ -52,9 +52,9 @@ class GuideImage(Composed):
         given: dict[str, Expr] = {
             "coord": field(Read("frame", FRAME), "coord"),
             "size": size,
-            "lens": made.lens(body, size),
-            "now": made.steer(body, steering.PREFIX),
-            "goal": made.steer(body, steering.GOAL_PREFIX),
+            "lens": made.camera.lens(body, size),
+            "now": made.camera.steer(body, steering.PREFIX),
+            "goal": made.camera.steer(body, steering.GOAL_PREFIX),
             "box": _finite_box(made, body, node),
             "field": composer.safe_field(node, values, ZERO_CELL),
         }

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from distal.fields.guarantees import UNBOUNDED
 from distal.frontend import Assembly
-from distal.ir.build import add, boolean, compare, field, integer, number
+from distal.ir.build import boolean, compare, field, integer, number
 from distal.ir.nodes import (
     Call,
     CompareOp,
-    Construct,
     Expr,
     FunctionRef,
     If,
@@ -36,17 +35,12 @@ from distal.render import (
     paths,
     ranges,
     settings,
-    shade,
-    steer,
-    surroundings,
     tonemap,
     views,
 )
 from distal.render.camera import Ray
 from distal.render.footprint import Cone, Footprint
-from distal.render.lights import no_light
 from distal.render.sampling.points import Stream
-from distal.scene import steering
 from distal.scene.lowering.attributes import (
     Attribute,
     AttributePoint,
@@ -55,6 +49,8 @@ from distal.scene.lowering.attributes import (
     attribute,
     of_part,
 )
+from distal.scene.lowering.camera_functions import CameraFunctions
+from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import rolled_for, split_table
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
@@ -90,6 +86,7 @@ class SceneLowering:
 
     Attributes:
         node: The scene's tree, with a table if it has many parts.
+        camera: The functions of its camera.
     """
 
     def __init__(self, assembly: Assembly, scene: Scene) -> None:
@@ -104,11 +101,11 @@ class SceneLowering:
         self.composer = ShapeComposer(assembly, [self.node])
         self._rays = RayFunctions(self.composer, self.node, self._function)
         self._view_numbers: dict[str, Expr] = {}
-        self._cameras: dict[str, FunctionRef] = {}
-        self._steers: dict[str, tuple[Expr, ...]] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
         }
+        self.camera = CameraFunctions(self.composer, scene, self.node, self._function)
+        self._lights = LightFunctions(self.composer, scene, self._numbers, self._function)
 
     def main(
         self,
@@ -145,7 +142,7 @@ class SceneLowering:
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
             "resolution": resolution,
-            "camera": self._camera_of(resolution, steered=steered),
+            "camera": self.camera.ray(resolution, steered=steered),
             "cone": self._cone(resolution, view, steered=steered),
             "transparent": boolean(transparent),
             "samples": samples,
@@ -201,7 +198,7 @@ class SceneLowering:
         given: dict[str, Expr] = {
             "coord": field(frame, "coord"),
             "resolution": resolution,
-            "camera": self._camera_of(resolution, steered=steered),
+            "camera": self.camera.ray(resolution, steered=steered),
             "radiance": self._radiance(LAYERS[name], resolution, name, steered=steered),
         }
         value = self.composer.call(layers.through_middle, given)
@@ -247,15 +244,15 @@ class SceneLowering:
             "slope": bounds_of_scene.slope,
             "field": composer.field(node, values, ZERO_CELL),
             "surface": self.surface(),
-            "lights": self._lights(),
-            "ambient": self._ambient("n"),
-            "background": self._background(),
-            "fog": self._fog(),
-            "camera": self._camera_of(resolution, steered=steered),
+            "lights": self._lights.lights(),
+            "ambient": self._lights.ambient("n"),
+            "background": self._lights.background(),
+            "fog": self._lights.fog(),
+            "camera": self.camera.ray(resolution, steered=steered),
             "bounces": integer(scene.bounces),
             "hybrid": boolean(self._hybrid),
             "normals": integer(NORMALS.index(scene.normals)),
-            "light_count": integer(len(self._samples())),
+            "light_count": integer(self._lights.count),
         }
         given["steps"] = self._steps(body)
         room = {"bounds": bounds_of_scene.bounds}
@@ -276,7 +273,7 @@ class SceneLowering:
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
             given["next_hit"] = rays.next_hit(body, on_surface)
         if paths:
-            given |= {"around": self._ambient("direction"), **self._directions()}
+            given |= {"around": self._lights.ambient("direction"), **self._lights.directions()}
         return given
 
     @property
@@ -405,7 +402,7 @@ class SceneLowering:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             if not is_averaged:
                 return self.composer.call(footprint.thin, given)
-            camera = self._camera_of(given["resolution"], steered=steered)
+            camera = self.camera.ray(given["resolution"], steered=steered)
             asked = {**given, "camera": camera}
             return self.composer.call(footprint.pixel_cone, asked)
 
@@ -461,146 +458,3 @@ class SceneLowering:
             return kind.found(Call(listed.name, (given["p"],), FLOAT))
 
         return self._function("material_number", (("p", VEC3),), make)
-
-    def _samples(self) -> list[Any]:
-        return [light.sample for light in self._scene.lights if light.sample is not None]
-
-    def _lights(self) -> FunctionRef:
-        """Return the function of a light's number to its light at a place; called in one loop."""
-
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            site = {"p": given["p"]}
-            calls = [light.emit(self.composer, site) for light in self._samples()]
-            if not calls:
-                return self.composer.call(no_light, {})
-            for i, call in enumerate(calls[:-1]):
-                chosen = compare(CompareOp.EQ, given["i"], integer(i))
-                body.statements.append(If(chosen, (Return(call),), ()))
-            last: Expr = calls[-1]
-            return last
-
-        return self._function("light", (("i", INT), ("p", VEC3)), make)
-
-    def _ambient(self, of: str) -> FunctionRef:
-        """Return the ambient light on a surface by its normal ``n``, or from a ``direction``."""
-
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            total: Expr = number(0.0, VEC3)
-            for light in self._scene.lights:
-                call = light.ambient if of == "n" else light.radiance
-                if call is not None:
-                    total = body.let("total", add(total, call.emit(self.composer, given)))
-            return total
-
-        return self._function("ambient" if of == "n" else "around", ((of, VEC3),), make)
-
-    def _directions(self) -> dict[str, Expr]:
-        """Return random directions for ambient light, by name of ``paths.path_light``."""
-        known = next((d for light in self._scene.lights if (d := light.directions)), None)
-
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            if known is None:
-                return self.composer.call(surroundings.no_direction, {})
-            return known[0].emit(self.composer, given)
-
-        def density(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            return number(0.0) if known is None else known[1].emit(self.composer, given)
-
-        return {
-            "directions": self._function("directions", (("u", VEC3),), make),
-            "directions_density": self._function(
-                "directions_density", (("direction", VEC3),), density
-            ),
-            "has_directions": boolean(known is not None),
-        }
-
-    def _background(self) -> FunctionRef:
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            return self._scene.background.emit(self.composer, given)
-
-        return self._function("background", (("direction", VEC3),), make)
-
-    def _fog(self) -> FunctionRef:
-        """Return the function of a direction to the fog's color: the author's, or the horizon's."""
-        scene = self._scene
-
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            if "fog" in self._numbers:
-                return self._numbers["fog"]
-            density = scene.numbers["fog_density"]
-            if not density.may_exceed(0.0):
-                return number(0.0, VEC3)
-            level = self.composer.call(shade.at_horizon, given)
-            return scene.background.emit(self.composer, {"direction": body.let("level", level)})
-
-        return self._function("fog", (("direction", VEC3),), make)
-
-    def _steered(self, resolution: Expr) -> FunctionRef:
-        """Return the camera moved by the numbers of a ``Steering``."""
-
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            asked = {**given, "camera": self._camera(given["resolution"])}
-            asked["lens"] = self.lens(body, given["resolution"])
-            asked["steer"] = self.steer(body, steering.PREFIX)
-            asked["rig"] = body.let("rig", self.composer.call(steer.rig, asked))
-            return self.composer.call(steer.steered_ray, asked)
-
-        return self._camera_function("steered_ray", make, resolution)
-
-    def lens(self, body: StatementList, resolution: Expr) -> Expr:
-        """Return what a movement has to know of the camera, for a picture of some pixels."""
-        camera = self._scene.camera
-        given = {"camera": self._camera(resolution), "up": self._up()}
-        given["pivot"] = camera.number(self.composer, "target") or self._pivot(body, given)
-        return body.let("lens", self.composer.call(steer.lens, given))
-
-    def steer(self, body: StatementList, prefix: str) -> Expr:
-        """Return the five numbers of a ``Steering``, which are uniforms with this prefix."""
-        if prefix not in self._steers:
-            self._steers[prefix] = tuple(
-                self._assembly.number(f"{prefix}{n}", t, v) for n, t, v in steering.NUMBERS
-            )
-        steered = Construct(self._steers[prefix], self._assembly.struct(steer.Steer))
-        return body.let("steer", steered)
-
-    def elevation(self) -> str:
-        """Add the function that returns the camera's elevation above its target."""
-        given = {
-            "camera": self._camera(self._assembly.constant((1.0, 1.0), VEC2)),
-            "up": self._up(),
-        }
-        value = self.composer.call(steer.elevation, given)
-        return self._assembly.define("elevation", (), FLOAT, (Return(value),))
-
-    def _up(self) -> Expr:
-        """Return the camera's vertical axis."""
-        found = self._scene.camera.number(self.composer, "up")
-        return self._assembly.constant((0.0, 1.0, 0.0), VEC3) if found is None else found
-
-    def _pivot(self, body: StatementList, given: Mapping[str, Expr]) -> Expr:
-        """Return the point that a camera without a target is rotated about."""
-        values = self.composer.values.all(self.node)
-        bounds = self.composer.bounds.of(body, self.node, values).bounds
-        return self.composer.call(steer.pivot_within, {**given, "bounds": bounds})
-
-    def _camera_of(self, resolution: Expr, *, steered: bool) -> FunctionRef:
-        return self._steered(resolution) if steered else self._camera(resolution)
-
-    def _camera(self, resolution: Expr) -> FunctionRef:
-        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            return self._scene.camera.emit(self.composer, given)
-
-        return self._camera_function("camera_ray", make, resolution)
-
-    def _camera_function(
-        self,
-        name: str,
-        make: Callable[[StatementList, Mapping[str, Expr]], Expr],
-        resolution: Expr,
-    ) -> FunctionRef:
-        """Return a camera for a picture of this size; its function is defined once."""
-        if name not in self._cameras:
-            params = (("uv", VEC2), ("resolution", VEC2))
-            self._cameras[name] = self._function(name, params, make, (resolution,))
-        known = self._cameras[name]
-        return FunctionRef(known.name, (resolution,), known.type)

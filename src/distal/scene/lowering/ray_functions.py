@@ -71,7 +71,7 @@ _TAKEN: Final = (
 # Adds a function to the program: its name, its parameters, its body, captured values.
 Make: TypeAlias = "Callable[[StatementList, Mapping[str, Expr]], Expr]"
 Params: TypeAlias = "Sequence[tuple[str, Type]]"
-Define: TypeAlias = "Callable[[str, list[tuple[str, Type]], Make, list[Expr]], FunctionRef]"
+Define: TypeAlias = "Callable[[str, Params, Make, Sequence[Expr]], FunctionRef]"
 
 
 def step_limit(divisor: Expr, *, in_glass: bool = False) -> Expr:

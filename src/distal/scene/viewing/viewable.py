@@ -165,7 +165,7 @@ class _Elevation(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function, and return its name."""
-        return SceneLowering(assembly, self._scene).elevation()
+        return SceneLowering(assembly, self._scene).camera.elevation()
 
 
 def view_label(view: str) -> str:
