@@ -139,7 +139,7 @@ def test_time_and_view_go_both_ways(tmp_path):
         assert (state["time"], state["view"]) == (2.0, "normal")
         assert looked.beside(viewable(scene)).is_agreement
         looked.page.evaluate("fromPython({ playing: true })")
-        looked.page.wait_for_timeout(600)
+        looked.page.wait_for_function("sent.length >= 1", timeout=60_000)
         looked.page.evaluate("fromPython({ playing: false })")
         said = received(looked, widget)
         # That it runs and stands again came from Python, and is not told back.
