@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from distal.fields.boxes import everywhere
-from distal.lang import Buffer, abs, func, length, max, min, select, vec2, vec3, vec4
-from distal.lang.prelude.hidden import anywhere
+from distal.lang import Buffer, func, max, min, select, vec2, vec3, vec4
 from distal.render.camera import Ray
-from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March
-from distal.render.part_tree import box_count, inverse_of, nearest_of_all, span_in_box
+from distal.render.march import PASSED, Hit, March
+from distal.render.part_tree import farthest_box, first_met, nearest_of_all
 from distal.render.segment import segment, segment_between
 
 # The margin around the boxes of parts, for each unit of the distance: rounding errors.
@@ -75,37 +74,13 @@ def next_of_parts(
         numbers: The parameters of the march.
         steps: Maximum number of evaluations in one part.
     """
-    inverse = inverse_of(ray.direction)
-    farthest = max(abs(boxes[0].xyz - ray.origin), abs(boxes[1].xyz - ray.origin))
-    margin = MARGIN * min(length(farthest), numbers.far)
-    found = -1
-    t = numbers.far
-    taken = 0
-    lost = PASSED
-    box = 0
-    for _ in range(box_count(boxes)):
-        if box >= box_count(boxes):
-            break
-        low = boxes[2 * box]
-        high = boxes[2 * box + 1]
-        following = int(low.w)
-        span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
-        meets = span.x <= span.y and span.x < t and span.y >= numbers.near
-        if anywhere(meets):
-            of = int(high.w)
-            if of < 0:
-                following = box + 1
-            elif meets:
-                leaving = select(of == part, slope, 0.0)
-                sides = high.xyz - low.xyz
-                hit = segment_of_part(distance, of, ray, leaving, span, sides, t, numbers, steps)
-                taken += hit.steps
-                lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
-                if hit.found and hit.t < t:
-                    found = of
-                    t = hit.t
-        box = following
-    return Hit(t, found >= 0, taken, 1.0, select(found >= 0, PASSED, lost), found)
+
+    def meet(of: int, span: vec2, sides: vec3, far: float) -> Hit:
+        leaving = select(of == part, slope, 0.0)
+        return segment_of_part(distance, of, ray, leaving, span, sides, far, numbers, steps)
+
+    margin = MARGIN * farthest_box(boxes, ray, numbers)
+    return first_met(boxes, meet, ray, margin, numbers)
 
 
 @func

@@ -259,35 +259,26 @@ def meet_part(
 
 
 @func
-def trace_parts(
+def first_met(
     boxes: Buffer[vec4],
-    distance: Callable[[vec3, int], float],
-    chord: Callable[[vec3, vec3, int], vec2],
-    has_chord: Callable[[int], bool],
+    meet: Callable[[int, vec2, vec3, float], Hit],
     ray: Ray,
+    margin: float,
     numbers: March,
-    steps: int,
-    some_chords: bool,
 ) -> Hit:
-    """March to the first part along a ray that starts outside of all parts.
+    """Return the first part along a ray that runs outside of all parts.
 
-    Each part is marched alone, inside of its box, and only up to the nearest hit so far; a part
-    with a chord is met in closed form.
+    Each part is met alone, inside of its box, and only up to the nearest hit so far.
 
     Args:
         boxes: The tree.
-        distance: The signed distance of a point to a part.
-        chord: Where a line enters and leaves a part.
-        has_chord: Whether that is known of a part.
+        meet: Where the ray enters a part, by its number, where its box begins and ends along the
+            ray, the sides of the box, and the distance where the ray ends.
         ray: Ray.
+        margin: How far boxes are grown.
         numbers: The parameters of the march.
-        steps: Maximum number of steps in one part.
-        some_chords: Whether it is known of any part; a constant.
     """
     inverse = inverse_of(ray.direction)
-    # A ray that passes a surface within the threshold has hit it.
-    farthest = max(abs(boxes[0].xyz - ray.origin), abs(boxes[1].xyz - ray.origin))
-    margin = numbers.threshold * min(length(farthest), numbers.far)
     found = -1
     t = numbers.far
     taken = 0
@@ -306,11 +297,7 @@ def trace_parts(
             if of < 0:
                 following = box + 1
             elif meets:
-                hit = Hit(t, False, 0, 1.0)
-                if some_chords and has_chord(of):
-                    hit = meet_part(chord, of, ray, t, numbers)
-                else:
-                    hit = march_part(distance, of, ray, span, t, numbers, steps)
+                hit = meet(of, span, high.xyz - low.xyz, t)
                 taken += hit.steps
                 lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
                 if hit.found and hit.t < t:
@@ -318,6 +305,49 @@ def trace_parts(
                     t = hit.t
         box = following
     return Hit(t, found >= 0, taken, 1.0, select(found >= 0, PASSED, lost), found)
+
+
+@func
+def farthest_box(boxes: Buffer[vec4], ray: Ray, numbers: March) -> float:
+    """Return how far a ray may run among the parts, to which rounding errors are in proportion."""
+    farthest = max(abs(boxes[0].xyz - ray.origin), abs(boxes[1].xyz - ray.origin))
+    return min(length(farthest), numbers.far)
+
+
+@func
+def trace_parts(
+    boxes: Buffer[vec4],
+    distance: Callable[[vec3, int], float],
+    chord: Callable[[vec3, vec3, int], vec2],
+    has_chord: Callable[[int], bool],
+    ray: Ray,
+    numbers: March,
+    steps: int,
+    some_chords: bool,
+) -> Hit:
+    """March to the first part along a ray that starts outside of all parts.
+
+    A part with a chord is met in closed form.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        chord: Where a line enters and leaves a part.
+        has_chord: Whether that is known of a part.
+        ray: Ray.
+        numbers: The parameters of the march.
+        steps: Maximum number of steps in one part.
+        some_chords: Whether it is known of any part; a constant.
+    """
+
+    def meet(of: int, span: vec2, sides: vec3, far: float) -> Hit:
+        if some_chords and has_chord(of):
+            return meet_part(chord, of, ray, far, numbers)
+        return march_part(distance, of, ray, span, far, numbers, steps)
+
+    # A ray that passes a surface within the threshold has hit it.
+    margin = numbers.threshold * farthest_box(boxes, ray, numbers)
+    return first_met(boxes, meet, ray, margin, numbers)
 
 
 @func
