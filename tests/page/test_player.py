@@ -797,7 +797,7 @@ def test_without_webgl_2_the_poster_and_a_sentence_stay(tmp_path: Path) -> None:
 
 
 def test_a_dear_still_is_drawn_in_bands_and_is_whole(tmp_path: Path) -> None:
-    # Some ten milliseconds a row in software; each pixel says where it is.
+    # Some ten milliseconds a column in software; each pixel says where it is.
     body = """
 uniform vec2 resolution;
 void main() {
@@ -818,14 +818,14 @@ void main() {
             " const c = h.shadowRoot.querySelector('canvas');"
             " return [c.width, c.height] })[0]"
         )
-        bands = [band for band in page.page.evaluate("window.bands") if band[2] == width]
-        # The still's bands follow one another from the lower edge to the upper.
-        still = bands[max(i for i, band in enumerate(bands) if band[1] == 0) :]
+        bands = [band for band in page.page.evaluate("window.bands") if band[3] == height]
+        # The still's bands follow one another from the left edge to the right.
+        still = bands[max(i for i, band in enumerate(bands) if band[0] == 0) :]
         assert len(still) > 1
-        assert [band[1] for band in still] == [
-            sum(b[3] for b in still[:i]) for i in range(len(still))
+        assert [band[0] for band in still] == [
+            sum(b[2] for b in still[:i]) for i in range(len(still))
         ]
-        assert sum(band[3] for band in still) == height
+        assert sum(band[2] for band in still) == width
         for x, y in ((5, 5), (150, 40), (80, height - 2)):
             expected = ((x + 0.5) / width, (height - y - 0.5) / height, 0)
             assert close(page.color(x, y), tuple(round(255 * part) for part in expected))

@@ -76,7 +76,7 @@ export class Painter {
     const program = await link(gl, source);
     const work = this.#work;
     this.#work = newTarget(gl);
-    this.draw(program, {} as Inputs, [width, height], 0, height);
+    this.draw(program, {} as Inputs, [width, height], 0, width);
     this.#work = work;
     const read = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, read);
@@ -88,7 +88,7 @@ export class Painter {
     const { gl } = this;
     const work = this.#work;
     this.#work = this.#read;
-    this.draw(program, inputs, size, 0, size[1]);
+    this.draw(program, inputs, size, 0, size[0]);
     this.#work = work;
     const read = new Uint8Array(4 * size[0] * size[1]);
     // Into a buffer first: to read pixels at once would hold up the page until they are drawn.
@@ -120,15 +120,15 @@ export class Painter {
     return [Math.max(1, Math.round(width * most)), Math.max(1, Math.round(height * most))];
   }
 
-  /** Draws `rows` rows of the next picture, counted from its lower edge. */
-  draw(program: Linked, inputs: Inputs, size: [number, number], from: number, rows: number): void {
+  /** Draws some columns of the next picture, counted from its left edge. */
+  draw(program: Linked, inputs: Inputs, size: [number, number], from: number, columns: number): void {
     const { gl } = this;
     const [width, height] = size;
     resize(gl, this.#work, width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.#work.frame);
     gl.viewport(0, 0, width, height);
     gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(0, from, width, rows);
+    gl.scissor(from, 0, columns, height);
     gl.useProgram(program.handle);
     this.#resources.bind(program);
     setUniforms(gl, program, inputs);

@@ -329,18 +329,18 @@ export class Renderer {
     if (painter !== this.#painter) return;
     inputs.number = { ...inputs.number, ...range, Samples: samples };
     let total = 0;
-    for (let row = 0; row < height; ) {
-      const rows = Math.min(this.#resolution.rows(width * samples), height - row);
-      painter.draw(program, inputs, plan.size, row, rows);
-      row += rows;
+    for (let column = 0; column < width; ) {
+      const columns = Math.min(this.#resolution.columns(height * samples), width - column);
+      painter.draw(program, inputs, plan.size, column, columns);
+      column += columns;
       // In the task of the last draw: the picture appears whole, and as early as it can.
-      if (row >= height && !isAside) this.#present(painter, plan);
+      if (column >= width && !isAside) this.#present(painter, plan);
       const ms = await gpuDone(painter.gl);
       if (ms === null || painter !== this.#painter) return;
-      this.#resolution.measure(ms, width * rows * samples);
+      this.#resolution.measure(ms, columns * height * samples);
       total += ms;
       const isOld = plan.revision !== this.#revision || program !== this.#program;
-      if (plan.abortable && isOld && row < height) return;
+      if (plan.abortable && isOld && column < width) return;
     }
     if (!isAside) return this.subject.drawn({ ms: total, width, height, fps: this.#fps(), samples });
     const blob = await painter.png(this.transparent);
@@ -391,7 +391,7 @@ export class Renderer {
     if (!painter || !program) return null;
     const { width, height } = this.canvas;
     const size = painter.size(Math.min(1, Math.sqrt(most / (width * height))));
-    painter.draw(program, this.subject.inputs(...size), size, 0, size[1]);
+    painter.draw(program, this.subject.inputs(...size), size, 0, size[0]);
     const ms = await gpuDone(painter.gl);
     return ms === null || program !== this.#program ? null : { ms, pixels: size[0] * size[1] };
   }

@@ -1,8 +1,8 @@
 /**
  * How many pixels a moving picture can afford, and how a big still is cut.
  *
- * Pure. In: what the GPU took for how many pixels. Out: a scale of the canvas's sides, rows of a
- * band. One number is learned: milliseconds per pixel.
+ * Pure. In: what the GPU took for how many pixels. Out: a scale of the canvas's sides, columns of
+ * a band. One number is learned: milliseconds per pixel.
  */
 
 /** Scales, and what a moving frame may take at each: a coarse picture is worse than a slow one. */
@@ -54,10 +54,11 @@ export class Resolution {
   }
 
   /**
-   * Rows of so many pixels that fit one submission; `Infinity` where all do. An even number: GPUs
-   * shade squares of 2 x 2 pixels, so a band of one row takes as long as one of two.
+   * Columns of so many pixels that fit one submission; `Infinity` where all do. An even number: GPUs
+   * shade squares of 2 x 2 pixels, so a band of one column takes as long as one of two. Columns, not
+   * rows: SwiftShader shares out pairs of rows among the cores.
    */
-  rows(width: number): number {
-    return 2 * Math.max(1, Math.floor(BAND_MS / (2 * (this.cost ?? 0) * width)));
+  columns(height: number): number {
+    return 2 * Math.max(1, Math.floor(BAND_MS / (2 * (this.cost ?? 0) * height)));
   }
 }

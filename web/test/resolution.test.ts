@@ -39,7 +39,7 @@ test("two scales do not take turns", () => {
 test("bands fit a submission, and are an even number of rows", () => {
   const resolution = new Resolution();
   resolution.measure(101.5, 1000); // 0.1 ms a pixel
-  assert.equal(resolution.rows(100), BAND_MS / 10);
-  assert.equal(resolution.rows(150), 2); // 2.7
-  assert.equal(resolution.rows(1e6), 2);
+  assert.equal(resolution.columns(100), BAND_MS / 10);
+  assert.equal(resolution.columns(150), 2); // 2.7
+  assert.equal(resolution.columns(1e6), 2);
 });
