@@ -495,7 +495,7 @@ class View(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function that maps the frame to a pixel, and return its name."""
-        return SceneLowering(assembly, self._scene).main(
+        return SceneLowering(assembly, self._scene, paths=self.refined).main(
             self._view,
             transparent=self._transparent,
             sampled=self._sampled,

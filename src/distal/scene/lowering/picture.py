@@ -54,6 +54,7 @@ from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import rolled_for, split_table
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.lowering.thin_sheets import with_insides
 from distal.scene.tree.calls import expression_of
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
@@ -89,11 +90,21 @@ class SceneLowering:
         camera: The functions of its camera.
     """
 
-    def __init__(self, assembly: Assembly, scene: Scene) -> None:
+    def __init__(self, assembly: Assembly, scene: Scene, *, paths: bool = False) -> None:
+        """Begin.
+
+        Args:
+            assembly: The program.
+            scene: The scene.
+            paths: Whether rays are followed from surface to surface in any scene.
+        """
         self._assembly = assembly
         self._scene = scene
         rolls = scene.acceleration and not self._hybrid
-        self.node = rolled_for(assembly, scene.shape.node) if rolls else scene.shape.node
+        node = scene.shape.node
+        if paths or scene.renderer == "refracted":
+            node = with_insides(node)
+        self.node = rolled_for(assembly, node) if rolls else node
         # Views show the author's values; rays need only bounds far from surfaces.
         self._shown_node = self.node
         if rolls:
