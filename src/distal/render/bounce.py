@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.lang import Field3, abs, dot, exp, func, max, reflect, refract, select, vec3, vec4
+from distal.lang import Field3, exp, func, reflect, refract, select, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.footprint import THIN, Cone, Footprint, continued
 from distal.render.lights import LightSample
@@ -17,7 +17,7 @@ from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
-from distal.render.segment import Landing, landing
+from distal.render.segment import Landing, landing, leaving_slope
 from distal.render.shade import Shading, direct_light, fogged
 from distal.render.shadows import Opening
 from distal.render.trace import ray_offset, surface_point
@@ -25,7 +25,6 @@ from distal.render.trace import ray_offset, surface_point
 # Alpha of a ray that starts inside a solid and does not leave it.
 ALL_INSIDE = -1.0
 STACK = 12
-FLATTEST = 1e-9  # the least slope with which a ray leaves a surface
 DIMMEST = 0.004  # rays that would add less than one step of an 8-bit display are not followed
 
 
@@ -244,7 +243,7 @@ def seen_refracted(
             if brightest(share) >= DIMMEST and waiting < STACK:
                 origins[waiting] = place.p
                 sides[waiting] = -hit.side if through else hit.side
-                slopes[waiting] = max(place.slope * abs(dot(onward, place.n)), FLATTEST)
+                slopes[waiting] = leaving_slope(place.slope, place.n, onward)
                 parts[waiting] = hit.part
                 directions[waiting] = onward
                 throughputs[waiting] = share

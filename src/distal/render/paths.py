@@ -20,7 +20,6 @@ from typing import Final
 
 from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
-    abs,
     dot,
     exp,
     func,
@@ -32,7 +31,7 @@ from distal.lang import (
     vec3,
     vec4,
 )
-from distal.render.bounce import ALL_INSIDE, FLATTEST
+from distal.render.bounce import ALL_INSIDE
 from distal.render.camera import Ray
 from distal.render.emitters import Emission, power_share, sample_light, seen_light
 from distal.render.footprint import THIN, Cone, Footprint, continued, footprint_at
@@ -43,7 +42,7 @@ from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import Meeting, all_specular, emitted, meet, respond_to, sample_from
-from distal.render.segment import landing
+from distal.render.segment import landing, leaving_slope
 from distal.render.shade import Lit, Shading
 from distal.render.surroundings import DirectionSample
 from distal.render.trace import facing_normal
@@ -171,7 +170,7 @@ def start_from(vertex: Vertex, direction: vec3) -> Start:
     """Return the ray from a surface in a direction, on either side."""
     rise = dot(direction, vertex.n)
     side = select(rise > 0.0, vertex.side, -vertex.side)
-    slope = max(vertex.slope * abs(rise), FLATTEST)
+    slope = leaving_slope(vertex.slope, vertex.n, direction)
     return Start(Ray(vertex.p, direction), side, slope, vertex.part)
 
 

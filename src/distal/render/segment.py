@@ -61,6 +61,8 @@ PATIENCE = 16
 # a multiple of the previous ball's radius.
 RELAXATION = 0.95
 LONGEST = 12.0
+# The least slope with which a ray leaves a surface: 0 says that it does not start on one.
+FLATTEST = 1e-9
 # Steps of Newton's method to a place on a surface, and the slope along a ray, as a share of the
 # gradient, below which they follow the normal.
 LANDING_STEPS = 2
@@ -117,6 +119,12 @@ class SegmentState:
 def rounding_of(p: vec3) -> float:
     """Return the rounding error of a field at a place."""
     return ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z))
+
+
+@func
+def leaving_slope(slope: float, n: vec3, direction: vec3) -> float:
+    """Return how fast a field of this |gradient| grows along a ray from a surface, above 0."""
+    return max(slope * abs(dot(direction, n)), FLATTEST)
 
 
 @func

@@ -144,13 +144,13 @@ class PythonExecutor:
             image = sampling.sampled(image)
             options = replace(options, settings={film.SAMPLES: options.samples})
         adaptive = isinstance(image, Composed) and image.adaptive
+        refined = isinstance(image, Composed) and image.refined
         with paused_collection():
             run = self._parts(image)
             parts = run.parts
             values, others = _uniforms(run.declared, options)
             if options.freeze:
                 numbers = run.declared.number_values(options.settings)
-                refined = isinstance(image, Composed) and image.refined
                 kept = film.PASS_NUMBERS if adaptive or refined else ()
                 parts = tuple(part.frozen(numbers, kept) for part in parts)
             kernels = [self.kernels.kernel(part, device, 32) for part in parts]
@@ -161,7 +161,7 @@ class PythonExecutor:
         linear: NDArray[np.float32] | None = None
         samples = 1.0
         exposed: accumulation.Film | None = None
-        if isinstance(image, Composed) and image.refined:
+        if refined:
             samples_only = Refinement(samples=options.samples or PATH_SAMPLES)
             exposed = passes.accumulated(options.refinement or samples_only)
             linear = exposed.light
