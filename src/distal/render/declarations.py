@@ -57,6 +57,7 @@ class Declaration:
         widest: For a camera: ``fov`` is below this angle, or at most this if it is a full turn.
         reflects: For a material: whether reflected rays may start from it.
         refracts: For a material: whether refracted rays may enter it.
+        emits: For a material: whether it may emit light.
         sample: For a background that is also a light: ``(p, …) -> LightSample``.
         ambient: For a background that is also a light: ``(n, …) -> vec3``.
         radiance: For light from all sides: ``(direction, …) -> vec3``, the light of a direction,
@@ -72,6 +73,7 @@ class Declaration:
     widest: float = math.pi
     reflects: bool = False
     refracts: bool = False
+    emits: bool = False
     sample: Func | None = None
     ambient: Func | None = None
     radiance: Func | None = None

@@ -125,7 +125,7 @@ def plastic(color: vec3 = WHITE, roughness: float = 0.2, ior: float = 1.5) -> Su
 
 
 # Emitted light may be brighter than white.
-@material("emissive", limits={"strength": Limit.NOT_NEGATIVE})
+@material("emissive", emits=True, limits={"strength": Limit.NOT_NEGATIVE})
 @func
 def emissive(color: vec3 = WHITE, strength: float = 1.0) -> Surface:
     """A material that emits light and reflects none.

@@ -33,8 +33,16 @@ from distal.lang import (
 )
 from distal.render.bounce import ALL_INSIDE
 from distal.render.camera import Ray
-from distal.render.emitters import Emission, power_share, sample_light, seen_light
-from distal.render.footprint import THIN, Cone, Footprint, continued, footprint_at
+from distal.render.emitters import power_share, sample_light, seen_light
+from distal.render.footprint import (
+    THIN,
+    Cone,
+    Footprint,
+    continued,
+    footprint_at,
+    point_footprint,
+)
+from distal.render.lamps import Lamp, aim_at_lamp, lamps_density
 from distal.render.lights import LightSample
 from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import PASSED, Hit, March
@@ -45,7 +53,7 @@ from distal.render.scatter import Meeting, all_specular, emitted, meet, respond_
 from distal.render.segment import landing, leaving_slope
 from distal.render.shade import Lit, Shading
 from distal.render.surroundings import DirectionSample
-from distal.render.trace import facing_normal
+from distal.render.trace import facing_normal, hit_point
 
 # The first segments of a path are always followed; later ones with this probability at most.
 SURE: Final = 4
@@ -174,28 +182,48 @@ def start_from(vertex: Vertex, direction: vec3) -> Start:
     return Start(Ray(vertex.p, direction), side, slope, vertex.part)
 
 
+@struct
+class Aim:
+    """A direction in which a path looks for light.
+
+    Attributes:
+        direction: Unit direction.
+        distance: Distance to the light; what is nearer hides it.
+        weight: The light's radiance divided by ``density``. Of a shape: 1 divided by it; the
+            radiance is that of the surface which the direction meets.
+        density: Density by solid angle; 0 for a point, which no ray meets by chance.
+        is_shape: Whether the light is a shape.
+    """
+
+    direction: vec3
+    distance: float
+    weight: vec3
+    density: float
+    is_shape: bool
+
+
 @func
-def light_on(
+def aim_at_light(
     vertex: Vertex,
-    meeting: Meeting,
-    next_hit: Callable[[Ray, float, float, int], Hit],
     lights: Callable[[int, vec3], LightSample],
     light_count: int,
+    lamps: Callable[[int], Lamp],
+    lamp_count: int,
     around: Callable[[vec3], vec3],
     directions: Callable[[vec3], DirectionSample],
     has_directions: bool,
     chance: float,
     u: vec3,
     which: float,
-) -> Lit:
-    """Return the light of one of the lights, chosen at random, that a surface sends to the eye.
+) -> Aim:
+    """Return a random direction to one of the lights, chosen at random.
 
     Args:
         vertex: The surface.
-        meeting: The surface and the direction to the eye, for its response.
-        next_hit: The next surface along a ray from a surface.
         lights: The light with a given index, from 0, at a point.
         light_count: How many lights there are.
+        lamps: The shape that emits light, by index.
+        lamp_count: How many there are.
         around: Ambient light from a direction.
         directions: Random directions for ambient light, by three random numbers.
         has_directions: Whether there are such directions; a constant.
@@ -204,22 +232,59 @@ def light_on(
         which: A random number that chooses the light.
     """
     index = int(which / chance)
-    light = Emission(vertex.n, UNBOUNDED, vec3(0.0), 0.0)
     if index < light_count:
         light = sample_light(lights(index, vertex.p), u.xy)
-    elif has_directions:
+        density = light.density * chance
+        return Aim(light.direction, light.distance, light.weight / chance, density, False)
+    if index < light_count + lamp_count:
+        direction = aim_at_lamp(lamps(index - light_count), vertex.p, u)
+        density = chance * lamps_density(vertex.p, direction, lamps, lamp_count)
+        weight = select(density > 0.0, 1.0 / max(density, 1e-30), 0.0)
+        return Aim(direction, UNBOUNDED, vec3(weight), density, True)
+    if has_directions:
         far = directions(u)
-        weight = around(far.direction) / max(far.density, 1e-30)
-        light = Emission(far.direction, UNBOUNDED, weight, far.density)
-    found = respond_to(meeting, light.direction)
-    color = found.value * light.weight / chance
-    start = start_from(vertex, light.direction)
+        density = far.density * chance
+        weight = around(far.direction) / max(density, 1e-30)
+        return Aim(far.direction, UNBOUNDED, weight, density, False)
+    return Aim(vertex.n, UNBOUNDED, vec3(0.0), 0.0, False)
+
+
+@func
+def light_from(
+    aim: Aim,
+    vertex: Vertex,
+    meeting: Meeting,
+    next_hit: Callable[[Ray, float, float, int], Hit],
+    surface: Callable[[vec3, Footprint, int], Surface],
+    look: Shading,
+    has_shapes: bool,
+) -> Lit:
+    """Return the light from a direction that a surface sends to the eye.
+
+    Args:
+        aim: The direction.
+        vertex: The surface.
+        meeting: The surface and the direction to the eye, for its response.
+        next_hit: The next surface along a ray from a surface.
+        surface: The material at a point of a part, averaged over a footprint.
+        look: The density of fog.
+        has_shapes: Whether shapes emit light; a constant.
+    """
+    found = respond_to(meeting, aim.direction)
+    color = found.value * aim.weight
+    start = start_from(vertex, aim.direction)
     if brightest(color) <= 0.0 or start.side < 0.0:
         return Lit(vec3(0.0), False)
     hit = next_hit(start.ray, start.side, start.slope, start.part)
-    is_open = not hit.found or hit.t >= light.distance
-    shared = power_share(light.density * chance, found.density)
-    return Lit(color * select(is_open, shared, 0.0), hit.lost != PASSED)
+    is_open = not hit.found or hit.t >= aim.distance
+    shared = select(is_open, power_share(aim.density, found.density), 0.0)
+    if has_shapes and aim.is_shape:
+        shared = 0.0
+        if hit.found:
+            met = surface(hit_point(start.ray, hit), point_footprint(), hit.part)
+            color = color * emitted(met, False) * exp(-look.fog_density * hit.t)
+            shared = power_share(aim.density, found.density)
+    return Lit(color * shared, hit.lost != PASSED)
 
 
 @func
@@ -234,11 +299,13 @@ def path_light(
     directions: Callable[[vec3], DirectionSample],
     directions_density: Callable[[vec3], float],
     has_directions: bool,
+    lamps: Callable[[int], Lamp],
     background: Callable[[vec3], vec3],
     fog: Callable[[vec3], vec3],
     numbers: March,
     look: Shading,
     light_count: int,
+    lamp_count: int,
     stream: Stream,
     normals: int = EXACT,
     normal_step: float = 1e-3,
@@ -259,11 +326,13 @@ def path_light(
         directions: Random directions for ambient light, by three random numbers.
         directions_density: The density of such a direction.
         has_directions: Whether there are such directions; a constant.
+        lamps: Where the shape is that emits light, by index.
         background: Light from a direction without a surface, as the camera sees it.
         fog: Color of the fog in a direction.
         numbers: The parameters of the march.
         look: The density of fog.
         light_count: How many lights there are.
+        lamp_count: How many shapes emit light; a constant.
         stream: The random numbers of the path.
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
@@ -278,7 +347,7 @@ def path_light(
     throughput = vec3(1.0)
     alpha = 0.0
     lost = 0
-    choices = light_count + 1 if has_directions else light_count
+    choices = light_count + lamp_count + (1 if has_directions else 0)
     chance = 1.0 / float(max(choices, 1))
     start = Start(ray, 0.0, 0.0, -1)
     width = cone
@@ -310,16 +379,20 @@ def path_light(
         else:
             clear = exp(-look.fog_density * vertex.t)
             emission = emitted(material, inside)
+            if lamp_count > 0 and chosen > 0.0 and brightest(emission) > 0.0:
+                density = lamps_density(here.origin, here.direction, lamps, lamp_count)
+                emission = emission * power_share(chosen, density * chance)
             color += throughput * mix(fog(here.direction), emission, clear)
             throughput = throughput * clear
         meeting = meet(material, -here.direction, vertex.n, inside)
         if choices > 0 and not all_specular(material):
             u = triple(stream, decision + PLACE_ON_LIGHT)
             which = single(stream, decision + WHICH_LIGHT)
-            direct = light_on(
-                vertex, meeting, next_hit, lights, light_count, around, directions,
+            aim = aim_at_light(
+                vertex, lights, light_count, lamps, lamp_count, around, directions,
                 has_directions, chance, u, which,
             )  # fmt: skip
+            direct = light_from(aim, vertex, meeting, next_hit, surface, look, lamp_count > 0)
             color += throughput * direct.color
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
         onward = sample_from(meeting, triple(stream, decision + DIRECTION))

@@ -1,7 +1,8 @@
 """The functions of one scene's lights, its background and its fog.
 
 Input: a scene. Output: functions in a program: the light with a number at a point, ambient light on
-a surface and from a direction, random directions to it, what is behind everything.
+a surface and from a direction, random directions to it, where shapes emit light, what is behind
+everything.
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ from typing import TYPE_CHECKING, Any
 from distal.ir.build import add, boolean, compare, integer, number
 from distal.ir.nodes import CompareOp, Expr, FunctionRef, If, Return
 from distal.ir.types import INT, VEC3
-from distal.render import shade, surroundings
+from distal.render import lamps, shade, surroundings
 from distal.render.lights import no_light
+from distal.scene.lowering.lamps import is_ball, lamps_of
 from distal.scene.lowering.ray_functions import Define
 from distal.scene.lowering.shapes import ShapeComposer
+from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
@@ -95,6 +98,30 @@ class LightFunctions:
                 "directions_density", [("direction", VEC3)], density, []
             ),
             "has_directions": boolean(known is not None),
+        }
+
+    def lamps(self, node: Node) -> dict[str, Expr]:
+        """Return where shapes that emit light are, by name of ``paths.path_light``.
+
+        Args:
+            node: The tree of the scene, without a table.
+        """
+        composer = self._composer
+        found = lamps_of(node, self._scene.material)
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            for i, lamp in enumerate(found):
+                inside = StatementList(taken=body.taken)
+                box = composer.bounds.of(inside, lamp, composer.values.all(lamp)).bounds
+                asked = {"bounds": box, "round": boolean(is_ball(lamp))}
+                inside.statements.append(Return(composer.call(lamps.lamp_in, asked)))
+                chosen = compare(CompareOp.EQ, given["i"], integer(i))
+                body.statements.append(If(chosen, tuple(inside.statements), ()))
+            return composer.call(lamps.no_lamp, {})
+
+        return {
+            "lamps": self._define("lamp", [("i", INT)], make, []),
+            "lamp_count": integer(len(found)),
         }
 
     def background(self) -> FunctionRef:

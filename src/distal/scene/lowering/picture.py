@@ -285,6 +285,7 @@ class SceneLowering:
             given["next_hit"] = rays.next_hit(body, on_surface)
         if paths:
             given |= {"around": self._lights.ambient("direction"), **self._lights.directions()}
+            given |= self._lights.lamps(scene.shape.node)
         return given
 
     @property

@@ -299,6 +299,7 @@ def _recolored(
                 FunctionCall(call.what, call.func, values, place),
                 reflects=template.reflects,
                 refracts=template.refracts,
+                emits=template.emits,
             )
         )
     return found

@@ -69,13 +69,15 @@ class Material(CalledObject):
         call: The scene function ``(places…) -> Surface`` and its values.
         reflects: Whether rays may be reflected.
         refracts: Whether rays may enter the inside.
+        emits: Whether it may emit light.
     """
 
-    __slots__ = ("reflects", "refracts")
+    __slots__ = ("emits", "reflects", "refracts")
 
     noun: ClassVar[str] = "material"
     reflects: bool
     refracts: bool
+    emits: bool
 
     def __init__(
         self,
@@ -107,24 +109,26 @@ class Material(CalledObject):
         call = _call("Material", surface, given, place)
         reflects = _may_be(call.values["specular"]) or _may_be(call.values["fresnel"])
         refracts = _may_be(call.values["transmission"])
-        self._keep(call=call, reflects=reflects, refracts=refracts)
+        emits = _may_be(call.values["emission"])
+        self._keep(call=call, reflects=reflects, refracts=refracts, emits=emits)
 
     @classmethod
-    def of(cls, call: FunctionCall, *, reflects: bool, refracts: bool) -> Material:
+    def of(cls, call: FunctionCall, *, reflects: bool, refracts: bool, emits: bool) -> Material:
         """Return the material of a scene function.
 
         Args:
             call: The function, which returns a ``Surface``, and its values.
             reflects: Whether it reflects mirror images.
             refracts: Whether light passes through it.
+            emits: Whether it may emit light.
         """
         made = cls.__new__(cls)
-        made._keep(call=call, reflects=reflects, refracts=refracts)
+        made._keep(call=call, reflects=reflects, refracts=refracts, emits=emits)
         return made
 
     def with_call(self, call: FunctionCall) -> Material:
         """Return the material with other values of the same function."""
-        return Material.of(call, reflects=self.reflects, refracts=self.refracts)
+        return Material.of(call, reflects=self.reflects, refracts=self.refracts, emits=self.emits)
 
     @property
     def uses(self) -> frozenset[str]:
@@ -216,7 +220,7 @@ def own_pattern(
     call = _call(what, function, kwargs, place, args, {})
     result = call.result
     if isinstance(result, Struct) and result.name == "Surface":
-        return Material.of(call, reflects=True, refracts=True)
+        return Material.of(call, reflects=True, refracts=True, emits=True)
     if result is FLOAT or result is VEC3:
         return Pattern(what, function, call.values, place)
     gives = "nothing that is known" if result is None else f"a {result}"
@@ -251,6 +255,7 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
         call,
         reflects=a.reflects or b.reflects,
         refracts=a.refracts or b.refracts,
+        emits=a.emits or b.emits,
     )
 
 
@@ -285,7 +290,12 @@ def as_material(value: Any, place: Span | None = None) -> Material:
 
 def _declared(declaration: Declaration, given: Mapping[str, Any], place: Span | None) -> Material:
     call = _call(declaration.name, declaration.function, given, place, limits=declaration.limits)
-    return Material.of(call, reflects=declaration.reflects, refracts=declaration.refracts)
+    return Material.of(
+        call,
+        reflects=declaration.reflects,
+        refracts=declaration.refracts,
+        emits=declaration.emits,
+    )
 
 
 assert named_materials  # importing it declares the materials by name
@@ -324,7 +334,7 @@ def glass(
     elif absorption is not None:
         given["absorption"] = absorption
     call = _call("glass", library.glass, given, place)
-    return Material.of(call, reflects=True, refracts=True)
+    return Material.of(call, reflects=True, refracts=True, emits=False)
 
 
 def _absorption(color: Any, place: Span | None) -> Any:
