@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.lang import Field3, exp, func, reflect, refract, select, vec3, vec4
+from distal.lang import dot, exp, func, reflect, refract, select, vec3, vec4
 from distal.render.camera import Ray
-from distal.render.footprint import THIN, Cone, Footprint, continued
+from distal.render.footprint import THIN, Cone, Footprint, continued, footprint_at
 from distal.render.lights import LightSample
 from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import Hit, March
-from distal.render.material import Surface, brightest
+from distal.render.material import Surface, brightest, shares
+from distal.render.media import interface_at
 from distal.render.normals import EXACT
 from distal.render.segment import Landing, landing, leaving_slope
 from distal.render.shade import Shading, direct_light, fogged
@@ -153,11 +154,21 @@ def seen_mirrored(
 
 
 @func
+def landing_of(field_of: Callable[[vec3, int], float], ray: Ray, hit: Hit) -> Landing:
+    """Return the place on the surface of a part at the end of a ray (``landing``)."""
+
+    def field(q: vec3) -> float:
+        return field_of(q, hit.part)
+
+    return landing(field, ray, hit)
+
+
+@func
 def seen_refracted(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
-    next_hit: Callable[[Ray, float, float, int], Hit],
-    field: Field3,
+    first_within: Callable[[Ray, Hit], int],
+    next_hit: Callable[[Ray, int, float, int], Hit],
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
     occlusion: Callable[[vec3, vec3, float], float],
@@ -170,6 +181,8 @@ def seen_refracted(
     look: Shading,
     light_count: int,
     bounces: int,
+    bodies: int,
+    common: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
     cone: Cone = THIN,
@@ -177,17 +190,17 @@ def seen_refracted(
 ) -> vec4:
     """As ``seen_mirrored``, with glass: both the mirrored and the refracted ray continue.
 
-    Both start on the surface itself and know their side of it (``segment``), so that a pane may be
-    as thin as a few rounding errors of its distance. ``next_hit`` is the next surface along a ray,
-    by its side, the slope with which it leaves a surface, and the part that has this surface;
-    ``field`` is the signed distance; the other arguments are those of ``seen_mirrored``.
+    Both start on the surface itself and know in which bodies they run (``media``, ``segment``), so
+    that a pane may be as thin as a few rounding errors of its distance. ``first_within``,
+    ``next_hit``, ``bodies`` and ``common`` are those of ``paths.path_light``; the other arguments
+    are those of ``seen_mirrored``.
     """
     origins = [ray.origin] * STACK
     directions = [ray.direction] * STACK
     throughputs = [vec3(1.0)] * STACK
     widths = [cone.width] * STACK
     depths = [0] * STACK
-    sides = [0.0] * STACK  # of the surface on which a ray starts, and the slope and the part there
+    withins = [0] * STACK  # in which bodies a ray runs, and the slope and the part where it starts
     slopes = [0.0] * STACK
     parts = [-1] * STACK
     waiting = 1
@@ -203,32 +216,50 @@ def seen_refracted(
         width = Cone(widths[waiting], cone.spread, cone.sample, cone.samples)
         depth = depths[waiting]
         here = Ray(origins[waiting], direction)
-        side = sides[waiting]
+        within = withins[waiting]
         slope = slopes[waiting]
         part = parts[waiting]
-        hit = first_hit(here) if depth == 0 else next_hit(here, side, slope, part)
+        hit = first_hit(here) if depth == 0 else next_hit(here, within, slope, part)
+        if depth == 0:
+            within = first_within(here, hit)
         lost = merged(lost, reason(hit.lost))
         if not hit.found:
             color += throughput * background(direction)
-            if hit.side < 0.0 and depth == 0:
+            if within != 0 and depth == 0:
                 alpha = ALL_INSIDE
             continue
         alpha = 1.0
         point = surface_point(here, hit, field_of, surface, width, numbers, normals, normal_step)
+        place_seen = footprint_at(width, direction, hit.t, point.n)
+        met = interface_at(point.surface, point.p, place_seen, hit, within, surface, bodies, common)
+        if bodies > 1:
+            point.surface = met.surface
+            point.inside = met.inside
+            point.shares = shares(met.surface, -dot(point.n, direction), met.inside)
         continues = brightest(throughput * (point.shares.mirrored + point.shares.transmitted))
         place = Landing(point.p, point.n, point.slope, point.t)
-        if point.inside or continues >= DIMMEST:
-            place = landing(field, here, hit)
-        if point.inside:
-            throughput = throughput * exp(-point.surface.absorption * place.t)
-        else:
+        if within != 0 or continues >= DIMMEST:
+            place = landing_of(field_of, here, hit)
+        if within != 0:
+            throughput = throughput * exp(-met.absorption * place.t)
+        if not met.is_boundary:
+            origins[waiting] = place.p
+            withins[waiting] = met.within
+            slopes[waiting] = leaving_slope(place.slope, place.n, direction)
+            parts[waiting] = hit.part
+            throughputs[waiting] = throughput
+            widths[waiting] = continued(width, point.t).width
+            waiting += 1
+            continue
+        if not point.inside:
             light = direct_light(
                 here, point, occlusion, lights, ambient, shadow, numbers, look, light_count,
                 False, cone.sample, cone.samples,
             )  # fmt: skip
             lost = merged(lost, select(light.lost, SHADOWS, 0))
-            color += throughput * fogged(light.color, point.t, fog(direction), look.fog_density)
-            throughput = throughput * exp(-look.fog_density * point.t)
+            density = select(within != 0, 0.0, look.fog_density)
+            color += throughput * fogged(light.color, point.t, fog(direction), density)
+            throughput = throughput * exp(-density * point.t)
         if depth >= bounces:
             continue
         eta = point.surface.ior if point.inside else 1.0 / point.surface.ior
@@ -242,7 +273,7 @@ def seen_refracted(
             onward = bent if through else reflect(direction, point.n)
             if brightest(share) >= DIMMEST and waiting < STACK:
                 origins[waiting] = place.p
-                sides[waiting] = -hit.side if through else hit.side
+                withins[waiting] = met.within if through else within
                 slopes[waiting] = leaving_slope(place.slope, place.n, onward)
                 parts[waiting] = hit.part
                 directions[waiting] = onward

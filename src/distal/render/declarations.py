@@ -173,6 +173,7 @@ MATERIALS: Final = Family(
         "roughness": Limit.FRACTION,
         "metal": Limit.FRACTION,
         "fresnel": Limit.FRACTION,
+        "dispersion": Limit.NOT_NEGATIVE,
         "amount": Limit.FRACTION,
         "absorption": Limit.NOT_NEGATIVE,
         "dark_color": Limit.FRACTION,

@@ -97,7 +97,6 @@ def lamp_density(lamp: Lamp, p: vec3, direction: vec3) -> float:
     offset = lamp.middle - p
     if lamp.round:
         narrow = cone_to(lamp, offset)
-        squared = dot(offset, offset)
         along = dot(offset, direction)
         across = offset - along * direction
         radius = max(lamp.half.x, lamp.half.y, lamp.half.z)

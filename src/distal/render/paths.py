@@ -20,6 +20,7 @@ from typing import Final
 
 from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
+    abs,
     dot,
     exp,
     func,
@@ -33,6 +34,7 @@ from distal.lang import (
 )
 from distal.render.bounce import ALL_INSIDE
 from distal.render.camera import Ray
+from distal.render.dispersion import color_of, wavelength_of
 from distal.render.emitters import power_share, sample_light, seen_light
 from distal.render.footprint import (
     THIN,
@@ -47,6 +49,7 @@ from distal.render.lights import LightSample
 from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import PASSED, Hit, March
 from distal.render.material import Surface, brightest
+from distal.render.media import Interface, interface_at
 from distal.render.normals import EXACT
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import Meeting, all_specular, emitted, meet, respond_to, sample_from
@@ -68,6 +71,8 @@ WHICH_LIGHT = 0
 PLACE_ON_LIGHT = 1
 DIRECTION = 2
 ENDING = 3
+# The decisions of the camera.
+WAVELENGTH = 3
 
 
 @func
@@ -106,43 +111,51 @@ class Vertex:
         t: How far the path came on its last ray.
         p: The place.
         n: The unit normal on the side that the path came from.
-        side: 1 if that is the outside, -1 if it is the inside.
         slope: |gradient| of the field.
-        part: The part of a table that has the surface; -1 for other surfaces.
-        surface: The material.
+        part: The part that has the surface (``Hit.part``).
+        within: The bodies in which the path came.
+        interface: What it met: the material, the bodies on the other side.
     """
 
     t: float
     p: vec3
     n: vec3
-    side: float
     slope: float
     part: int
-    surface: Surface
+    within: int
+    interface: Interface
 
 
 @func
 def vertex_at(
     ray: Ray,
     hit: Hit,
+    within: int,
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
     cone: Cone,
     numbers: March,
     normals: int,
     normal_step: float,
+    bodies: int,
+    common: int,
+    wavelength: float,
 ) -> Vertex:
     """Return the place where a ray met a surface.
 
     Args:
         ray: Ray.
         hit: Where it ended, at a surface.
+        within: The bodies in which it ran.
         field_of: Signed distance near a surface of a part (``Hit.part``).
         surface: The material at a point of a part, averaged over a footprint.
         cone: The cone of the ray.
         numbers: The parameters of the march.
         normals: The method for normals; a constant of ``normals``.
         normal_step: As for ``facing_normal``.
+        bodies: How many bodies the scene has; a constant.
+        common: The body of shapes without a priority; a constant.
+        wavelength: The wavelength of the path, in nanometers.
     """
 
     def field(q: vec3) -> float:
@@ -152,8 +165,10 @@ def vertex_at(
     n = hit.side * place.n
     if normals != EXACT:
         n = facing_normal(field, ray, hit, numbers, normals, normal_step)
-    material = surface(place.p, footprint_at(cone, ray.direction, place.t, n), hit.part)
-    return Vertex(place.t, place.p, n, hit.side, place.slope, hit.part, material)
+    footprint = footprint_at(cone, ray.direction, place.t, n)
+    own = surface(place.p, footprint, hit.part)
+    met = interface_at(own, place.p, footprint, hit, within, surface, bodies, common, wavelength)
+    return Vertex(place.t, place.p, n, place.slope, hit.part, within, met)
 
 
 @struct
@@ -162,13 +177,13 @@ class Start:
 
     Attributes:
         ray: The ray.
-        side: 1 if it runs outside, -1 inside.
+        within: The bodies in which it runs.
         slope: How fast the field grows along it.
-        part: The part of a table that has the surface; -1 for other surfaces.
+        part: The part that has the surface (``Hit.part``).
     """
 
     ray: Ray
-    side: float
+    within: int
     slope: float
     part: int
 
@@ -177,9 +192,9 @@ class Start:
 def start_from(vertex: Vertex, direction: vec3) -> Start:
     """Return the ray from a surface in a direction, on either side."""
     rise = dot(direction, vertex.n)
-    side = select(rise > 0.0, vertex.side, -vertex.side)
+    within = select(rise > 0.0, vertex.within, vertex.interface.within)
     slope = leaving_slope(vertex.slope, vertex.n, direction)
-    return Start(Ray(vertex.p, direction), side, slope, vertex.part)
+    return Start(Ray(vertex.p, direction), within, slope, vertex.part)
 
 
 @struct
@@ -254,7 +269,7 @@ def light_from(
     aim: Aim,
     vertex: Vertex,
     meeting: Meeting,
-    next_hit: Callable[[Ray, float, float, int], Hit],
+    next_hit: Callable[[Ray, int, float, int], Hit],
     surface: Callable[[vec3, Footprint, int], Surface],
     look: Shading,
     has_shapes: bool,
@@ -273,9 +288,9 @@ def light_from(
     found = respond_to(meeting, aim.direction)
     color = found.value * aim.weight
     start = start_from(vertex, aim.direction)
-    if brightest(color) <= 0.0 or start.side < 0.0:
+    if brightest(abs(color)) <= 0.0 or start.within != 0:
         return Lit(vec3(0.0), False)
-    hit = next_hit(start.ray, start.side, start.slope, start.part)
+    hit = next_hit(start.ray, start.within, start.slope, start.part)
     is_open = not hit.found or hit.t >= aim.distance
     shared = select(is_open, power_share(aim.density, found.density), 0.0)
     if has_shapes and aim.is_shape:
@@ -291,7 +306,8 @@ def light_from(
 def path_light(
     ray: Ray,
     first_hit: Callable[[Ray], Hit],
-    next_hit: Callable[[Ray, float, float, int], Hit],
+    first_within: Callable[[Ray, Hit], int],
+    next_hit: Callable[[Ray, int, float, int], Hit],
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
     lights: Callable[[int, vec3], LightSample],
@@ -306,6 +322,8 @@ def path_light(
     look: Shading,
     light_count: int,
     lamp_count: int,
+    bodies: int,
+    common: int,
     stream: Stream,
     normals: int = EXACT,
     normal_step: float = 1e-3,
@@ -317,8 +335,9 @@ def path_light(
     Args:
         ray: Ray.
         first_hit: The first surface along a ray of the camera.
-        next_hit: The next surface along a ray from a surface, by its side, the slope with which it
-            leaves the surface, and the part that has this surface.
+        first_within: The bodies in which such a ray starts.
+        next_hit: The next surface along a ray from a surface, by the bodies in which it runs, the
+            slope with which it leaves the surface, and the part that has this surface.
         field_of: Signed distance near a surface of a part (``Hit.part``).
         surface: The material at a point of a part, averaged over a footprint.
         lights: The light with a given index, from 0, at a point.
@@ -333,6 +352,8 @@ def path_light(
         look: The density of fog.
         light_count: How many lights there are.
         lamp_count: How many shapes emit light; a constant.
+        bodies: How many bodies the scene has (``media``); a constant.
+        common: The body of shapes without a priority; a constant.
         stream: The random numbers of the path.
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
@@ -349,15 +370,18 @@ def path_light(
     lost = 0
     choices = light_count + lamp_count + (1 if has_directions else 0)
     chance = 1.0 / float(max(choices, 1))
-    start = Start(ray, 0.0, 0.0, -1)
+    start = Start(ray, 0, 0.0, -1)
+    wavelength = wavelength_of(single(stream, WAVELENGTH))
+    is_tinted = False  # whether the throughput has the color of the wavelength
     width = cone
     seen = True  # only mirrors and clear glass are between the camera and the ray
     chosen = 0.0  # the density of the ray's direction; 0 if it was the only possible one
     for i in range(MOST_SEGMENTS):
         decision = CAMERA_DECISIONS + DECISIONS * i
         here = start.ray
-        hit = first_hit(here) if i == 0 else next_hit(here, start.side, start.slope, start.part)
-        inside = hit.side < 0.0
+        hit = first_hit(here) if i == 0 else next_hit(here, start.within, start.slope, start.part)
+        within = first_within(here, hit) if i == 0 else start.within
+        inside = within != 0
         lost = merged(lost, merged(reason(hit.lost), select(i == 0 and inside, INSIDE, 0)))
         if not seen and not inside:
             length = hit.t if hit.found else UNBOUNDED
@@ -372,19 +396,33 @@ def path_light(
                 alpha = ALL_INSIDE
             break
         alpha = 1.0
-        vertex = vertex_at(here, hit, field_of, surface, width, numbers, normals, normal_step)
-        material = vertex.surface
+        vertex = vertex_at(
+            here, hit, within, field_of, surface, width, numbers, normals, normal_step, bodies,
+            common, wavelength,
+        )  # fmt: skip
+        met = vertex.interface
+        material = met.surface
+        emission = emitted(material, met.inside)
         if inside:
-            throughput = throughput * exp(-material.absorption * vertex.t)
+            throughput = throughput * exp(-met.absorption * vertex.t)
+            if bodies > 1:
+                color += throughput * select(met.is_boundary, emission, vec3(0.0))
         else:
             clear = exp(-look.fog_density * vertex.t)
-            emission = emitted(material, inside)
             if lamp_count > 0 and chosen > 0.0 and brightest(emission) > 0.0:
                 density = lamps_density(here.origin, here.direction, lamps, lamp_count)
                 emission = emission * power_share(chosen, density * chance)
             color += throughput * mix(fog(here.direction), emission, clear)
             throughput = throughput * clear
-        meeting = meet(material, -here.direction, vertex.n, inside)
+        if bodies > 1 and not met.is_boundary:
+            slope = leaving_slope(vertex.slope, vertex.n, here.direction)
+            start = Start(Ray(vertex.p, here.direction), met.within, slope, vertex.part)
+            continue
+        meeting = meet(material, -here.direction, vertex.n, met.inside)
+        # From where a path meets glass with dispersion its light has one wavelength.
+        if material.dispersion > 0.0 and not is_tinted:
+            throughput = throughput * color_of(wavelength)
+            is_tinted = True
         if choices > 0 and not all_specular(material):
             u = triple(stream, decision + PLACE_ON_LIGHT)
             which = single(stream, decision + WHICH_LIGHT)
@@ -399,7 +437,7 @@ def path_light(
         throughput = throughput * onward.weight
         likely = 1.0
         if i >= SURE:
-            likely = min(brightest(throughput), LIKELIEST)
+            likely = min(brightest(abs(throughput)), LIKELIEST)
         if single(stream, decision + ENDING) >= likely:
             break
         throughput = throughput / likely

@@ -49,10 +49,11 @@ from distal.scene.lowering.attributes import (
     attribute,
     of_part,
 )
+from distal.scene.lowering.bodies import BodyFunctions, bodies_of, members_of
 from distal.scene.lowering.camera_functions import CameraFunctions
 from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import rolled_for, split_table
-from distal.scene.lowering.ray_functions import RayFunctions, step_limit
+from distal.scene.lowering.ray_functions import RayFunctions, step_limit, united
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.thin_sheets import with_insides
 from distal.scene.tree.calls import expression_of
@@ -102,15 +103,23 @@ class SceneLowering:
         self._scene = scene
         rolls = scene.acceleration and not self._hybrid
         node = scene.shape.node
+        bodies = {0: node}
         if paths or scene.renderer == "refracted":
             node = with_insides(node)
-        self.node = rolled_for(assembly, node) if rolls else node
+            bodies = bodies_of(node)
+        if rolls and 0 in bodies:
+            bodies[0] = rolled_for(assembly, bodies[0])
+        # A table is the first member of the union.
+        common = list(members_of(bodies[0])) if 0 in bodies else []
+        others = [body for priority, body in bodies.items() if priority]
+        self.node = united(node, [*common, *others]) if others else bodies[0]
         # Views show the author's values; rays need only bounds far from surfaces.
         self._shown_node = self.node
         if rolls:
             self._shown_node = rolled_for(assembly, scene.shape.node, exact=True)
         self.composer = ShapeComposer(assembly, [self.node])
         self._rays = RayFunctions(self.composer, self.node, self._function)
+        self._bodies = BodyFunctions(self.composer, bodies, self._function)
         self._view_numbers: dict[str, Expr] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
@@ -282,7 +291,9 @@ class SceneLowering:
         if scene.renderer == "refracted" or paths:
             on_surface = {**given, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
-            given["next_hit"] = rays.next_hit(body, on_surface)
+            given["next_hit"] = self._bodies.next_hit(body, on_surface)
+            given["first_within"] = self._bodies.first_within()
+            given |= self._bodies.constants
         if paths:
             given |= {"around": self._lights.ambient("direction"), **self._lights.directions()}
             given |= self._lights.lamps(scene.shape.node)
@@ -349,8 +360,12 @@ class SceneLowering:
             asked = {**known, **given}
             asked["counted"] = counted
             if shines:
-                asked["surface"] = self._surface_of_hit()
+                asked["surface"] = self._surface_of_hit(self.node)
                 asked["field_of"] = self._rays.field_of(hybrid=self._hybrid)
+            if shines and self._bodies.are_many:
+                asked["surface"] = self._bodies.surface(self._surface_of_hit)
+                asked["field_of"] = self._bodies.field_of()
+                asked["first_hit"] = self._bodies.first_hit(body, asked)
             if shines and not self._hybrid:
                 values = self.composer.values.all(self.node)
                 asked["field"] = self.composer.safe_field(self.node, values, ZERO_CELL)
@@ -443,14 +458,14 @@ class SceneLowering:
         values = self.composer.values.all(node)
         return AttributePoint(given["p"], ZERO_CELL, values, given.get("footprint"))
 
-    def _surface_of_hit(self) -> FunctionRef:
-        """Return the function ``(p, footprint, part) -> Surface``."""
+    def _surface_of_hit(self, node: Node) -> FunctionRef:
+        """Return the function ``(p, footprint, part) -> Surface`` of a tree."""
         kind = SurfaceAttribute(self.composer, self._scene.material)
-        parts, beside = split_table(self.node)
+        parts, beside = split_table(node)
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             if parts is None:
-                return attribute(body, kind, self.node, self._site(self.node, given))
+                return attribute(body, kind, node, self._site(node, given))
             of = of_part(kind, parts, self._site(parts, given), given["part"])
             if beside is None:
                 return of

@@ -300,6 +300,7 @@ def _recolored(
                 reflects=template.reflects,
                 refracts=template.refracts,
                 emits=template.emits,
+                priority=template.priority,
             )
         )
     return found

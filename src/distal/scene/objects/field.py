@@ -18,7 +18,7 @@ from distal.fields.guarantees import EXACT, Guarantee, Limit, Operator, ended
 from distal.frontend import Assembly
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Call, Param, Read, Return
-from distal.ir.types import FLOAT, VEC3, Type
+from distal.ir.types import FLOAT, INT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.presentable import Presentable
@@ -33,7 +33,7 @@ from distal.scene.objects.other_names import instead
 from distal.scene.objects.proving import proved
 from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
-from distal.scene.tree.conversion import Asked, Number, number
+from distal.scene.tree.conversion import Asked, Number, choice, number
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
@@ -307,9 +307,22 @@ class BaseShape(Composed, Presentable):
         made: Self = self._under(joins.COMPLEMENT, (), {}, author_place())
         return made
 
-    def paint(self, material: Any) -> Self:
-        """Set the material, or its color; the outermost ``paint`` has priority."""
-        changed: Self = self._of(self.node.with_material(as_material(material)))
+    def paint(self, material: Any, *, priority: int = 0) -> Self:
+        """Set the material, or its color; the outermost ``paint`` counts.
+
+        Solids of one priority merge where they overlap. Of solids with different priorities that
+        are united by ``|``, the higher displaces the lower: a glass of priority 2 that holds wine
+        of priority 1, a pebble of priority 3 inside of either.
+
+        Args:
+            material: A material, a color, a pattern.
+            priority: A whole number.
+        """
+        made = as_material(material)
+        asked = Asked("priority", "paint", INT, Limit.ANY, place=author_place())
+        if rank := choice(priority, asked):
+            made = made.with_priority(rank)
+        changed: Self = self._of(self.node.with_material(made))
         return changed
 
     def cut_material(self, material: Any) -> Self:
