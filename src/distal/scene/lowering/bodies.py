@@ -14,7 +14,7 @@ from distal.diagnostics import CompileError
 from distal.fields.combine.joins import UNION
 from distal.ir.build import add, compare, field, integer, number, select
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Return
-from distal.ir.types import FLOAT, INT, VEC3
+from distal.ir.types import FLOAT, INT, VEC3, FunctionType
 from distal.lang.functions import Func
 from distal.render import media, settings
 from distal.render.camera import Ray
@@ -235,7 +235,9 @@ class BodyFunctions:
         """
         if len(own) == 1:
             return own[0]
-        result = own[0].type.result
+        signature = own[0].type
+        assert isinstance(signature, FunctionType)
+        result = signature.result
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             args = tuple(given[n] for n, _ in params)
