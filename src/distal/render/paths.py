@@ -254,8 +254,8 @@ def aim_at_light(
     if index < light_count + lamp_count:
         direction = aim_at_lamp(lamps(index - light_count), vertex.p, u)
         density = chance * lamps_density(vertex.p, direction, lamps, lamp_count)
-        weight = select(density > 0.0, 1.0 / max(density, 1e-30), 0.0)
-        return Aim(direction, UNBOUNDED, vec3(weight), density, True)
+        share = select(density > 0.0, 1.0 / max(density, 1e-30), 0.0)
+        return Aim(direction, UNBOUNDED, vec3(share), density, True)
     if has_directions:
         far = directions(u)
         density = far.density * chance

@@ -2,7 +2,8 @@
 
 Input: a ray, the ``SurfacePoint`` that it hit, lights and ambient light. Output: linear light. A
 loop evaluates the lights and contains one shadow march, which is skipped for a light behind the
-surface. Glass casts the shadow of an opaque solid, because caustics need path tracing.
+surface. Glass colors the light that passes straight through it (``glass_shadows``); caustics need
+path tracing.
 """
 
 from __future__ import annotations
@@ -209,5 +210,5 @@ def direct_light(
             lost = lost or seen.lost
             shine = highlight(point.surface, n, view, light.direction, light.radius)
             scattered = point.shares.diffuse * facing + point.shares.mirrored * shine
-            color += light.radiance * seen.share * scattered
+            color += light.radiance * seen.tint * seen.share * scattered
     return Lit(color, lost)

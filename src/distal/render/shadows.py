@@ -30,6 +30,7 @@ from distal.render.march import March
 from distal.render.normals import tangent
 from distal.render.shadow_ray import Edge, find_edge, share_of_disc
 
+WHITE = vec3(1.0)
 SHARPEST = 0.003  # smallest tangent of a light's half angle: sharper shadows would be noisy
 NARROW = 0.01  # below this tangent, one ray to the middle of the light is enough
 ENOUGH_SAMPLES = 4  # from so many samples of a pixel on, each has one ray to a wide light
@@ -53,10 +54,12 @@ class Opening:
     Attributes:
         share: From 0, nothing, to 1, all of it.
         lost: Whether the steps of a ray ran out.
+        tint: What glass in front of the light lets through.
     """
 
     share: float
     lost: bool = False
+    tint: vec3 = WHITE
 
 
 @func

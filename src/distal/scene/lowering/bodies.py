@@ -20,6 +20,7 @@ from distal.render import media, settings
 from distal.render.camera import Ray
 from distal.render.footprint import Footprint
 from distal.render.march import Hit
+from distal.scene.lowering.captures import capturing
 from distal.scene.lowering.ray_functions import Define, Params, RayFunctions, united
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
@@ -206,14 +207,11 @@ class BodyFunctions:
             own: The function of each body.
             function: The library function that calls it.
         """
-        captured = {f"own_{k}_{i}": v for k, f in enumerate(own) for i, v in enumerate(f.captures)}
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             found: Expr | None = None
-            for k, each in enumerate(own):
-                captures = tuple(given[f"own_{k}_{i}"] for i in range(len(each.captures)))
-                here = FunctionRef(each.name, captures, each.type)
-                asked = {**given, **self.constants, "own": here, "body": integer(k)}
+            for k in range(len(own)):
+                asked = {**given, **self.constants, "own": given[f"own_{k}"], "body": integer(k)}
                 hit = body.let("hit", self._composer.call(function, asked))
                 if found is not None:
                     two = {"first": found, "second": hit}
@@ -222,8 +220,8 @@ class BodyFunctions:
             assert found is not None
             return found
 
-        every = [*params, *((name, value.type) for name, value in captured.items())]
-        return self._define(name, every, make, list(captured.values()))
+        functions = {f"own_{k}": each for k, each in enumerate(own)}
+        return capturing(self._define, name, params, functions, make)
 
     def _chosen(self, name: str, params: Params, own: Sequence[FunctionRef]) -> FunctionRef:
         """Return the function of the body that a part belongs to.

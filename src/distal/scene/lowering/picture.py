@@ -51,6 +51,7 @@ from distal.scene.lowering.attributes import (
 )
 from distal.scene.lowering.bodies import BodyFunctions, bodies_of, members_of
 from distal.scene.lowering.camera_functions import CameraFunctions
+from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import rolled_for, split_table
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit, united
@@ -287,7 +288,7 @@ class SceneLowering:
         rays = self._rays
         given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
         given["occlusion"] = rays.occlusion(body, given, hybrid=self._hybrid)
-        given["shadow"] = rays.shadow(body, given, casts=scene.shadows, hybrid=self._hybrid)
+        given["shadow"] = self._shadow(body, given)
         if scene.renderer == "refracted" or paths:
             on_surface = {**given, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
@@ -298,6 +299,22 @@ class SceneLowering:
             given |= {"around": self._lights.ambient("direction"), **self._lights.directions()}
             given |= self._lights.lamps(scene.shape.node)
         return given
+
+    def _shadow(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
+        """Return the function ``(origin, light, sample, samples) -> Opening``."""
+        scene, composer = self._scene, self.composer
+        clear: list[Node] = []
+        if scene.renderer == "refracted" and scene.shadows:
+            clear, others = split_glass(self.node, scene.material)
+        if not clear:
+            return self._rays.shadow(body, given, casts=scene.shadows, hybrid=self._hybrid)
+        casts = bool(others)
+        rest = united(self.node, others) if others else self.node
+        rays = RayFunctions(composer, rest, self._function)
+        own = composer.bounds.of(body, rest, composer.values.all(rest)).bounds
+        box = body.let("bounds", composer.call(settings.grown_bounds, {"bounds": own}))
+        opaque = rays.shadow(body, {**given, "bounds": box}, casts=casts, hybrid=False)
+        return colored_shadow(composer, clear, self._surface_of_hit, self._function, opaque)
 
     @property
     def _hybrid(self) -> bool:
