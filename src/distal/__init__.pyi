@@ -1464,6 +1464,34 @@ def checker(
     """
 
 @overload
+def facing(
+    a: Color | Varying = "#fff",
+    b: Color | Varying = "#222",
+    power: Number | Varying = 1.0,
+) -> Pattern: ...
+@overload
+def facing(
+    a: Color | Varying | Material = "#fff",
+    b: Color | Varying | Material = "#222",
+    power: Number | Varying = 1.0,
+) -> Material:
+    """A blend by the angle under which the eye sees the surface: rims, velvet, the sun's limb.
+
+    Limb darkening by a coefficient u is ``facing(bright, (1 - u) * bright)``.
+
+    Args:
+        a: A color, a pattern, or a material: where the surface faces the eye.
+        b: The other: at outlines.
+        power: Above 1 the rim grows broader, below 1 narrower.
+
+    Raises:
+        ValueError: A number is out of its range.
+        TypeError: An argument is of another kind.
+
+    Source: the linear law of limb darkening, Karl Schwarzschild (1906).
+    """
+
+@overload
 def gradient(
     a: Color | Varying = "#fff",
     b: Color | Varying = "#222",
@@ -3364,6 +3392,7 @@ __all__ = [
     "diamond",
     "emerald",
     "emissive",
+    "facing",
     "gallery",
     "glass",
     "glossy",

@@ -131,9 +131,9 @@ class Family:
 
 
 # The inputs of a function of a place on a surface: the point, the normal and the footprint of the
-# pixel in the coordinates of the painted shape, and the index of the repetition that contains the
-# point.
-PLACE_NAMES: Final = frozenset(("p", "n", "cell", "footprint"))
+# pixel in the coordinates of the painted shape, the index of the repetition that contains the
+# point, and the cosine of the angle between the normal and the direction to the eye.
+PLACE_NAMES: Final = frozenset(("p", "n", "cell", "footprint", "facing"))
 
 LIGHTS: Final = Family(
     ("p", "n"),
@@ -188,7 +188,12 @@ MATERIALS: Final = Family(
 )
 PATTERNS: Final = Family(
     PLACE_NAMES,
-    {"size": Limit.POSITIVE, "octaves": Limit.POSITIVE, "radius": Limit.POSITIVE},
+    {
+        "size": Limit.POSITIVE,
+        "octaves": Limit.POSITIVE,
+        "radius": Limit.POSITIVE,
+        "power": Limit.POSITIVE,
+    },
     colors=("a", "b"),
     varies=True,
 )

@@ -20,6 +20,7 @@ from distal.lang import (
     inversesqrt,
     length,
     max,
+    min,
     select,
     struct,
     vec2,
@@ -58,10 +59,13 @@ class Footprint:
     Attributes:
         across: The side perpendicular to the ray.
         along: The side in the direction of the ray, which is longer.
+        facing: How much the surface faces the eye: the cosine of the angle between the normal and
+            the direction to the eye, 0 at outlines.
     """
 
     across: vec3
     along: vec3
+    facing: float = 1.0
 
 
 # The samples of a pattern that has no closed form: a picture.
@@ -81,6 +85,18 @@ def thin(uv: vec2, size: float) -> Cone:
 def point_footprint() -> Footprint:
     """Return the footprint of a point: patterns are not averaged."""
     return Footprint(vec3(0.0), vec3(0.0))
+
+
+@func
+def flat_footprint(footprint: Footprint) -> Footprint:
+    """Return the footprint of a point that is seen at the same angle."""
+    return Footprint(vec3(0.0), vec3(0.0), footprint.facing)
+
+
+@func
+def facing_of(footprint: Footprint) -> float:
+    """Return the cosine of the angle between the normal and the direction to the eye."""
+    return footprint.facing
 
 
 @func
@@ -126,7 +142,8 @@ def footprint_at(cone: Cone, direction: vec3, t: float, n: vec3) -> Footprint:
     other = cross(n, vec3(1.0, 0.0, 0.0)) if abs(n.x) < 0.7 else cross(n, vec3(0.0, 1.0, 0.0))
     along = select(squared > 1e-8, level * inversesqrt(max(squared, 1e-12)), other)
     side = cross(n, along)
-    return Footprint(side * width, along * (width / max(abs(cosine), GRAZING)))
+    facing = min(abs(cosine), 1.0)
+    return Footprint(side * width, along * (width / max(facing, GRAZING)), facing)
 
 
 @func
@@ -167,11 +184,17 @@ def shorter(a: vec3, b: vec3) -> vec3:
 
 @func
 def moved_footprint(
-    q: vec3, across_ahead: vec3, across_behind: vec3, along_ahead: vec3, along_behind: vec3
+    footprint: Footprint,
+    q: vec3,
+    across_ahead: vec3,
+    across_behind: vec3,
+    along_ahead: vec3,
+    along_behind: vec3,
 ) -> Footprint:
     """Return a footprint in the coordinates of a moved shape, by finite differences.
 
     Args:
+        footprint: The footprint before.
         q: The point in these coordinates.
         across_ahead: The point of ``step_along`` the side across, in these coordinates.
         across_behind: The same in the opposite direction.
@@ -181,4 +204,5 @@ def moved_footprint(
     return Footprint(
         shorter(across_ahead - q, q - across_behind) / STEP,
         shorter(along_ahead - q, q - along_behind) / STEP,
+        footprint.facing,
     )

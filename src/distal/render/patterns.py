@@ -392,3 +392,25 @@ def waves(
     way = normalize(direction) / size
     fade = wave_fade(dot(footprint.across, way)) * wave_fade(dot(footprint.along, way))
     return 0.5 + 0.5 * fade * sin(2.0 * PI * dot(p, way))
+
+
+@pattern(
+    "facing",
+    extras=_sides(
+        "A color, a pattern, or a material: where the surface faces the eye.",
+        "The other: at outlines.",
+    ),
+)
+@func
+def facing_share(facing: float, power: float = 1.0) -> float:
+    """A blend by the angle under which the eye sees the surface: rims, velvet, the sun's limb.
+
+    Limb darkening by a coefficient u is ``facing(bright, (1 - u) * bright)``.
+
+    Args:
+        facing: The cosine of the angle between the normal and the direction to the eye.
+        power: Above 1 the rim grows broader, below 1 narrower.
+
+    Source: the linear law of limb darkening, Karl Schwarzschild (1906).
+    """
+    return 1.0 - max(facing, 0.0) ** power

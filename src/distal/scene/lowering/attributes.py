@@ -16,14 +16,20 @@ from distal.ir.nodes import Call, CompareOp, Expr, Gradient, Read
 from distal.ir.types import FLOAT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer
-from distal.render.footprint import moved_footprint, point_footprint, step_along
+from distal.render.footprint import (
+    facing_of,
+    flat_footprint,
+    moved_footprint,
+    point_footprint,
+    step_along,
+)
 from distal.render.material import Surface, choose_surface, mix_surfaces
 from distal.scene.lowering.part_functions import POINT
 from distal.scene.lowering.parts.kinds import PartKind, leaves_of, materials_in
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.lowering.smooth.cells import CellNode
-from distal.scene.tree.calls import FOOTPRINT
+from distal.scene.tree.calls import FACING, FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -249,10 +255,10 @@ def _footprint(
     """
     if site.footprint is None or point is None or not kind.averages(node):
         return site.footprint
-    if q.type is not VEC3:
-        return None
     composer = kind.composer
-    found: dict[str, Expr] = {"q": q}
+    found: dict[str, Expr] = {"footprint": site.footprint, "q": q}
+    if q.type is not VEC3:
+        return body.let("footprint", composer.call(flat_footprint, found))
     for name in ("across", "along"):
         side = field(site.footprint, name)
         for end, sign in (("ahead", 1.0), ("behind", -1.0)):
@@ -361,6 +367,9 @@ class SurfaceAttribute(Attribute):
         given = {"p": site.p, "cell": site.cell}
         if FOOTPRINT in material.uses:
             given[FOOTPRINT] = site.footprint or self.composer.call(point_footprint, {})
+        if FACING in material.uses:
+            footprint = site.footprint or self.composer.call(point_footprint, {})
+            given[FACING] = self.composer.call(facing_of, {"footprint": footprint})
         if "n" in material.uses:
             field = self.composer.field(node, site.values, site.cell)
             slope = Gradient(field, site.p, False, site.p.type)

@@ -4,8 +4,9 @@ Input: the patterns declared in ``render.patterns``; colors, materials, numbers,
 patterns, authors' own functions of a place. Output: a ``Pattern``, which a material accepts instead
 of a color or a number; a ``Material`` if one of a pattern's two sides is a material; an amount if
 both are numbers. A place is ``p`` (the point in the local space of the painted shape), ``n`` (the
-normal there), ``cell`` (the index of the repetition that contains it) and ``footprint`` (the part
-of the surface that the pixel shows). The formulas are scene code.
+normal there), ``cell`` (the index of the repetition that contains it), ``footprint`` (the part of
+the surface that the pixel shows) and ``facing`` (how much it faces the eye). The formulas are scene
+code.
 """
 
 from __future__ import annotations
@@ -58,8 +59,9 @@ def pattern(function: Func, *args: Any, **kwargs: Any) -> Any:
 
     Args:
         function: A function of any of ``p: vec3``, ``n: vec3``, ``cell: vec3``, ``footprint:
-            float`` (the width of the pixel on the surface, in the coordinates of p), and of
-            numbers. It returns a float, a vec3 (a linear color) or a ``Surface``, which makes a
+            float`` (the width of the pixel on the surface, in the coordinates of p), ``facing:
+            float`` (the cosine of the angle between the normal and the direction to the eye), and
+            of numbers. It returns a float, a vec3 (a linear color) or a ``Surface``, which makes a
             material.
         args: The function's numbers by position.
         kwargs: The function's numbers by name.

@@ -28,6 +28,7 @@ from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import NO_VALUES, Number
 
 FOOTPRINT: Final = "footprint"
+FACING: Final = "facing"
 # With the id of a number: the key in ``Assembly.made`` of the expression that reads its column.
 COLUMN: Final = "column"
 
