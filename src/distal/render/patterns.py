@@ -27,6 +27,7 @@ from distal.lang import (
     normalize,
     round,
     sample,
+    pow,
     sin,
     sqrt,
     vec2,
@@ -413,4 +414,4 @@ def facing_share(facing: float, power: float = 1.0) -> float:
 
     Source: the linear law of limb darkening, Karl Schwarzschild (1906).
     """
-    return 1.0 - max(facing, 0.0) ** power
+    return 1.0 - pow(max(facing, 0.0), power)
