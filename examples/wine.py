@@ -9,15 +9,15 @@ from distal import (
     Camera,
     Cylinder,
     Ellipsoid,
+    HemisphereLight,
     Plane,
     Scene,
-    Sky,
     Sphere,
-    checker,
     emissive,
     glass,
     matte,
     plastic,
+    wood,
 )
 from distal.lang import slider
 
@@ -36,27 +36,21 @@ wine = Ellipsoid((0.485, 0.732, 0.485)).translate(y=middle + 0.003)
 wine = wine & Box((2.0, 2.0, 2.0)).translate(y=level - 1.0)
 
 grape = Sphere(0.13)
-grapes = grape.translate(0.95, 0.13, 0.35) | grape.translate(1.18, 0.13, 0.2)
-grapes = grapes | grape.translate(1.0, 0.13, 0.08) | grape.translate(1.06, 0.33, 0.22)
+grapes = grape.translate(0.62, 0.13, 0.62) | grape.translate(0.86, 0.13, 0.5)
+grapes = grapes | grape.translate(0.66, 0.13, 0.36) | grape.translate(0.71, 0.33, 0.5)
 
-window = Box((1.6, 1.6, 0.04)).rotate(y=-0.9).translate(-3.2, 2.6, -1.6)
+window = Box((1.8, 2.2, 0.04)).rotate(y=0.9).translate(-3.2, 2.6, -1.2)
+wall = Plane().rotate(x=1.5707963).translate(z=-2.6)
 
 scene = Scene(
-    cup.paint(glass(1.5, dispersion=0.3), priority=2)
-    | wine.paint(glass(1.34, absorption=(0.9, 5.5, 4.6)), priority=1)
+    cup.paint(glass(1.5), priority=2)
+    | wine.paint(glass(1.34, absorption=(0.5, 4.2, 3.6)), priority=1)
     | grapes.paint(plastic("#3d4f1c", 0.2))
-    | window.paint(emissive((1.0, 0.9, 0.75), 18.0))
-    | Plane().paint(checker(matte("#d9cdb8"), matte("#b8a88c"), size=0.5)),
-    lights=[],
-    camera=Camera((0.5, 1.9, 4.4), target=(0.15, 1.15, 0.0), fov_deg=36.0),
-    background=Sky(
-        sun=(-0.6, 0.5, -0.6),
-        sun_intensity=0.0,
-        zenith=(0.25, 0.3, 0.42),
-        horizon=(0.55, 0.52, 0.5),
-        ground=(0.3, 0.27, 0.24),
-        light=True,
-    ),
+    | window.paint(emissive((1.0, 0.88, 0.7), 34.0))
+    | wall.paint(matte("#7d8f8c"))
+    | Plane().paint(wood(size=0.6)),
+    lights=[HemisphereLight("#8fa3b8", "#5a4a3a", 0.6)],
+    camera=Camera((0.35, 1.75, 4.6), target=(0.12, 1.12, 0.0), fov_deg=35.0),
     mode="path",
     floor=False,
     tone_map="aces",
