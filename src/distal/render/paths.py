@@ -198,7 +198,7 @@ def start_from(vertex: Vertex, direction: vec3) -> Start:
 
 
 @struct
-class Aim:
+class AimedLight:
     """A direction in which a path looks for light.
 
     Attributes:
@@ -230,7 +230,7 @@ def aim_at_light(
     chance: float,
     u: vec3,
     which: float,
-) -> Aim:
+) -> AimedLight:
     """Return a random direction to one of the lights, chosen at random.
 
     Args:
@@ -250,23 +250,23 @@ def aim_at_light(
     if index < light_count:
         light = sample_light(lights(index, vertex.p), u.xy)
         density = light.density * chance
-        return Aim(light.direction, light.distance, light.weight / chance, density, False)
+        return AimedLight(light.direction, light.distance, light.weight / chance, density, False)
     if index < light_count + lamp_count:
         direction = aim_at_lamp(lamps(index - light_count), vertex.p, u)
         density = chance * lamps_density(vertex.p, direction, lamps, lamp_count)
         share = select(density > 0.0, 1.0 / max(density, 1e-30), 0.0)
-        return Aim(direction, UNBOUNDED, vec3(share), density, True)
+        return AimedLight(direction, UNBOUNDED, vec3(share), density, True)
     if has_directions:
         far = directions(u)
         density = far.density * chance
         weight = around(far.direction) / max(density, 1e-30)
-        return Aim(far.direction, UNBOUNDED, weight, density, False)
-    return Aim(vertex.n, UNBOUNDED, vec3(0.0), 0.0, False)
+        return AimedLight(far.direction, UNBOUNDED, weight, density, False)
+    return AimedLight(vertex.n, UNBOUNDED, vec3(0.0), 0.0, False)
 
 
 @func
 def light_from(
-    aim: Aim,
+    aim: AimedLight,
     vertex: Vertex,
     meeting: Meeting,
     next_hit: Callable[[Ray, int, float, int], Hit],
