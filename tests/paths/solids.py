@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.fields.solids.boxes import box
+from distal.fields.chords import in_ball, missed
+from distal.fields.solids.boxes import box, box_chord
+from distal.fields.solids.cylinders import cylinder, cylinder_chord
 from distal.fields.solids.rings import torus
 from distal.fields.solids.round import sphere
 from distal.fields.solids.tpms import GYROID_STEEPEST, GYROID_TYPICAL, gyroid
-from distal.lang import abs, func, length, max, sin, vec3
+from distal.lang import abs, func, length, max, min, sin, vec2, vec3
 
 Doubles = NDArray[np.float64]
 BUMPS = 1.95  # a bound on the slope of the bumpy ball
@@ -111,4 +113,70 @@ SOLIDS = {
     "pane": Solid(pane, lambda p: _box(p, 100.0, 0.001, 100.0), 1.0, (50.0, 0.0005, 50.0)),
     "torus": Solid(ring, _ring, 1.0, (1.1, 0.3, 1.1)),
     "gyroid": Solid(sheet, _sheet, float(GYROID_STEEPEST / GYROID_TYPICAL), (1.5, 1.5, 1.5)),
+}
+
+
+@func
+def can(p: vec3) -> float:
+    """A cylinder."""
+    return cylinder(p, 0.7, 1.6)
+
+
+@func
+def joined(p: vec3) -> float:
+    """A box, and a cylinder that stands in it and comes out of two of its faces."""
+    return min(brick(p), can(p))
+
+
+@func
+def ball_chord(p: vec3, direction: vec3) -> vec2:
+    """The chord of ``ball``."""
+    return in_ball(p, direction, 1.0)
+
+
+@func
+def brick_chord(p: vec3, direction: vec3) -> vec2:
+    """The chord of ``brick``."""
+    return box_chord(p, direction, vec3(1.8, 1.2, 1.4))
+
+
+@func
+def pane_chord(p: vec3, direction: vec3) -> vec2:
+    """The chord of ``pane``."""
+    return box_chord(p, direction, vec3(100.0, 0.001, 100.0))
+
+
+@func
+def can_chord(p: vec3, direction: vec3) -> vec2:
+    """The chord of ``can``."""
+    return cylinder_chord(p, direction, 0.7, 1.6)
+
+
+@func
+def no_chord(p: vec3, direction: vec3) -> vec2:
+    """The chord of nothing."""
+    return missed()
+
+
+def _can(p: Doubles) -> Any:
+    beyond = np.stack([np.hypot(p[..., 0], p[..., 2]) - 0.7, np.abs(p[..., 1]) - 0.8], axis=-1)
+    return _length(np.maximum(beyond, 0.0)) + np.minimum(beyond.max(axis=-1), 0.0)
+
+
+NOTHING = (ball, no_chord)
+# Solids whose chords are known, and the field and chord of their two parts.
+CLOSED = {
+    "ball": (SOLIDS["ball"], ((ball, ball_chord), NOTHING)),
+    "box": (SOLIDS["box"], ((brick, brick_chord), NOTHING)),
+    "pane": (SOLIDS["pane"], ((pane, pane_chord), NOTHING)),
+    "cylinder": (Solid(can, _can, 1.0, (0.7, 0.8, 0.7)), ((can, can_chord), NOTHING)),
+    "box and cylinder": (
+        Solid(
+            joined,
+            lambda p: np.minimum(_box(p, 1.8, 1.2, 1.4), _can(p)),
+            1.0,
+            (0.9, 0.8, 0.7),
+        ),
+        ((brick, brick_chord), (can, can_chord)),
+    ),
 }

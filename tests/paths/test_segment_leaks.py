@@ -9,20 +9,32 @@ import os
 
 import pytest
 
-from tests.paths.solids import SOLIDS
-from tests.paths.walks import Count, programs, walk
+from tests.paths.solids import CLOSED, SOLIDS
+from tests.paths.walks import Count, closed_programs, programs, walk
 
 SEGMENTS = int(float(os.environ.get("DISTAL_SEGMENTS", "1e5")))
 CENTERS = {"at the origin": (0.0, 0.0, 0.0), "30 away": (18.0, 19.2, 14.4)}
 PATHS = 20000  # of one batch
 
 
+KINDS = len(SOLIDS) + len(CLOSED)
+
+
 @pytest.mark.parametrize("name", SOLIDS)
 def test_a_ray_is_on_the_side_that_it_believes_to_be_on(name):
     """A fifth of the rays leave a surface within a thousandth of its tangent plane."""
-    solid = SOLIDS[name]
-    made = programs(solid)
-    share = SEGMENTS // (len(SOLIDS) * len(CENTERS))
+    check(name, SOLIDS[name], programs(SOLIDS[name]))
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_so_is_a_ray_that_is_met_by_chords(name):
+    solid, parts = CLOSED[name]
+    check(f"{name} by chords", solid, closed_programs(parts))
+
+
+def check(name, solid, made):
+    """No ray is on a wrong side, and all end at the surface."""
+    share = SEGMENTS // (KINDS * len(CENTERS))
     for where, center in CENTERS.items():
         total = Count()
         seed = 0

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.fields.guarantees import Bounds
+from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import func, vec3
 from distal.render.camera import Ray
+from distal.render.closed_hits import Reached, covered, entered, segment_of_solids
 from distal.render.march import OUT_OF_STEPS, Hit, March
 from distal.render.segment import Landing, landing, segment
 from distal.render.settings import grown_bounds
@@ -71,7 +72,9 @@ def programs(solid: Solid, steps: int = STEPS) -> tuple[Any, Any]:
     x, y, z = solid.half
 
     @func
-    def shot(origin: vec3, direction: vec3, center: vec3, side: float, slope: float) -> Hit:
+    def shot(
+        origin: vec3, direction: vec3, center: vec3, side: float, slope: float, part: int
+    ) -> Hit:
         """The next crossing."""
         half = vec3(x, y, z)
         bounds = grown_bounds(Bounds(center - half, center + half))
@@ -80,12 +83,54 @@ def programs(solid: Solid, steps: int = STEPS) -> tuple[Any, Any]:
         return segment(lambda p: field(p - center), ray, side, slope, bounds, numbers, steps)
 
     @func
-    def landed(origin: vec3, direction: vec3, center: vec3, side: float, t: float) -> Landing:
+    def of_all(p: vec3, part: int) -> float:
+        """The field of the solid."""
+        return field(p)
+
+    return shot, landing_in(of_all)
+
+
+def closed_programs(parts: Any) -> tuple[Any, Any]:
+    """As ``programs``, of two solids: the field and the chord of each."""
+    (first_field, first_chord), (second_field, second_chord) = parts
+
+    @func
+    def shot(
+        origin: vec3, direction: vec3, center: vec3, side: float, slope: float, part: int
+    ) -> Hit:
+        """The next crossing."""
+        ray = Ray(origin, direction)
+        first = first_chord(origin - center, direction)
+        second = second_chord(origin - center, direction)
+        entry = entered(Reached(UNBOUNDED, -1), first, -2, part, 0.0, ray)
+        entry = entered(entry, second, -3, part, 0.0, ray)
+
+        def covers(reached: Reached) -> Reached:
+            return covered(covered(reached, first, -2, part, ray), second, -3, part, ray)
+
+        numbers = March(1.0, 0.0, FAR, 0.0)
+        return segment_of_solids(entry, covers, side, part, numbers, FAR, 2, -4)
+
+    @func
+    def of_one(p: vec3, part: int) -> float:
+        """The field of a part."""
+        return second_field(p) if part == -3 else first_field(p)
+
+    return shot, landing_in(of_one)
+
+
+def landing_in(field: Any) -> Any:
+    """The place on the surface at the end of a segment, as scene code."""
+
+    @func
+    def landed(
+        origin: vec3, direction: vec3, center: vec3, side: float, t: float, part: int
+    ) -> Landing:
         """The place there."""
         hit = Hit(t, True, 0, side)
-        return landing(lambda p: field(p - center), Ray(origin, direction), hit)
+        return landing(lambda p: field(p - center, part), Ray(origin, direction), hit)
 
-    return shot, landed
+    return landed
 
 
 def unit(v: NDArray[Any]) -> Doubles:
@@ -140,13 +185,15 @@ def walk(
     middle = np.asarray(center, np.float32)
     origin, direction = first_rays(solid, middle, paths, rng)
     side, slope = np.ones(len(origin), np.float32), np.zeros(len(origin), np.float32)
+    part = np.full(len(origin), -1, np.int32)
     count = Count()
     for _ in range(BOUNCES):
         if len(origin) == 0:
             break
         centers = np.broadcast_to(middle, origin.shape)
-        hit = shot(origin, direction, centers, side, slope)
-        whole = hit.lost != OUT_OF_STEPS
+        hit = shot(origin, direction, centers, side, slope, part)
+        # A segment that ends where it begins, at the edge of two solids, is on no side.
+        whole = (hit.lost != OUT_OF_STEPS) & (hit.t > 0.0)
         t = hit.t.astype(float)
         segments = (origin, direction, middle, side)
         wrong = np.zeros(len(t))
@@ -155,16 +202,17 @@ def walk(
             wrong = np.maximum(wrong, np.where(whole, behind, 0.0))
         found = hit.found
         count.segments += len(t)
-        count.exhausted += int((~whole).sum())
+        count.exhausted += int((hit.lost == OUT_OF_STEPS).sum())
         count.steps += int(hit.steps.sum())
         count.leaks += int((wrong > ALLOWED).sum())
         count.wrong = max(count.wrong, float(wrong.max()))
         off = np.abs(depth_behind(solid, segments, t, 1.0))[found & (t < 8.0)]
         count.off = max(count.off, float(off.max(initial=0.0)))
         origin, direction, side = origin[found], direction[found], side[found]
+        part = np.asarray(hit.part, np.int32)[found]
         if len(origin) == 0:
             break
-        place = landed(origin, direction, centers[found], side, hit.t[found])
+        place = landed(origin, direction, centers[found], side, hit.t[found], part)
         n = np.asarray(place.n, float)
         crosses = rng.random(len(n)) < 0.5
         side = np.where(crosses, -side, side).astype(np.float32)
@@ -192,13 +240,14 @@ def through_glass(
     side, slope = np.ones(len(origin), np.float32), np.zeros(len(origin), np.float32)
     while len(origin):
         centers = np.zeros_like(origin)
-        hit = shot(origin, direction, centers, side, slope)
+        hit = shot(origin, direction, centers, side, slope, np.full(len(origin), -1, np.int32))
         yield hit, direction, side
         found = hit.found
         origin, direction, side = origin[found], direction[found], side[found]
         if len(origin) == 0:
             return
-        place = landed(origin, direction, centers[found], side, hit.t[found])
+        part = np.asarray(hit.part, np.int32)[found]
+        place = landed(origin, direction, centers[found], side, hit.t[found], part)
         n = np.asarray(place.n, float) * side[:, None]
         before = direction.astype(float)
         cosine = -(before * n).sum(axis=1)

@@ -153,9 +153,10 @@ def func(function: Callable[..., Any]) -> Func:
 
 
 def apart(function: Marked) -> Marked:
-    """Mark a long function that few of the pixels computed together need, as ``@apart``.
+    """Mark a function as ``@apart``: the CPU calls it for each vector of pixels.
 
-    The CPU calls it for each vector of pixels, and skips vectors that do not need it.
+    For a long function that few of the pixels computed together need (vectors that do not need it
+    are skipped), or with more values than the registers hold for all of them.
     """
     function.overloads = [replace(o, apart=True) for o in function.overloads]
     return function

@@ -1,8 +1,12 @@
-"""First surfaces of solids whose chords are known, without a march.
+"""Surfaces of solids whose chords are known, without a march.
 
 Input: a function of a ray that knows where the solids are, and planes. Output: a ``Hit``. A solid
 is met where its chord begins: exactly, at any distance, also by rays that graze it. A ray that
 starts inside of a solid goes on to where no solid goes on.
+
+Paths know the solid on which a ray starts (``Hit.part``). A ray that leaves a convex solid does not
+meet it again, and one that enters it ends where its chord does: neither depends on the rounding of
+the start.
 """
 
 from __future__ import annotations
@@ -11,7 +15,7 @@ from collections.abc import Callable
 
 from distal.fields.chords import missed
 from distal.fields.guarantees import UNBOUNDED
-from distal.lang import Field3, abs, func, min, select, struct, vec2
+from distal.lang import Field3, abs, func, max, min, select, struct, vec2
 from distal.render.camera import Ray
 from distal.render.march import PASSED, TOO_FAR, Hit, March
 
@@ -131,3 +135,100 @@ def first_surface_of_solids(
     found = met.t < numbers.far
     lost = select(found or met.t >= UNBOUNDED, PASSED, TOO_FAR)
     return Hit(min(met.t, numbers.far), found, 1, select(met.inside, -1.0, 1.0), lost)
+
+
+@struct
+class Reached:
+    """A place along a ray, at the surface of a solid.
+
+    Attributes:
+        t: Distance along the ray.
+        part: The number of the solid; -1 if there is none.
+    """
+
+    t: float
+    part: int
+
+
+@func
+def rounding_gap(ray: Ray, t: float) -> float:
+    """Return the distance below which solids touch, at a place of a ray."""
+    place = abs(ray.origin)
+    return TOUCHING * (place.x + place.y + place.z + t)
+
+
+@func
+def entered(reached: Reached, chord: vec2, of: int, part: int, near: float, ray: Ray) -> Reached:
+    """Return the first solid that a ray from outside enters, given one more of them.
+
+    Args:
+        reached: The first of the others.
+        chord: Where the ray enters and leaves the solid; x > y if it misses it.
+        of: The number of the solid.
+        part: The number of the solid on which the ray starts, which it does not enter again; -1 if
+            that is not known.
+        near: Distance along the ray where it begins.
+        ray: The ray.
+    """
+    t = max(chord.x, near)
+    is_ahead = chord.x <= chord.y and chord.y > near + rounding_gap(ray, near)
+    meets = is_ahead and of != part and t < reached.t
+    return Reached(select(meets, t, reached.t), select(meets, of, reached.part))
+
+
+@func
+def covered(reached: Reached, chord: vec2, of: int, part: int, ray: Ray) -> Reached:
+    """Return how far solids go on along a ray from inside of them, given one more of them.
+
+    Args:
+        reached: How far the others go on.
+        chord: As for ``entered``.
+        of: The number of the solid.
+        part: The number of the solid on which the ray starts: it is inside of it, also if it starts
+            beside it by rounding; -1 if that is not known.
+        ray: The ray.
+    """
+    end = reached.t + rounding_gap(ray, reached.t)
+    goes_on = chord.y > select(of == part, reached.t, end) and chord.x <= chord.y
+    goes_on = goes_on and (chord.x <= end or of == part)
+    return Reached(select(goes_on, chord.y, reached.t), select(goes_on, of, reached.part))
+
+
+@func
+def segment_of_solids(
+    entry: Reached,
+    covers: Callable[[Reached], Reached],
+    side: float,
+    part: int,
+    numbers: March,
+    farthest_plane: float,
+    count: int,
+    planes_from: int,
+) -> Hit:
+    """Return the next surface along a ray of solids with chords.
+
+    Args:
+        entry: The first solid that the ray enters if it runs outside of all of them.
+        covers: ``covered`` by each of the solids.
+        side: 1 if the ray runs outside, -1 inside; 0 if that is not known.
+        part: As for ``covered``.
+        numbers: The parameters of a march; its limits hold here too.
+        farthest_plane: Planes farther along the ray are not seen.
+        count: The number of solids; a constant.
+        planes_from: The number of the first plane; those of the others follow, downwards.
+    """
+    end = Reached(numbers.near, part)
+    if side <= 0.0:
+        for _ in range(count):
+            further = covers(end)
+            if further.t <= end.t:
+                break
+            end = further
+    inside = side < 0.0 or end.t > numbers.near
+    t = select(inside, end.t, entry.t)
+    of = select(inside, end.part, entry.part)
+    is_plane = of <= planes_from
+    found = t < select(is_plane and not inside, farthest_plane, numbers.far)
+    lost = select(found or is_plane or t >= UNBOUNDED, PASSED, TOO_FAR)
+    far = select(found, t, min(t, numbers.far))
+    return Hit(far, found, 1, select(inside, -1.0, 1.0), lost, select(found, of, -1))

@@ -47,6 +47,8 @@ def has(lost: int, bit: int) -> bool:
 @func
 def merged(a: int, b: int) -> int:
     """Return the bits that one of two sums has, or both."""
+    if b == 0:  # nearly always
+        return a
     total = 0
     for k in range(4):
         bit = int(exp2(float(k)) + 0.5)

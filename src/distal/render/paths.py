@@ -32,6 +32,7 @@ from distal.lang import (
     vec3,
     vec4,
 )
+from distal.lang.functions import apart
 from distal.render.bounce import ALL_INSIDE
 from distal.render.camera import Ray
 from distal.render.dispersion import color_of, wavelength_of
@@ -302,6 +303,7 @@ def light_from(
     return Lit(color * shared, hit.lost != PASSED)
 
 
+@apart
 @func
 def path_light(
     ray: Ray,

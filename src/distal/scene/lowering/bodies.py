@@ -101,12 +101,20 @@ class BodyFunctions:
         composer: Makes the functions of the program's shapes.
         bodies: The tree of each body by its priority, from the lowest up.
         define: Adds a function.
+        closed: As for ``RayFunctions``; for one body alone.
     """
 
-    def __init__(self, composer: ShapeComposer, bodies: Mapping[int, Node], define: Define) -> None:
+    def __init__(
+        self,
+        composer: ShapeComposer,
+        bodies: Mapping[int, Node],
+        define: Define,
+        *,
+        closed: bool = False,
+    ) -> None:
         self._composer = composer
         self._nodes = list(bodies.values())
-        self._rays = [RayFunctions(composer, node, define) for node in self._nodes]
+        self._rays = [RayFunctions(composer, node, define, closed=closed) for node in self._nodes]
         priorities = list(bodies)
         self._common = priorities.index(0) if 0 in bodies else 0
         self._define = define

@@ -119,8 +119,10 @@ class SceneLowering:
         if rolls:
             self._shown_node = rolled_for(assembly, scene.shape.node, exact=True)
         self.composer = ShapeComposer(assembly, [self.node])
-        self._rays = RayFunctions(self.composer, self.node, self._function)
-        self._bodies = BodyFunctions(self.composer, bodies, self._function)
+        # Numbers of solids would be those of bodies: with several bodies, rays are marched.
+        closed = paths and len(bodies) == 1 and not self._hybrid
+        self._rays = RayFunctions(self.composer, self.node, self._function, closed=closed)
+        self._bodies = BodyFunctions(self.composer, bodies, self._function, closed=closed)
         self._view_numbers: dict[str, Expr] = {}
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()

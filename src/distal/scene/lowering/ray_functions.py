@@ -52,6 +52,10 @@ LEAST_SHADOW_STEPS: Final = 64
 # The most solids with chords that are met in closed form; more of them are marched.
 MOST_SOLIDS: Final = 15
 
+# The number of the first shape that paths meet in closed form; that of each other one is one lower.
+# Parts of a table have numbers from 0 on, and -1 is not known.
+FIRST_SHAPE: Final = -2
+
 # What the marches take besides the ray and the fields.
 _TAKEN: Final = (
     "bounds",
@@ -121,7 +125,18 @@ def united(root: Node, nodes: list[Node]) -> Node:
 class RayFunctions:
     """Makes the functions of a scene that follow rays."""
 
-    def __init__(self, composer: ShapeComposer, root: Node, define: Define) -> None:
+    def __init__(
+        self, composer: ShapeComposer, root: Node, define: Define, *, closed: bool = False
+    ) -> None:
+        """Begin.
+
+        Args:
+            composer: Makes the functions of the program's shapes.
+            root: The scene's tree.
+            define: Adds a function to the program.
+            closed: Whether solids with chords are met in closed form on the whole way of rays that
+                are followed from surface to surface.
+        """
         self._composer = composer
         self._root = root
         self._define = define
@@ -132,6 +147,10 @@ class RayFunctions:
         self._beside = [*self._planes, *self._others]
         tables = [node for node in others if isinstance(node, TableNode)]
         self._table = composer.table(tables[0]) if tables else None
+        # All shapes, if paths meet them in closed form; a hit has the number of its shape.
+        self._closed: list[Node] = []
+        if closed and self._table is None and is_closed and all(map(has_chord, self._planes)):
+            self._closed = [*self._solids, *self._planes]
 
     def first_hit(
         self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool
@@ -144,6 +163,9 @@ class RayFunctions:
             hybrid: Whether the march for terrain and water is used.
         """
         params = [("ray", self._composer.assembly.struct(Ray))]
+        if self._closed and not hybrid:
+            start = {"side": constant_number(0.0), "part": integer(-1)}
+            return self._segment_of_solids(params, {**given, **start})
         if self._table is None:
             return self._first_of_others(body, params, given, hybrid=hybrid)
         if self._beside:
@@ -162,6 +184,8 @@ class RayFunctions:
         """
         ray = self._composer.assembly.struct(Ray)
         params = [("ray", ray), ("side", FLOAT), ("slope", FLOAT), ("part", INT)]
+        if self._closed:
+            return self._segment_of_solids(params, given)
         if self._table is None:
             return self._next_of_others(body, params, given)
         if self._beside:
@@ -213,6 +237,64 @@ class RayFunctions:
             "nearest_plane": self._nearest_plane(),
         }
         return self._bound(closed_hits.first_surface_of_solids, params, values, functions)
+
+    def _segment_of_solids(self, params: Params, given: Mapping[str, Expr]) -> FunctionRef:
+        """Return the function of a ray to its end, of shapes that all have chords.
+
+        Args:
+            params: Name and type of each parameter: the ray, and what is known of its start.
+            given: The other values, by name.
+        """
+        numbered = [(node, integer(FIRST_SHAPE - i)) for i, node in enumerate(self._closed)]
+        numbers = {n: given[n] for n in ("near", "numbers", "farthest_plane")}
+        start = {n: given[n] for n in ("side", "part") if n in given}
+        counts = {
+            "count": integer(len(self._closed)),
+            "planes_from": integer(FIRST_SHAPE - len(self._solids)),
+        }
+
+        def make(body: StatementList, asked: Mapping[str, Expr]) -> Expr:
+            call = self._composer.call
+            known = {**start, **numbers, **counts, **asked}
+            ray = known["ray"]
+            chords = [
+                (body.let("chord", Call(self._chord(node).name, (ray,), VEC2)), of)
+                for node, of in numbered
+            ]
+            nothing = (constant_number(UNBOUNDED), integer(-1))
+            entry: Expr = Construct(nothing, self._composer.assembly.struct(closed_hits.Reached))
+            for chord, of in chords:
+                one = {**known, "reached": entry, "chord": chord, "of": of}
+                entry = body.let("entry", call(closed_hits.entered, one))
+            known |= {"entry": entry, "covers": self._covers(chords, known)}
+            return call(closed_hits.segment_of_solids, known)
+
+        names = [n for n, value in numbers.items() if not isinstance(value, Const)]
+        every = [*params, *((n, numbers[n].type) for n in names)]
+        return self._define("segment_of_solids", every, make, [numbers[n] for n in names])
+
+    def _covers(
+        self, chords: Sequence[tuple[Expr, Expr]], known: Mapping[str, Expr]
+    ) -> FunctionRef:
+        """Return the function ``(reached) -> Reached``: how far solids go on.
+
+        Args:
+            chords: The chord of each solid, and its number.
+            known: The ray and the solid on which it starts, by name.
+        """
+        captured = {n: known[n] for n in ("ray", "part")}
+        captured |= {f"chord_{i}": chord for i, (chord, _) in enumerate(chords)}
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            reached = given["reached"]
+            for i, (_, of) in enumerate(chords):
+                one = {**given, "reached": reached, "chord": given[f"chord_{i}"], "of": of}
+                reached = body.let("further", self._composer.call(closed_hits.covered, one))
+            return reached
+
+        place = self._composer.assembly.struct(closed_hits.Reached)
+        params = [("reached", place), *((n, value.type) for n, value in captured.items())]
+        return self._define("covers", params, make, list(captured.values()))
 
     def _along_solids(self) -> FunctionRef:
         """Return the function ``(ray, t, below) -> Passed``: the solids along a ray from a place.
@@ -312,10 +394,29 @@ class RayFunctions:
             body.statements.append(If(is_part, (Return(distance),), ()))
             return of_others
 
+        if self._closed and not hybrid:
+            return self._field_of_solid()
         others = self._beside_field()
         if self._table is None:
             others = self._field(self._root) if hybrid else self._safe_field(self._root)
         return self._define("field_of_hit", [("p", VEC3), ("part", INT)], make, [])
+
+    def _field_of_solid(self) -> FunctionRef:
+        """Return the function ``(p, part) -> float`` of shapes that all have chords.
+
+        Where two of them meet, the normal is that of the one whose chord ended the ray, which the
+        next ray then leaves or enters.
+        """
+        fields = [self._field(node) for node in self._closed]
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            values = [Call(field.name, (given["p"], *field.captures), FLOAT) for field in fields]
+            for i, value in enumerate(values[:-1]):
+                is_one = compare(CompareOp.EQ, given["part"], integer(FIRST_SHAPE - i))
+                body.statements.append(If(is_one, (Return(value),), ()))
+            return values[-1]
+
+        return self._define("field_of_solid", [("p", VEC3), ("part", INT)], make, [])
 
     def _beside_field(self) -> FunctionRef:
         """Return the distance to all shapes besides the table."""
