@@ -187,7 +187,8 @@ class Environment(Surroundings):
         if self._directions is None:
             whole = self.background
             rows, columns, cells = brightness_table(self._pixels())
-            values = {"rows": rows, "columns": columns, "table": BufferData(cells)}
+            table = BufferData(image_files.rows_of(cells))
+            values = {"rows": rows, "columns": columns, "table": table}
             calls = tuple(
                 FunctionCall(whole.what, f, {**values, "turn": whole.values["turn"]}, whole.place)
                 for f in (surroundings.sample_surroundings, surroundings.surroundings_density)

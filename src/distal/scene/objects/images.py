@@ -107,3 +107,8 @@ def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
     if encoded or getattr(image, "dtype", None) == np.uint8:
         return Picture(pixels).linear
     return pixels
+
+
+def rows_of(cells: list[tuple[float, float, float]]) -> NDArray[np.float32]:
+    """Return the cells of a table as an array, which a buffer passes on without a conversion."""
+    return np.array(cells, np.float32)
