@@ -108,8 +108,7 @@ def closed_programs(parts: Any) -> tuple[Any, Any]:
         def covers(reached: Reached) -> Reached:
             return covered(covered(reached, first, -2, part, ray), second, -3, part, ray)
 
-        numbers = March(1.0, 0.0, FAR, 0.0)
-        return segment_of_solids(entry, covers, side, part, numbers, FAR, 2, -4)
+        return segment_of_solids(entry, covers, side, part, 0.0, FAR, 2)
 
     @func
     def of_one(p: vec3, part: int) -> float:

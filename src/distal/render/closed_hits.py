@@ -200,10 +200,9 @@ def segment_of_solids(
     covers: Callable[[Reached], Reached],
     side: float,
     part: int,
-    numbers: March,
+    near: float,
     farthest_plane: float,
     count: int,
-    planes_from: int,
 ) -> Hit:
     """Return the next surface along a ray of solids with chords.
 
@@ -212,23 +211,21 @@ def segment_of_solids(
         covers: ``covered`` by each of the solids.
         side: 1 if the ray runs outside, -1 inside; 0 if that is not known.
         part: As for ``covered``.
-        numbers: The parameters of a march; its limits hold here too.
-        farthest_plane: Planes farther along the ray are not seen.
+        near: Distance along the ray where it begins.
+        farthest_plane: The author's limit of rays: what is farther along the ray is not seen.
         count: The number of solids; a constant.
-        planes_from: The number of the first plane; those of the others follow, downwards.
     """
-    end = Reached(numbers.near, part)
+    end = Reached(near, part)
     if side <= 0.0:
         for _ in range(count):
             further = covers(end)
             if further.t <= end.t:
                 break
             end = further
-    inside = side < 0.0 or end.t > numbers.near
+    inside = side < 0.0 or end.t > near
     t = select(inside, end.t, entry.t)
     of = select(inside, end.part, entry.part)
-    is_plane = of <= planes_from
-    found = t < select(is_plane and not inside, farthest_plane, numbers.far)
-    lost = select(found or is_plane or t >= UNBOUNDED, PASSED, TOO_FAR)
-    far = select(found, t, min(t, numbers.far))
-    return Hit(far, found, 1, select(inside, -1.0, 1.0), lost, select(found, of, -1))
+    found = t < farthest_plane
+    lost = select(found or t >= UNBOUNDED, PASSED, TOO_FAR)
+    length = min(t, farthest_plane)
+    return Hit(length, found, 1, select(inside, -1.0, 1.0), lost, select(found, of, -1))

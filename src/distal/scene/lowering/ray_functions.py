@@ -246,12 +246,9 @@ class RayFunctions:
             given: The other values, by name.
         """
         numbered = [(node, integer(FIRST_SHAPE - i)) for i, node in enumerate(self._closed)]
-        numbers = {n: given[n] for n in ("near", "numbers", "farthest_plane")}
+        numbers = {n: given[n] for n in ("near", "farthest_plane")}
         start = {n: given[n] for n in ("side", "part") if n in given}
-        counts = {
-            "count": integer(len(self._closed)),
-            "planes_from": integer(FIRST_SHAPE - len(self._solids)),
-        }
+        counts = {"count": integer(len(self._closed))}
 
         def make(body: StatementList, asked: Mapping[str, Expr]) -> Expr:
             call = self._composer.call

@@ -105,8 +105,33 @@ def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
     held = Texture2D(os.fspath(image) if encoded else image)
     pixels = texture_light(held, what, place)
     if encoded or getattr(image, "dtype", None) == np.uint8:
-        return Picture(pixels).linear
+        pixels = Picture(pixels).linear
+    check_light(pixels[..., :3], what, place)
     return pixels
+
+
+def check_light(light: NDArray[np.float32], what: str, place: Span | None) -> None:
+    """Check that a picture is light: no part of it is negative or not finite.
+
+    Args:
+        light: Its texels, (height, width, 3), top row first.
+        what: The name in messages of the object that uses it.
+        place: The author's line.
+
+    Raises:
+        SceneValueError: A texel is not light.
+    """
+    wrong = ~(np.isfinite(light) & (light >= 0.0))
+    if not wrong.any():
+        return
+    row, column, part = (int(i) for i in np.argwhere(wrong)[0])
+    value = float(light[row, column, part])
+    named = f"{value:g} in row {row}, column {column}"
+    if np.isfinite(value):
+        hint = "np.maximum(image, 0) replaces negative values"
+        refuse(f"'image of {what}' must be light without negative values, not {named}", hint, place)
+    hint = "np.nan_to_num(image, posinf=1, neginf=0) replaces what is not a number"
+    refuse(f"'image of {what}' must be finite light, not {named}", hint, place)
 
 
 def rows_of(cells: list[tuple[float, float, float]]) -> NDArray[np.float32]:
