@@ -380,6 +380,11 @@ class Camera(_PlacedCamera):
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
         fov_deg: The same in degrees.
+        aperture: Diameter of the lens, in scene units; 0 for a pinhole, which shows everything
+            sharp. What is in front of or behind the distance of focus is blurred; in mode "path"
+            only.
+        focus_distance: The distance along the viewing direction at which everything is sharp, in
+            scene units. None: that of the target.
         mirror: Swap left and right, as in left-handed systems.
 
     Raises:
@@ -395,6 +400,8 @@ class Camera(_PlacedCamera):
         fov: Number | None = None,
         *,
         fov_deg: Number | None = None,
+        aperture: Number = 0.0,
+        focus_distance: Number | None = None,
         mirror: bool = False,
     ) -> None: ...
 
@@ -440,6 +447,11 @@ class OrbitCamera(_BaseCamera):
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
         fov_deg: The same in degrees.
+        aperture: Diameter of the lens, in scene units; 0 for a pinhole, which shows everything
+            sharp. What is in front of or behind the distance of focus is blurred; in mode "path"
+            only.
+        focus_distance: The distance along the viewing direction at which everything is sharp, in
+            scene units. None: that of the target.
         mirror: Swap left and right, as in left-handed systems.
 
     Raises:
@@ -456,6 +468,8 @@ class OrbitCamera(_BaseCamera):
         fov: Number | None = None,
         *,
         fov_deg: Number | None = None,
+        aperture: Number = 0.0,
+        focus_distance: Number | None = None,
         mirror: bool = False,
     ) -> None: ...
 

@@ -381,7 +381,8 @@ def test_layers_go_into_an_exr_only(run):
     assert result.stderr == "error: --layers is for scenes and shapes; 'picture' is an @image\n"
     result = run("render", "scene.py:scene", "-o", "a.exr", "--layers", "dept")
     assert result.stderr == (
-        "error: there is no layer 'dept'; layers: depth, normal, albedo, material\n"
+        "error: there is no layer 'dept'; layers: depth, normal, albedo, material, samples, "
+        "variance\n"
     )
     for words, layers in {
         ("scene.py:scene",): ("depth", "normal", "albedo", "material"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -48,6 +49,10 @@ class PathArguments:
         mode: "direct" or "path".
         time_limit: Seconds.
         noise: The error at which the picture is finished.
+        filter: The reconstruction filter.
+        shutter: Seconds that the shutter is open.
+        clamp: The largest light of a sample.
+        denoise: Whether noise is removed in the end.
         film: The file that keeps the samples so far.
         goes_on: Whether the samples that it keeps already are used, and those of this run kept.
     """
@@ -55,8 +60,13 @@ class PathArguments:
     mode: str | None
     time_limit: float | None
     noise: float | None
+    filter: str | None
+    shutter: float | None
+    clamp: float | None
+    denoise: bool
     film: Path
     goes_on: bool
+    preview: Callable[[Picture], Any]
 
     def view_options(self, scene_mode: str) -> dict[str, Any]:
         """Return the arguments of ``ViewOptions``.
@@ -67,9 +77,10 @@ class PathArguments:
         Raises:
             UsageError: ``--continue`` was given in another mode.
         """
-        given = {"mode": self.mode, "time_limit": self.time_limit, "noise": self.noise}
+        names = ("mode", "time_limit", "noise", "filter", "shutter", "clamp", "denoise")
+        given: dict[str, Any] = {name: getattr(self, name) for name in names}
         if (self.mode or scene_mode) == "path":
-            return {**given, "film": self.film}
+            return {**given, "film": self.film, "preview": self.preview}
         if self.goes_on:
             raise UsageError("--continue is for --mode path")
         return given
@@ -139,6 +150,30 @@ def render(
         float | None,
         typer.Option(metavar="E", help="In mode path: stop when the estimated error is below E."),
     ] = None,
+    filter: Annotated[
+        str | None,
+        typer.Option(
+            help="In mode path: the reconstruction filter: tent, box, gaussian, blackman-harris or "
+            "mitchell.",
+            show_default="tent",
+        ),
+    ] = None,
+    shutter: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="In mode path: the shutter is open for S seconds."),
+    ] = None,
+    clamp: Annotated[
+        float | None,
+        typer.Option(
+            metavar="X",
+            help="In mode path: no sample is brighter than X (1 is white). Removes single bright "
+            "pixels, and some light.",
+        ),
+    ] = None,
+    denoise: Annotated[
+        bool,
+        typer.Option("--denoise", help="In mode path: remove the noise that is left."),
+    ] = False,
     goes_on: Annotated[
         bool,
         typer.Option(
@@ -176,8 +211,8 @@ def render(
         str | None,
         typer.Option(
             metavar="NAMES",
-            help="What an EXR holds besides color: depth,normal,albedo,material or none; "
-            "all without it.",
+            help="What an EXR holds besides color: depth,normal,albedo,material, in mode path also "
+            "samples,variance; or none; all without it.",
             show_default=False,
         ),
     ] = None,
@@ -190,6 +225,7 @@ def render(
 ) -> None:
     """Render a scene, a shape or an image to a picture."""
     from distal.cli.messages import say
+    from distal.cli.preview import PreviewFile
     from distal.cli.report import ProgressBar, stages
     from distal.images.picture import check_savable
     from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
@@ -198,16 +234,20 @@ def render(
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     suffix, _ = check_savable(output, bits)
     film = output.with_name(output.name + ".film")
-    paths = PathArguments(mode, time_limit, noise, film, goes_on)
+    progress = ProgressBar()
+    preview = PreviewFile(output, bits, film, progress)
+    paths = PathArguments(
+        mode, time_limit, noise, filter, shutter, clamp, denoise, film, goes_on, preview
+    )
     arguments = replace(read_view(view, plane, transparent, exposure, tone_map), paths=paths)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
     obj, values = load_picture(scene, assignments)
     seen = viewable(obj, values, seconds, look)
-    wanted = read_layers(layers, suffix, seen, arguments.view)
+    wanted = read_layers(layers, suffix, seen, arguments)
     check_shown(seen, arguments, wanted)
     loaded = time.perf_counter()
-    with ProgressBar() as progress:
+    with progress, preview:
         options = RenderOptions(
             size=width_height,
             time=seconds,
@@ -267,23 +307,28 @@ def read_view(
     return ViewArguments(seen, wanted, transparent, exposure, tone_map)
 
 
-def read_layers(given: str | None, suffix: str, seen: Viewable, view: str) -> tuple[str, ...]:
+def read_layers(
+    given: str | None, suffix: str, seen: Viewable, arguments: ViewArguments
+) -> tuple[str, ...]:
     """Return the layers to store in a file: the given ones, or the default for the suffix.
 
     Args:
         given: Names separated by commas, or "none"; None for the default.
         suffix: The suffix of the file.
         seen: The object to render.
-        view: The name of the view.
+        arguments: The options of the view.
 
     Raises:
         UsageError: The file cannot hold layers, or there is no such layer.
     """
-    from distal.scene.lowering.layers import NAMES, checked_layers
+    from distal.scene.lowering.layers import NAMES, OF_SAMPLES, checked_layers
 
     if given is None:
-        all_of_them = suffix == ".exr" and view == "color" and seen.scene is not None
-        return NAMES if all_of_them else ()
+        if suffix != ".exr" or arguments.view != "color" or seen.scene is None:
+            return ()
+        mode = arguments.paths.mode if arguments.paths is not None else None
+        by_paths = (mode or seen.scene.mode) == "path"
+        return tuple(name for name in NAMES if by_paths or name not in OF_SAMPLES)
     if given == "none":
         return ()
     if suffix != ".exr":

@@ -68,8 +68,18 @@ class ProgressBar(_Bar):
     """
 
     def __init__(self) -> None:
-        super().__init__(TextColumn("rendering"), BarColumn(), TimeRemainingColumn())
+        super().__init__(
+            TextColumn("rendering"),
+            BarColumn(),
+            TextColumn("{task.fields[figures]}"),
+            TimeRemainingColumn(),
+        )
         self._task: TaskID | None = None
+        self._figures = ""
+
+    def describe(self, figures: str) -> None:
+        """Show a short text beside the bar."""
+        self._figures = figures
 
     def __call__(self, done: float) -> None:
         """Show the finished fraction of the work."""
@@ -77,8 +87,8 @@ class ProgressBar(_Bar):
         if bar is None:
             return
         if self._task is None:
-            self._task = bar.add_task("rendering", total=1.0)
-        bar.update(self._task, completed=done)
+            self._task = bar.add_task("rendering", total=1.0, figures="")
+        bar.update(self._task, completed=done, figures=self._figures)
 
 
 class FrameBar(_Bar):

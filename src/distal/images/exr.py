@@ -3,7 +3,7 @@
 Input: linear light with straight alpha, layers by name, texts. Output: a file with one part of scan
 lines. Does not depend on scenes. Channels have the names that compositors recognize:
 ``R G B A``, ``Z`` (the format's standard name for depth), ``N.X N.Y N.Z``, ``albedo.R`` …,
-``material.id``, ``height``.
+``material.id``, ``height``, ``samples``, ``variance``.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ CHANNELS: Final[dict[str, tuple[tuple[str, ...], bool]]] = {
     "albedo": (("albedo.R", "albedo.G", "albedo.B"), True),
     "material": (("material.id",), False),
     "height": (("height",), False),
+    "samples": (("samples",), False),
+    "variance": (("variance",), False),
 }
 _COLOR: Final = ("R", "G", "B", "A")
 # Red, green, blue, white of ITU-R BT.709, whose primaries are also those of sRGB.

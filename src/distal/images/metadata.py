@@ -50,6 +50,7 @@ class Provenance:
         mouse: The frame's mouse.
         samples: Samples in each pixel; None for one, and more where neighbouring pixels differ.
         mode: How light was computed: "direct" or "path".
+        paths: The options of mode "path" that were given, by name.
         view: The name of the view.
         plane: The plane of the view "slice": normal and offset.
         transparent: Whether alpha is 0 where a ray hits nothing.
@@ -74,6 +75,7 @@ class Provenance:
     mouse: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
     samples: int | None = 1
     mode: str = "direct"
+    paths: Mapping[str, Any] = field(default_factory=dict)
     view: str = "color"
     plane: tuple[tuple[float, ...], float] | None = None
     transparent: bool = False
@@ -109,6 +111,8 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         found["distal:neighbours"] = json.dumps(origin.neighbours)
     if origin.mode != "direct":
         found["distal:mode"] = origin.mode
+    if origin.paths:
+        found["distal:paths"] = json.dumps(dict(origin.paths), sort_keys=True)
     if origin.plane is not None:
         found["distal:plane"] = json.dumps([list(origin.plane[0]), origin.plane[1]])
     if origin.exposure is not None:
@@ -158,6 +162,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             mouse=_numbers(json_of("distal:mouse", [0.0] * 4), 4),
             samples=None if samples == ADAPTIVE else int(samples),
             mode=found.get("distal:mode", "direct"),
+            paths=_values(json_of("distal:paths", {})),
             view=found.get("distal:view", "color"),
             plane=None if plane is None else _pair(plane, lambda normal: _numbers(normal, 3)),
             transparent=_flag(found.get("distal:transparent", "false")),

@@ -51,7 +51,10 @@ class Picture:
             along the ray, infinite if nothing is hit), "normal" (float32, (height, width, 3),
             world space, toward the eye; else 0), "albedo" (float32, (height, width, 3), linear;
             else 0), "material" (uint32, from 1 in the order of the author's tree; else 0), "height"
-            (of a ``HeightMap``: float32, scene units; NaN if there is nothing).
+            (of a ``HeightMap``: float32, scene units; NaN if there is nothing). In mode "path"
+            "normal" and "albedo" are means over samples, of what is seen in mirrors and through
+            clear glass, and there are "samples" (uint32, the number of each pixel) and "variance"
+            (float32, of the pixel's luma: its squared standard error; infinite if unknown).
     """
 
     array: NDArray[np.float32]

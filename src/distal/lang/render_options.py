@@ -37,12 +37,20 @@ class Refinement:
         time_limit: So many seconds have passed; None has no limit. There is always one pass.
         noise: Its estimated error is at most this; None has no limit.
         film: A file that keeps the samples so far; they are taken from it if it exists.
+        shutter: Seconds that the shutter is open, from the picture's time on.
+        signed: Whether samples may have negative weights (``render.filters.SIGNED``).
+        preview: Called with the picture so far, at most every few seconds.
+        finish: Changes the finished linear light, before it is encoded for display.
     """
 
     samples: int
     time_limit: float | None = None
     noise: float | None = None
     film: Path | None = None
+    shutter: float = 0.0
+    signed: bool = False
+    preview: Callable[[Any], Any] | None = None
+    finish: Callable[[Any], Any] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,9 @@ that is not turned looks along -z. ``mirror`` swaps left and right, as in left-h
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
+from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
     abs,
     atan2,
@@ -29,6 +31,7 @@ from distal.lang import (
     vec3,
 )
 from distal.render.declarations import ExtraParameter, camera
+from distal.render.sampling.warps import axes_about, on_disc
 
 PI = 3.14159265358979
 ORIGIN = vec3(0.0)
@@ -39,6 +42,23 @@ HALF_TURN = math.pi
 OPENING = 40.0 * (math.pi / 180.0)
 # If the sine of the angle between two directions is smaller, they span no plane in 32 bits.
 PARALLEL = 1e-5
+APERTURE = ExtraParameter(
+    "aperture",
+    0.0,
+    "Number",
+    "Diameter of the lens, in scene units; 0 for a pinhole, which shows everything sharp. What is "
+    'in front of or behind the distance of focus is blurred; in mode "path" only.',
+    keyword_only=True,
+)
+FOCUS_DISTANCE = ExtraParameter(
+    "focus_distance",
+    None,
+    "Number | None",
+    "The distance along the viewing direction at which everything is sharp, in scene units. None: "
+    "that of the target.",
+    keyword_only=True,
+)
+LENS = (APERTURE, FOCUS_DISTANCE)
 IN_DEGREES = ExtraParameter(
     "fov_deg", None, "Number | None", "The same in degrees.", keyword_only=True
 )
@@ -116,7 +136,7 @@ def _has_a_view(
     return None
 
 
-@camera("Camera", requires=_has_a_view, extras=(IN_DEGREES,))
+@camera("Camera", requires=_has_a_view, extras=(IN_DEGREES, *LENS))
 @func
 def look_at(
     uv: vec2,
@@ -168,7 +188,7 @@ def turned(
     return through_screen(mirrored(uv, mirror), position, basis_turned(yaw, pitch, roll), focal)
 
 
-@camera("OrbitCamera", extras=(IN_DEGREES,))
+@camera("OrbitCamera", extras=(IN_DEGREES, *LENS))
 @func
 def orbit(
     uv: vec2,
@@ -277,6 +297,50 @@ def panorama(
     angles = mirrored(uv, mirror) * (0.5 * PI)
     level = basis.right * sin(angles.x) + basis.ahead * cos(angles.x)
     return Ray(position, normalize(level * cos(angles.y) + basis.up * sin(angles.y)))
+
+
+@func
+def thin_lens(aperture: float = 0.0, focus_distance: float = UNBOUNDED) -> vec2:
+    """Return the diameter of a lens and its distance of focus; unbounded for the target's."""
+    return vec2(aperture, focus_distance)
+
+
+@func
+def through_lens(
+    uv: vec2,
+    camera: Callable[[vec2], Ray],
+    still: Callable[[vec2], Ray],
+    target: vec3,
+    zoom: float,
+    lens: vec2,
+    u: vec2,
+) -> Ray:
+    """Return the ray of a place in the picture through a random place on the lens.
+
+    The lens is a disc around the eye, across the viewing direction. Rays of one place in the
+    picture meet in the plane of focus.
+
+    Args:
+        uv: Place in the picture.
+        camera: The ray of a place in the picture, through the middle of the lens.
+        still: The same before a person moved the camera.
+        target: The point that it looks at.
+        zoom: Factor by which a person moved away from what is in focus.
+        lens: The value of ``thin_lens``.
+        u: Two random numbers in [0, 1).
+
+    Source: Robert Cook, Thomas Porter and Loren Carpenter, "Distributed Ray Tracing" (1984).
+    """
+    ray = camera(uv)
+    axis = camera(vec2(0.0))
+    eye = still(vec2(0.0))
+    own = select(lens.y < UNBOUNDED, lens.y, dot(target - eye.origin, eye.direction))
+    ahead = dot(ray.direction, axis.direction)
+    sharp = ray.origin + ray.direction * (own * zoom / ahead)
+    place = on_disc(u) * (0.5 * lens.x)
+    axes = axes_about(axis.direction)
+    origin = ray.origin + axes.s * place.x + axes.t * place.y
+    return Ray(origin, normalize(sharp - origin))
 
 
 @func

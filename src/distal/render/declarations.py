@@ -156,9 +156,13 @@ BACKGROUNDS: Final = Family(
 )
 CAMERAS: Final = Family(
     ("uv", "resolution"),
-    dict.fromkeys(
-        ("fov", "distance", "height", "screen_height", "screen_distance"), Limit.POSITIVE
-    ),
+    {
+        "aperture": Limit.NOT_NEGATIVE,
+        **dict.fromkeys(
+            ("fov", "distance", "height", "screen_height", "screen_distance", "focus_distance"),
+            Limit.POSITIVE,
+        ),
+    },
     keyword_only=("mirror",),
     optional=("fov",),
 )

@@ -22,8 +22,6 @@ from distal.lang import (
     min,
     round,
     select,
-    sign,
-    sqrt,
     struct,
     vec2,
     vec3,
@@ -31,6 +29,7 @@ from distal.lang import (
 )
 from distal.lang.srgb import decode_srgb, encode_srgb
 from distal.render.camera import Ray
+from distal.render.filters import tent
 from distal.render.footprint import Cone
 from distal.render.lost_rays import marked, merged, unmarked
 
@@ -53,12 +52,6 @@ LUMA = vec3(0.2126, 0.7152, 0.0722)
 PLACES: Final = Buffer([0])
 FIRSTS: Final = Buffer([vec4(0.0)])
 SHOWN: Final = Buffer([vec4(0.0)])
-
-
-@func
-def tent(x: float) -> float:
-    """Map a uniform number from -1 to 1 to an offset from -1 to 1 with a tent distribution."""
-    return sign(x) * (1.0 - sqrt(max(1.0 - abs(x), 0.0)))
 
 
 @func
@@ -213,6 +206,37 @@ def exposed(
 
 
 @func
+def listed_index(coord: vec2, grid: vec2) -> int:
+    """Return which pixel of a list a pixel of the grid is.
+
+    A list of pixels is arranged in a smaller picture, the grid: from the top to the bottom of a
+    strip of ``STRIP_PX`` columns, then of the next one.
+
+    Args:
+        coord: Middle of the pixel of the grid.
+        grid: Size of the grid.
+    """
+    column = int(coord.x)
+    strip = column // STRIP_PX
+    return (strip * int(grid.y) + int(grid.y - coord.y)) * STRIP_PX + column - strip * STRIP_PX
+
+
+@func
+def listed_place(coord: vec2, grid: vec2, resolution: vec2, places: Buffer[int]) -> vec2:
+    """Return the middle of the pixel of the picture that a pixel of the grid stands for.
+
+    Args:
+        coord: Middle of the pixel of the grid.
+        grid: Size of the grid.
+        resolution: Size of the picture.
+        places: Index of each pixel of the list in the picture, from the top row on.
+    """
+    place = places[listed_index(coord, grid)]
+    width = int(resolution.x)
+    return vec2(float(place % width) + 0.5, resolution.y - 0.5 - float(place // width))
+
+
+@func
 def exposed_again(
     coord: vec2,
     grid: vec2,
@@ -231,8 +255,7 @@ def exposed_again(
     """Return a pixel of one of the two passes of adaptive sampling.
 
     The first pass renders the picture. The second one renders a list of pixels that need more
-    samples, arranged in a smaller picture, the grid: from the top to the bottom of a strip of
-    ``STRIP_PX`` columns, then of the next one. Pixel i of the list has the samples of pixel
+    samples, arranged in a grid (``listed_place``). Pixel i of the list has the samples of pixel
     ``places[i]`` of the picture and, besides, ``firsts[i]``, the result of the first pass.
     Other arguments as for ``gathered``.
 
@@ -251,13 +274,8 @@ def exposed_again(
         firsts: Linear light and alpha of the first pass, without marks.
         counted: As for ``exposed``.
     """
-    column = int(coord.x)
-    strip = column // STRIP_PX
-    index = (strip * int(grid.y) + int(grid.y - coord.y)) * STRIP_PX + column - strip * STRIP_PX
-    width = int(resolution.x)
-    place = places[index]
-    listed = vec2(float(place % width) + 0.5, resolution.y - 0.5 - float(place // width))
-    at = select(again, listed, coord)
+    index = listed_index(coord, grid)
+    at = select(again, listed_place(coord, grid, resolution, places), coord)
     sums = gathered(at, resolution, camera, radiance, cone, samples, step, transparent, counted)
     first = firsts[index]
     known = select(again, vec4(first.xyz * first.w, first.w), vec4(0.0))

@@ -8,7 +8,7 @@ of 64-bit floats, so they do not drift. Does not depend on what a sample is.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.lang.render_options import Progress, Refinement
+from distal.runtime.allocation import Pass, next_pass, share_done
 
-# Samples of a pass: few at first, so that there is soon a picture and an estimate of its error.
-MOST_OF_A_PASS: Final = 16
 # No error is estimated from fewer passes.
-_FEWEST_PASSES: Final = 4
+FEWEST_PASSES: Final = 4
 _LUMA: Final = np.array([0.2126, 0.7152, 0.0722])  # Rec. 709
 
-# Renders a pass: the first sample's number, the number of samples, a callback for progress.
-Pass = Callable[[int, int, Progress | None], NDArray[np.float32]]
+# Renders a pass, with a callback for progress: the means of its samples, of the pixels in the order
+# of ``Pass.places``, or of all as (height, width, 4).
+Rendered = Callable[[Pass, Progress | None], NDArray[np.float32]]
 
 
 @dataclass(slots=True)
@@ -35,52 +35,81 @@ class Film:
         sums: Light of each pixel times alpha, and alpha, summed over the samples; float64, (height,
             width, 4).
         spread: Sum over the samples of the squared difference of luma from its mean, float64.
-        samples: The number of samples of each pixel.
-        passes: The number of passes.
+        samples: The number of samples of each pixel, int32.
+        passes: The number of passes that each pixel was in, int32.
+        signed: Whether samples may have negative weights. Alpha is then 0 or 1.
     """
 
     sums: NDArray[np.float64]
     spread: NDArray[np.float64]
-    samples: int = 0
-    passes: int = 0
+    samples: NDArray[np.int32]
+    passes: NDArray[np.int32]
+    signed: bool = False
 
     @classmethod
-    def empty(cls, width: int, height: int) -> Film:
+    def empty(cls, width: int, height: int, *, signed: bool = False) -> Film:
         """Return a film without samples."""
-        return cls(np.zeros((height, width, 4)), np.zeros((height, width)))
+        samples, passes = np.zeros((2, height, width), np.int32)
+        return cls(np.zeros((height, width, 4)), np.zeros((height, width)), samples, passes, signed)
 
-    def add(self, light: NDArray[np.float32], count: int) -> None:
+    def add(
+        self, light: NDArray[np.float32], count: int, places: NDArray[np.int32] | None = None
+    ) -> None:
         """Add a pass.
 
         Args:
-            light: The mean of its samples: linear light and straight alpha.
-            count: The number of its samples.
+            light: The mean of its samples: linear light times alpha, and alpha.
+            count: The number of its samples in each pixel.
+            places: The indices of its pixels, from the top row on; None for all.
         """
-        added = light.astype(np.float64)
-        added[..., :3] *= added[..., 3:]
-        added *= count
-        if self.samples:
-            # The difference of the pass from what was there, by Welford's and Chan's formula.
-            apart = (added / count - self.sums / self.samples)[..., :3] @ _LUMA
-            weight = self.samples * count / (self.samples + count)
-            self.spread += weight * apart * apart
-        self.sums += added
-        self.samples += count
-        self.passes += 1
+        where: Any = slice(None) if places is None else places
+        sums, spread = self.sums.reshape(-1, 4), self.spread.reshape(-1)
+        samples, passes = self.samples.reshape(-1), self.passes.reshape(-1)
+        added = light.reshape(-1, 4).astype(np.float64)
+        before, known = samples[where], sums[where]
+        # The difference of the pass from what was there, by Welford's and Chan's formula.
+        mean = known / np.maximum(before, 1)[:, None]
+        if self.signed:  # alpha is the weight, by which the light is divided in the end
+            mean *= (added[:, 3] / np.where(mean[:, 3] > 0.0, mean[:, 3], 1.0))[:, None]
+        apart = (added - mean)[:, :3] @ _LUMA
+        spread[where] += before * count / (before + count) * apart * apart
+        sums[where] = known + added * count
+        samples[where] = before + count
+        passes[where] += 1
 
     @property
     def light(self) -> NDArray[np.float32]:
         """Linear light and straight alpha: the mean of the samples."""
-        mean = self.sums / max(self.samples, 1)
+        mean = self.sums / np.maximum(self.samples, 1)[..., None]
         mean[..., :3] /= np.maximum(mean[..., 3:], 1e-6)
+        alpha = np.rint(mean[..., 3]) if self.signed else mean[..., 3]
+        mean[..., 3] = np.clip(alpha, 0.0, 1.0)
         return mean.astype(np.float32)
 
     @property
-    def errors(self) -> NDArray[np.float64]:
-        """The standard error of each pixel's luma, from the differences between passes."""
-        if self.passes < 2:
-            return np.full(self.spread.shape, np.inf)
-        return np.sqrt(self.spread / ((self.passes - 1) * self.samples))
+    def luma(self) -> NDArray[np.float64]:
+        """The luma of each pixel."""
+        found: NDArray[np.float64] = self.sums[..., :3] @ _LUMA / np.maximum(self.samples, 1)
+        return found
+
+    @property
+    def sample_variance(self) -> NDArray[np.float64]:
+        """The variance of the luma of one sample, from the differences between passes."""
+        unknown = np.where(self.passes < 2, np.inf, 0.0)
+        found: NDArray[np.float64] = self.spread / np.maximum(self.passes - 1, 1) + unknown
+        return found
+
+    @property
+    def variance(self) -> NDArray[np.float64]:
+        """The variance of each pixel's luma: its squared standard error."""
+        found: NDArray[np.float64] = self.sample_variance / np.maximum(self.samples, 1)
+        return found
+
+    @property
+    def relative_variance(self) -> NDArray[np.float64]:
+        """The variance of a sample's luma; of a pixel brighter than white, relative to it."""
+        found: NDArray[np.float64] = self.sample_variance / np.maximum(self.luma, 1.0) ** 2
+        return found
 
     @property
     def noise(self) -> float:
@@ -88,40 +117,22 @@ class Film:
 
         Infinite while there are too few passes.
         """
-        if self.passes < _FEWEST_PASSES:
+        if int(self.passes.min()) < FEWEST_PASSES:
             return float("inf")
-        luma = self.sums[..., :3] @ _LUMA / self.samples
-        return float(np.sqrt(np.mean((self.errors / np.maximum(luma, 1.0)) ** 2)))
+        return float(np.sqrt(np.mean(self.relative_variance / self.samples)))
 
     def figures(self) -> dict[str, Any]:
         """Return what is recorded of a picture."""
-        noise = self.noise
-        return {"samples": self.samples, "noise": None if np.isinf(noise) else noise}
-
-
-def passes(begun: int, samples: int) -> Iterator[tuple[int, int]]:
-    """Yield the first sample and the number of samples of each pass.
-
-    The passes of a picture that is continued are those of one that was not broken off.
-
-    Args:
-        begun: The samples that are there already.
-        samples: The number of samples in the end.
-    """
-    first, count = 0, 1
-    while first < samples:
-        count = min(count, samples - first)
-        if first >= begun:
-            yield first, count
-        first += count
-        count = min(max(first, 1), MOST_OF_A_PASS)
+        noise, mean = self.noise, float(self.samples.mean())
+        count = int(mean) if mean == int(mean) else mean
+        return {"samples": count, "noise": None if np.isinf(noise) else noise}
 
 
 def accumulate(
     film: Film,
-    rendered: Pass,
+    rendered: Rendered,
     refinement: Refinement,
-    keep: Callable[[Film], None] | None,
+    watch: Callable[[Film], None] | None,
     progress: Progress | None,
 ) -> None:
     """Add samples to a film until it has enough of them, the time is over or the error is small.
@@ -130,29 +141,32 @@ def accumulate(
         film: The film.
         rendered: Renders a pass.
         refinement: When to end.
-        keep: Called after each pass.
+        watch: Called after each pass.
         progress: Called with the finished share, from 0 to 1.
     """
     begin = time.perf_counter()
     limit = refinement.time_limit
-    for first, count in passes(film.samples, refinement.samples):
-        done = first / refinement.samples
+    shown = 0.0
 
-        def part(
-            share: float, done: float = done, width: float = count / refinement.samples
-        ) -> None:
-            whole = done + share * width
-            if limit is not None:
-                whole = max(whole, min((time.perf_counter() - begin) / limit, 1.0))
-            if progress is not None:
-                progress(whole)
+    def report(share: float) -> None:
+        nonlocal shown
+        if limit is not None:
+            share = max(share, (time.perf_counter() - begin) / limit)
+        shown = max(shown, min(share, 1.0))
+        if progress is not None:
+            progress(shown)
 
-        film.add(rendered(first, count, part), count)
-        if keep is not None:
-            keep(film)
+    while (following := next_pass(film, refinement)) is not None:
+        done = share_done(film, refinement)
+        width = following.count * following.pixels(film.samples.size) / film.samples.size
+        width /= max(float(film.samples.mean()) / done if done > 0.0 else refinement.samples, 1.0)
+
+        def part(share: float, done: float = done, width: float = width) -> None:
+            report(done + share * width)
+
+        film.add(rendered(following, part), following.count, following.places)
+        if watch is not None:
+            watch(film)
         if limit is not None and time.perf_counter() - begin >= limit:
             break
-        if refinement.noise is not None and film.noise <= refinement.noise:
-            break
-    if progress is not None:
-        progress(1.0)
+    report(1.0)

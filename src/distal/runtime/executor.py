@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 import time
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -163,9 +163,12 @@ class PythonExecutor:
         exposed: accumulation.Film | None = None
         if refined:
             samples_only = Refinement(samples=options.samples or PATH_SAMPLES)
-            exposed = passes.accumulated(options.refinement or samples_only)
+            refinement = options.refinement or samples_only
+            exposed = passes.accumulated(refinement, _preview_of(refinement, passes))
             linear = exposed.light
-            pixels = passes.shown(linear)
+            if refinement.finish is not None:
+                linear = refinement.finish(linear)
+            pixels = passes.shown(linear) if len(parts) > 1 else linear
         elif contrast is not None:
             seen = partial(passes.contrast, *contrast)
             programs = sampling.Programs(passes.light, passes.shown, seen)
@@ -199,7 +202,7 @@ class PythonExecutor:
             samples=_samples(options, adaptive, exposed),
             device=device,
         )
-        return Picture(pixels, origin, stats, linear)
+        return Picture(pixels, origin, stats, linear, {} if exposed is None else _layers(exposed))
 
     def _contrast(self, device: str) -> tuple[Kernel, Mapping[str, Any]]:
         """Return the kernel of ``film.contrast``, and its buffer by name."""
@@ -496,12 +499,33 @@ class PythonExecutor:
             return lowered
 
 
+def _preview_of(
+    refinement: Refinement, passes: Passes
+) -> Callable[[accumulation.Film], None] | None:
+    """Return what shows the samples so far as a picture; None if nobody asks for it."""
+    preview = refinement.preview
+    if preview is None:
+        return None
+
+    def show(exposed: accumulation.Film) -> None:
+        linear = exposed.light
+        preview(Picture(passes.shown(linear), stats=exposed.figures(), light=linear))
+
+    return show
+
+
+def _layers(exposed: accumulation.Film) -> dict[str, NDArray[Any]]:
+    """Return what a picture knows of its samples, by names of layers."""
+    samples, variance = exposed.samples.astype(np.uint32), exposed.variance.astype(np.float32)
+    return {"samples": samples, "variance": variance}
+
+
 def _samples(
     options: RenderOptions, adaptive: bool, exposed: accumulation.Film | None
 ) -> int | None:
     """Return the number of samples to record; None for adaptive sampling."""
     if exposed is not None:
-        return exposed.samples
+        return int(exposed.samples.max())
     return None if adaptive else options.samples or 1
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 import zipfile
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -39,21 +39,22 @@ class FilmFile:
         self._interval = _INTERVAL_S
         self._written = time.monotonic()
 
-    def load(self, width: int, height: int) -> Film:
+    def load(self, width: int, height: int, *, signed: bool = False) -> Film:
         """Return the film that the file keeps; one without samples if there is no file.
 
         Args:
             width: Width of the picture in pixels.
             height: Height in pixels.
+            signed: Whether samples may have negative weights.
 
         Raises:
             ValueError: The file is not a film, or that of another picture.
         """
         if not self._path.exists():
-            return Film.empty(width, height)
+            return Film.empty(width, height, signed=signed)
         try:
             with np.load(self._path, allow_pickle=False) as found:
-                key, counts = str(found["key"]), found["counts"]
+                key, samples, passes = str(found["key"]), found["samples"], found["passes"]
                 sums, spread = found["sums"], found["spread"]
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
             raise ValueError(f"{self._path} is not a film: delete it or name another") from None
@@ -61,7 +62,7 @@ class FilmFile:
             raise ValueError(
                 f"{self._path} keeps the samples of another picture: delete it or name another"
             )
-        return Film(sums, spread, int(counts[0]), int(counts[1]))
+        return Film(sums, spread, samples, passes, signed)
 
     def keep(self, film: Film) -> None:
         """Write the film, if the last time was long ago."""
@@ -75,10 +76,12 @@ class FilmFile:
             SaveError: The file cannot be written.
         """
         begin = time.monotonic()
-        counts = np.array([film.samples, film.passes])
+        arrays: dict[str, Any] = {
+            name: getattr(film, name) for name in ("sums", "spread", "samples", "passes")
+        }
         try:
             with replacement(self._path) as file:
-                np.savez(file, key=self._key, counts=counts, sums=film.sums, spread=film.spread)
+                np.savez(file, key=self._key, **arrays)
         except OSError as error:
             raise SaveError(f"cannot write {self._path}: {error.strerror or error}") from None
         self._written = time.monotonic()

@@ -130,17 +130,13 @@ def adaptive(
         if progress is not None:
             progress(1.0)
         return light, shown, 1.0
-    # As few strips as fit the height of a picture; the end of the list repeats the last pixel.
-    strips = -(-count // (film.STRIP_PX * _HIGHEST_PX))
-    height = -(-count // (film.STRIP_PX * strips))
-    width = film.STRIP_PX * strips
-    padded = np.pad(places, (0, width * height - count), mode="edge")
+    padded, grid = arranged(places)
     pixels = light.reshape(-1, 4)
     buffers = {film.PLACES: padded, film.FIRSTS: pixels[padded]}
     numbers = {film.SAMPLES: film.MORE_SAMPLES, film.AGAIN: True, film.PICTURE_SIZE: picture_size}
-    finer = programs.light((width, height), numbers, buffers, _part(progress, 1))
-    pixels[places] = _listed(finer)[:count]
-    shown.reshape(-1, 4)[places] = _listed(programs.shown(finer))[:count]
+    finer = programs.light(grid, numbers, buffers, _part(progress, 1))
+    pixels[places] = listed(finer)[:count]
+    shown.reshape(-1, 4)[places] = listed(programs.shown(finer))[:count]
     return light, shown, 1.0 + film.MORE_SAMPLES * count / (size[0] * size[1])
 
 
@@ -153,7 +149,19 @@ def _in_squares(wanted: NDArray[np.bool_]) -> NDArray[np.int32]:
     return np.asarray((rows * wanted.shape[1] + columns)[order], np.int32)
 
 
-def _listed(grid: NDArray[np.float32]) -> NDArray[np.float32]:
+def arranged(places: NDArray[np.int32]) -> tuple[NDArray[np.int32], tuple[int, int]]:
+    """Return the list of pixels that fills a grid (``film.listed_place``), and the grid's size.
+
+    The end of the list repeats the last pixel.
+    """
+    # As few strips as fit the height of a picture.
+    strips = -(-len(places) // (film.STRIP_PX * _HIGHEST_PX))
+    height = -(-len(places) // (film.STRIP_PX * strips))
+    width = film.STRIP_PX * strips
+    return np.pad(places, (0, width * height - len(places)), mode="edge"), (width, height)
+
+
+def listed(grid: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the pixels of a grid in the order of the list: strip by strip."""
     height, width, channels = grid.shape
     strips = grid.reshape(height, width // film.STRIP_PX, film.STRIP_PX, channels)

@@ -7,18 +7,20 @@ record of how it was made. Needs NumPy; scenes compile without this module.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
-from distal.lang.render_options import Progress, RenderOptions
+from distal.lang.render_options import Progress, Refinement, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.scene.checks.warnings import (
     check_slopes,
     shows,
     warn_of_black,
+    warn_of_camera,
     warn_of_functions,
     warn_of_lost_rays,
 )
-from distal.scene.lowering.layers import values
+from distal.scene.lowering.layers import OF_SAMPLES, values
+from distal.scene.lowering.picture import PATH_LAYERS
 from distal.scene.tree.errors import refuse
 from distal.scene.view_options import ViewOptions
 from distal.scene.view_ranges import with_range
@@ -26,6 +28,9 @@ from distal.scene.view_ranges import with_range
 if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.scene.scene import Scene
+
+# Samples of a mean albedo or normal: their noise is small.
+LAYER_SAMPLES: Final = 64
 
 
 def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Picture:
@@ -43,25 +48,34 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     sliced, moved = view.slice_settings, view.steering_settings
     check_slopes(scene.shape, options.params, options.time)
     warn_of_functions(scene.shape, options.params, options.time)
-    shares = _shares(options.progress, 1 + len(view.layers))
+    refinement = view.refinement(scene.mode, options.samples, scene.shutter)
+    computed = [name for name in view.layers if name not in OF_SAMPLES]
+    shares = _shares(options.progress, 1 + len(computed))
     steered = view.steering is not None
-    refinement = view.refinement(scene.mode, options.samples)
     shown = {"transparent": view.transparent, "steered": steered}
-    image, sampled = scene.program(view.view, options.samples, mode=view.mode, **shown)
+    image, sampled = scene.program(
+        view.view, options.samples, mode=view.mode, filter=view.filter, **shown
+    )
     settings = {**sampled, **sliced, **moved}
+    if refinement is None and view.view == "color":
+        warn_of_camera(scene)
+    else:
+        settings |= view.path_settings
     asked = replace(options, settings=settings, progress=shares[0], refinement=refinement)
     asked = with_range(image, asked)
     picture = executor().render(image, asked)
     if view.view == "color":
         _check_visible(scene, view, picture, options)
         warn_of_lost_rays(scene, picture.stats["lost"])
+    of_samples = {name: picture.layers[name] for name in view.layers if name in OF_SAMPLES}
     layers = {
-        name: _layer(scene, name, view, replace(options, settings=moved, progress=share))
-        for name, share in zip(view.layers, shares[1:], strict=True)
-    }
+        name: _layer(scene, name, view, replace(asked, settings=moved, progress=share))
+        for name, share in zip(computed, shares[1:], strict=True)
+    } | of_samples
     return picture.with_layers(layers).with_provenance(
         view=view.view,
         mode="direct" if refinement is None else "path",
+        paths={} if refinement is None else view.recorded,
         transparent=view.transparent,
         plane=tuple(sliced.values()) or None,
         steering=None if view.steering is None else view.steering.numbers,
@@ -82,7 +96,16 @@ def _check_visible(
 
 
 def _layer(scene: Scene, name: str, view: ViewOptions, options: RenderOptions) -> Any:
-    layer = scene.layer(name, steered=view.steering is not None)
+    """Return the values of a layer."""
+    steered, refinement = view.steering is not None, options.refinement
+    if refinement is None or name not in PATH_LAYERS:
+        layer = scene.layer(name, steered=steered)
+    else:
+        layer = scene.path_layer(name, view.filter, steered=steered)
+        count = min(refinement.samples, LAYER_SAMPLES)
+        alike = Refinement(samples=count, shutter=refinement.shutter, signed=refinement.signed)
+        found = executor().render(layer, replace(options, refinement=alike)).linear
+        return found[..., :3] * found[..., 3:]
     return values(name, executor().render(layer, options).array)
 
 

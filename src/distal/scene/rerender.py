@@ -23,7 +23,7 @@ from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import EXAMPLE_PREFIX, SceneCode, digest_of, load, split_source
 from distal.scene.rendering import render_scene
 from distal.scene.steering import Steering
-from distal.scene.view_options import ViewOptions
+from distal.scene.view_options import RECORDED, ViewOptions
 from distal.scene.viewing.viewable import viewable
 from distal.version import __version__
 
@@ -183,10 +183,23 @@ def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Pic
         transparent=origin.transparent,
         steering=moved,
         layers=origin.layers,
+        **_recorded(origin),
     )
     if origin.plane is not None:
         view = replace(view, plane=origin.plane)
     return render_scene(scene, view, replace(options, freeze=origin.freeze))
+
+
+def _recorded(origin: Provenance) -> dict[str, Any]:
+    """Return the recorded options of mode "path".
+
+    Raises:
+        RerenderError: There is no such option.
+    """
+    for name in origin.paths:
+        if name not in RECORDED:
+            raise RerenderError(f"the picture names an option '{printable(name, 40)}' of paths")
+    return dict(origin.paths)
 
 
 def difference(plan: RerenderPlan, picture: Picture) -> Difference:

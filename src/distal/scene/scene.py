@@ -7,7 +7,7 @@ that encodes light for display. The cheapest renderer that supports all material
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -23,16 +23,17 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import copy_loaded_from
-from distal.render import film, tonemap, views
+from distal.render import film, filters, tonemap, views
 from distal.scene.looks.dressed import Dressed, GivenArguments
 from distal.scene.looks.rows import as_look
 from distal.scene.lowering.cells import check_cells
-from distal.scene.lowering.layers import Layer
+from distal.scene.lowering.layers import Layer, PathLayer
 from distal.scene.lowering.picture import NORMALS, RANGED, SceneLowering
 from distal.scene.scene_arguments import (
     checked_exposure,
     checked_glow,
     checked_numbers,
+    checked_shutter,
     one_of,
     whole,
 )
@@ -86,6 +87,8 @@ class Scene(Composed, Presentable):
             and glass; or "path", along random paths, which is exact and takes many samples.
         bounces: The maximum number of reflections and refractions that a ray follows; paths have no
             limit.
+        shutter: In mode "path": seconds that the shutter is open, from the picture's time on; what
+            moves is blurred.
         normals: How normals are computed: "exact", or by finite differences: "six_taps",
             "tetrahedron" or "forward".
         march: "sphere" for sphere tracing, or "heightfield" for terrain and water: long steps over
@@ -133,6 +136,7 @@ class Scene(Composed, Presentable):
         ambient_occlusion: Number | None = None,
         mode: str = "direct",
         bounces: int = 6,
+        shutter: float = 0.0,
         normals: str = "exact",
         march: str = "sphere",
         stride: Number = 0.03,
@@ -172,6 +176,7 @@ class Scene(Composed, Presentable):
         self.shadows = bool(shadows)
         self.mode = one_of("mode", mode, MODES, place)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
+        self.shutter = checked_shutter(shutter, place)
         self.acceleration = bool(acceleration)
         self.steps = None if steps is None else whole("steps", steps, Limit.POSITIVE, place)
         self.numbers = checked_numbers(
@@ -195,6 +200,7 @@ class Scene(Composed, Presentable):
             "shadows": shadows,
             "mode": mode,
             "bounces": bounces,
+            "shutter": shutter,
             "normals": normals,
             "march": march,
             "stride": stride,
@@ -272,6 +278,11 @@ class Scene(Composed, Presentable):
         time_limit: float | None = None,
         noise: float | None = None,
         film: str | Path | None = None,
+        filter: str | None = None,
+        shutter: float | None = None,
+        clamp: float | None = None,
+        denoise: bool = False,
+        preview: Callable[[Picture], Any] | None = None,
         view: str = "color",
         transparent: bool = False,
         plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
@@ -302,8 +313,19 @@ class Scene(Composed, Presentable):
             time_limit: In mode "path": seconds after which no more samples are begun.
             noise: In mode "path": the estimated error at which the picture is finished: the
                 standard error of a pixel's light, as a root mean square (1 is white).
-            film: In mode "path": a file that keeps the samples so far; if it exists, rendering
-                goes on from them.
+            film: In mode "path": a file that keeps the samples so far; if it exists, rendering goes
+                on from them.
+            filter: In mode "path": the reconstruction filter, "tent", "box", "gaussian",
+                "blackman-harris" or "mitchell"; None: "tent".
+            shutter: In mode "path": seconds that the shutter is open, from ``time`` on; what moves
+                is blurred. None: as the scene says.
+            clamp: In mode "path": the largest light of a sample; brighter ones are scaled to it.
+                That removes single bright pixels, and some light: the picture is biased. None has
+                no limit.
+            denoise: In mode "path": whether Open Image Denoise removes the noise that is left,
+                guided by albedo and normal; needs ``distal[denoise]``. It may remove fine detail.
+            preview: In mode "path": called with the picture so far, at most every few seconds, and
+                when the work is broken off.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
             transparent: Whether alpha is 0 where a ray hits nothing.
@@ -311,8 +333,8 @@ class Scene(Composed, Presentable):
                 from the origin along the normal.
             freeze: Compile all numbers as constants: slower to compile, a little faster to run.
             steering: How a person has moved the camera; None if it was not moved.
-            layers: Layers to compute at the middle of each pixel for ``Picture.layers``: "depth",
-                "normal", "albedo", "material".
+            layers: Layers to compute for ``Picture.layers``: "depth", "normal", "albedo",
+                "material"; in mode "path" also "samples" and "variance".
 
         Raises:
             CompileError: The scene has mistakes, or its camera is inside a solid.
@@ -326,6 +348,11 @@ class Scene(Composed, Presentable):
             time_limit=time_limit,
             noise=noise,
             film=film,
+            filter=filter,
+            shutter=shutter,
+            clamp=clamp,
+            denoise=denoise,
+            preview=preview,
             view=view,
             transparent=transparent,
             plane=plane,
@@ -358,6 +385,7 @@ class Scene(Composed, Presentable):
         steered: bool = False,
         adaptive: bool = False,
         paths: bool = False,
+        filter: str = filters.NAMES[0],
     ) -> Composed:
         """Return another view of the scene ("normal", "depth" …); the scene itself for "color".
 
@@ -368,8 +396,10 @@ class Scene(Composed, Presentable):
             encoded: Whether pixels are display values instead of linear light.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
             adaptive: Whether it is rendered in two passes: one sample in each pixel, then more
-                where pixels differ from their neighbours; for "color" as linear light.
+                where pixels differ from their neighbours; with ``paths`` in as many as are needed;
+                for "color" as linear light.
             paths: Whether the light is that of random paths; for "color" as linear light.
+            filter: The reconstruction filter of random paths.
 
         Raises:
             ValueError: There is no such view.
@@ -378,8 +408,8 @@ class Scene(Composed, Presentable):
             known = ", ".join(["color", *views.VIEWS])
             hint = "; locals are shown of an @image" if name.startswith("local:") else ""
             raise ValueError(f"there is no view '{name:.40}'; views: {known}{hint}")
-        key = (name, transparent, sampled, encoded, steered, adaptive, paths)
-        if key == ("color", False, False, False, False, False, False):
+        key = (name, transparent, sampled, encoded, steered, adaptive, paths, filter)
+        if key == ("color", *[False] * 6, filter):
             return self
         if key not in self._pictures:
             self._pictures[key] = View(self, *key)
@@ -392,7 +422,8 @@ class Scene(Composed, Presentable):
         *,
         encoded: bool = False,
         mode: str | None = None,
-        **shown: bool,
+        filter: str | None = None,
+        **shown: Any,
     ) -> tuple[Composed, Mapping[str, Any]]:
         """Return a view with several samples in each pixel, and its settings.
 
@@ -402,13 +433,15 @@ class Scene(Composed, Presentable):
             encoded: Whether pixels are display values instead of linear light; not if adaptive, or
                 in mode "path".
             mode: "direct" or "path"; None: as the scene says.
+            filter: The reconstruction filter in mode "path"; None for the default.
             shown: ``transparent`` and ``steered`` of ``view``.
 
         Raises:
             ValueError: There is no such view.
         """
         if view == "color" and (mode or self.mode) == "path":
-            return self.view(view, paths=True, **shown), {}
+            chosen = filter or filters.NAMES[0]
+            return self.view(view, paths=True, adaptive=True, filter=chosen, **shown), {}
         if samples is None and view == "color":
             return self.view(view, adaptive=True, **shown), {}
         if samples is None or samples == 1:
@@ -426,6 +459,22 @@ class Scene(Composed, Presentable):
         key = ("layer", name, steered)
         if key not in self._pictures:
             self._pictures[key] = Layer(self, name, steered=steered)
+        return self._pictures[key]
+
+    def path_layer(
+        self, name: str, filter: str | None = None, *, steered: bool = False
+    ) -> Composed:
+        """Return an image of the mean of a layer over random paths (``render.path_layers``).
+
+        Args:
+            name: "normal" or "albedo".
+            filter: The reconstruction filter; None for the default.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
+        chosen = filter or filters.NAMES[0]
+        key = ("path layer", name, chosen, steered)
+        if key not in self._pictures:
+            self._pictures[key] = PathLayer(self, name, chosen, steered=steered)
         return self._pictures[key]
 
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
@@ -481,6 +530,7 @@ class View(Composed):
         steered: bool,
         adaptive: bool,
         paths: bool,
+        filter: str,
     ) -> None:
         copy_loaded_from(scene, self)
         self.name = scene.name if view == "color" else f"{scene.name} ({view})"
@@ -488,7 +538,8 @@ class View(Composed):
         self._view = view
         self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
         self._steered = steered
-        self.adaptive, self.refined = adaptive, paths
+        self._passes, self._filter = adaptive, filter
+        self.adaptive, self.refined = adaptive and not paths, paths
         self.display = scene.display if view == "color" and not encoded else None
         self.glow = scene.glow
         self.ranged = view in RANGED
@@ -501,8 +552,9 @@ class View(Composed):
             sampled=self._sampled,
             encoded=self._encoded and self._view == "color",
             steered=self._steered,
-            adaptive=self.adaptive,
+            adaptive=self._passes,
             paths=self.refined,
+            filter=self._filter,
         )
 
     def functions(self) -> Iterable[Func]:

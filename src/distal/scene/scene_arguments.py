@@ -87,6 +87,15 @@ def checked_glow(glow: Any, place: Span | None) -> float:
     return plain
 
 
+def checked_shutter(shutter: Any, place: Span | None) -> float:
+    """Return the seconds that the shutter is open, as a checked constant."""
+    asked = Asked("shutter", "Scene", FLOAT, Limit.NOT_NEGATIVE, place=place)
+    plain = number(shutter, asked).plain
+    if not isinstance(plain, float):
+        refuse_kind("shutter is a constant: no parameter, and no expression", "shutter=0.02", place)
+    return plain
+
+
 def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
     """Return a checked count of the scene.
 

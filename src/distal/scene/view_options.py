@@ -7,21 +7,28 @@ Input: values from a caller. Output: a ``ViewOptions``, and the numbers that its
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, VEC3
 from distal.lang.render_options import MOST_SAMPLES, PATH_SAMPLES, Refinement, checked_samples
-from distal.scene.lowering.layers import checked_layers
+from distal.render import filters, path_film
+from distal.scene.lowering.layers import OF_SAMPLES, checked_layers
 from distal.scene.steering import Steering
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
+if TYPE_CHECKING:
+    from distal.images.picture import Picture
+
 MODES: Final = ("direct", "path")
+# The options of mode "path", and those of them that a picture's file records.
+RECORDED: Final = ("noise", "filter", "shutter", "clamp", "denoise")
+_OF_PATHS: Final = ("spp", "time_limit", "film", "preview", *RECORDED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,16 +42,26 @@ class ViewOptions:
         time_limit: In mode "path": seconds after which no more samples are begun.
         noise: In mode "path": the estimated error at which the picture is finished: the standard
             error of a pixel's light, as a root mean square (1 is white).
-        film: In mode "path": a file that keeps the samples so far; if it exists, rendering
-            goes on from them.
+        film: In mode "path": a file that keeps the samples so far; if it exists, rendering goes on
+            from them.
+        filter: In mode "path": the reconstruction filter, "tent", "box", "gaussian",
+            "blackman-harris" or "mitchell"; None: "tent".
+        shutter: In mode "path": seconds that the shutter is open, from ``time`` on; what moves is
+            blurred. None: as the scene says.
+        clamp: In mode "path": the largest light of a sample; brighter ones are scaled to it. That
+            removes single bright pixels, and some light: the picture is biased. None has no limit.
+        denoise: In mode "path": whether Open Image Denoise removes the noise that is left, guided
+            by albedo and normal; needs ``distal[denoise]``. It may remove fine detail.
+        preview: In mode "path": called with the picture so far, at most every few seconds, and when
+            the work is broken off.
         view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
             "steps", "material", "slope" or "slice".
         transparent: Whether alpha is 0 where a ray hits nothing.
         plane: The plane that the view "slice" shows: its normal, of length 1, and its distance from
             the origin along the normal.
         steering: How a person has moved the camera; None if it was not moved.
-        layers: Layers to compute at the middle of each pixel for ``Picture.layers``: "depth",
-            "normal", "albedo", "material".
+        layers: Layers to compute for ``Picture.layers``: "depth", "normal", "albedo", "material";
+            in mode "path" also "samples" and "variance".
 
     Raises:
         ValueError: A value is out of range, or there is no such layer.
@@ -55,6 +72,11 @@ class ViewOptions:
     time_limit: float | None = None
     noise: float | None = None
     film: str | Path | None = None
+    filter: str | None = None
+    shutter: float | None = None
+    clamp: float | None = None
+    denoise: bool = False
+    preview: Callable[[Picture], Any] | None = None
     view: str = "color"
     transparent: bool = False
     plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0)
@@ -66,24 +88,38 @@ class ViewOptions:
         if self.mode not in (None, *MODES):
             raise ValueError(f"there is no mode '{self.mode!s:.40}'; modes: {', '.join(MODES)}")
         object.__setattr__(self, "spp", checked_samples(self.spp))
-        for name in ("time_limit", "noise"):
+        for name in ("time_limit", "noise", "clamp"):
             object.__setattr__(self, name, _checked_limit(name, getattr(self, name)))
+        if self.shutter != 0.0:
+            object.__setattr__(self, "shutter", _checked_limit("shutter", self.shutter, "0 or "))
+        if self.filter not in (None, *filters.NAMES):
+            known = ", ".join(filters.NAMES)
+            raise ValueError(f"there is no filter {self.filter!r:.40}; filters: {known}")
+        if self.filter in filters.SIGNED and self.transparent:
+            raise ValueError(
+                f"the negative weights of filter '{self.filter}' leave noise in alpha: give "
+                "another filter to a transparent picture"
+            )
 
-    def refinement(self, mode: str, samples: int | None) -> Refinement | None:
+    def refinement(self, mode: str, samples: int | None, shutter: float = 0.0) -> Refinement | None:
         """Return when a picture in mode "path" is finished; None in mode "direct".
 
         Args:
             mode: The scene's own mode.
             samples: Samples in each pixel, if they are given as for other pictures.
+            shutter: The scene's own shutter, in seconds.
 
         Raises:
             ValueError: An option for paths was given in mode "direct", or contradicts another.
         """
-        given = {n: getattr(self, n) for n in ("spp", "time_limit", "noise", "film")}
+        given = {name: getattr(self, name) for name in _OF_PATHS}
         if (self.mode or mode) != "path":
             for name, value in given.items():
-                if value is not None:
+                if value is not None and value is not False:
                     raise ValueError(f"{name} is for mode 'path'")
+            for name in self.layers:
+                if name in OF_SAMPLES:
+                    raise ValueError(f"the layer '{name}' is for mode 'path'")
             return None
         if self.view != "color":
             if self.mode is None:
@@ -94,7 +130,26 @@ class ViewOptions:
         limited = self.time_limit is not None or self.noise is not None
         count = self.spp or samples or (MOST_SAMPLES if limited else PATH_SAMPLES)
         film = None if self.film is None else Path(self.film)
-        return Refinement(samples=count, time_limit=self.time_limit, noise=self.noise, film=film)
+        return Refinement(
+            samples=count,
+            time_limit=self.time_limit,
+            noise=self.noise,
+            film=film,
+            shutter=shutter if self.shutter is None else self.shutter,
+            signed=self.filter in filters.SIGNED,
+            preview=self.preview,
+        )
+
+    @property
+    def path_settings(self) -> dict[str, Any]:
+        """The uniforms of a picture in mode "path" that differ from their defaults."""
+        return {} if self.clamp is None else {path_film.LARGEST: self.clamp}
+
+    @property
+    def recorded(self) -> dict[str, Any]:
+        """The options of mode "path" that a picture's file records, by name."""
+        given = {name: getattr(self, name) for name in RECORDED}
+        return {name: value for name, value in given.items() if value not in (None, False)}
 
     @property
     def steering_settings(self) -> dict[str, Any]:
@@ -121,8 +176,13 @@ class ViewOptions:
         return {"Slice_normal": direction.plain, "Slice_offset": distance.plain}
 
 
-def _checked_limit(name: str, value: object) -> float | None:
+def _checked_limit(name: str, value: object, also: str = "") -> float | None:
     """Return the limit, or None.
+
+    Args:
+        name: The name of the option.
+        value: The author's value.
+        also: What else is allowed, for the message.
 
     Raises:
         ValueError: It is no number above 0.
@@ -130,5 +190,5 @@ def _checked_limit(name: str, value: object) -> float | None:
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
-        raise ValueError(f"{name} is a number above 0, not {value!r:.40}")
+        raise ValueError(f"{name} is {also}a number above 0, not {value!r:.40}")
     return float(value)

@@ -209,6 +209,18 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
     _warn("the picture is black: no light comes from what the camera sees", scene)
 
 
+def warn_of_camera(scene: Any) -> None:
+    """Warn that direct light shows neither the camera's lens nor the scene's shutter.
+
+    Args:
+        scene: The scene, rendered in mode "direct".
+    """
+    if scene.camera.lens is not None:
+        _warn("the camera's aperture blurs in mode='path' only: everything is sharp", scene)
+    if scene.shutter > 0.0:
+        _warn("the scene's shutter blurs in mode='path' only: nothing moves", scene)
+
+
 def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
     """Warn if more than 0.1 % of a picture's pixels have rays that ended without an answer.
 

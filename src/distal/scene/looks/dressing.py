@@ -59,7 +59,7 @@ class FramingCamera(BaseCamera):
             "fov": look["fov_deg"] * (math.pi / 180.0),
             "margin": look["margin"],
         }
-        self._keep(call=scene_call(CAMERAS, framed, given, look.name, None))
+        self._keep(call=scene_call(CAMERAS, framed, given, look.name, None), lens=None)
 
 
 class Dressing:

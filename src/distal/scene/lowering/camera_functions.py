@@ -7,12 +7,15 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from distal.ir.nodes import Construct, Expr, FunctionRef, Return
-from distal.ir.types import FLOAT, VEC2, VEC3
-from distal.render import steer
+from distal.ir.build import field, integer, number
+from distal.ir.nodes import Call, Construct, Expr, FunctionRef, Return
+from distal.ir.types import FLOAT, VEC2, VEC3, Type
+from distal.render import camera, path_film, steer
+from distal.render.camera import Ray
+from distal.render.sampling import points
 from distal.scene import steering
 from distal.scene.lowering.ray_functions import Define
 from distal.scene.lowering.shapes import ShapeComposer
@@ -50,6 +53,39 @@ class CameraFunctions:
         """
         return self._steered(resolution) if steered else self._camera(resolution)
 
+    def exposed(self, resolution: Expr, *, steered: bool) -> FunctionRef:
+        """Return the function of a place in the picture and random numbers to a ray of the lens.
+
+        Args:
+            resolution: Size of the picture in pixels.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
+        composer, lens = self._composer, self._scene.camera.lens
+
+        def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
+            ray = self.ray(given["resolution"], steered=steered)
+            if lens is None:
+                return Call(ray.name, (given["uv"], *ray.captures), composer.assembly.struct(Ray))
+            decision = {**given, "decision": integer(path_film.PLACE_ON_LENS)}
+            target = self._scene.camera.number(composer, "target")
+            asked = {
+                **given,
+                "camera": ray,
+                "still": self._camera(given["resolution"]),
+                "target": number(0.0, VEC3) if target is None else target,
+                "zoom": field(self.steer(body, steering.PREFIX), "zoom")
+                if steered
+                else number(1.0),
+                "lens": lens.emit(composer, {}),
+                "u": composer.call(points.pair, decision),
+            }
+            return composer.call(camera.through_lens, asked)
+
+        name = "exposed_ray"
+        stream = composer.assembly.struct(points.Stream)
+        params = [("uv", VEC2), ("stream", stream), ("resolution", VEC2)]
+        return self._camera_function(name, make, resolution, params)
+
     def _steered(self, resolution: Expr) -> FunctionRef:
         """Return the camera moved by the numbers of a ``Steering``."""
 
@@ -64,9 +100,9 @@ class CameraFunctions:
 
     def lens(self, body: StatementList, resolution: Expr) -> Expr:
         """Return what a movement has to know of the camera, for a picture of some pixels."""
-        camera = self._scene.camera
+        own = self._scene.camera
         given = {"camera": self._camera(resolution), "up": self._up()}
-        given["pivot"] = camera.number(self._composer, "target") or self._pivot(body, given)
+        given["pivot"] = own.number(self._composer, "target") or self._pivot(body, given)
         return body.let("lens", self._composer.call(steer.lens, given))
 
     def steer(self, body: StatementList, prefix: str) -> Expr:
@@ -109,10 +145,17 @@ class CameraFunctions:
         name: str,
         make: Callable[[StatementList, Mapping[str, Expr]], Expr],
         resolution: Expr,
+        params: Sequence[tuple[str, Type]] = (("uv", VEC2), ("resolution", VEC2)),
     ) -> FunctionRef:
-        """Return a camera for a picture of this size; its function is defined once."""
+        """Return a camera for a picture of this size; its function is defined once.
+
+        Args:
+            name: The name of the function.
+            make: Makes its value.
+            resolution: Size of the picture in pixels.
+            params: Its parameters; the last one is the resolution.
+        """
         if name not in self._cameras:
-            params = [("uv", VEC2), ("resolution", VEC2)]
             self._cameras[name] = self._define(name, params, make, [resolution])
         known = self._cameras[name]
         return FunctionRef(known.name, (resolution,), known.type)

@@ -1,4 +1,4 @@
-"""Layers of a scene's picture besides color: depth, normal, albedo, material.
+"""Layers of a scene's picture besides color: depth, normal, albedo, material, and of its samples.
 
 Input: a scene and names of layers. Output: arrays, computed by programs of the library's scene
 code. Needs NumPy only to render layers.
@@ -21,7 +21,9 @@ from distal.scene.lowering.picture import SceneLowering
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
 
-NAMES: Final = tuple(LAYERS)
+# What a picture in mode "path" knows of its samples, not of the scene.
+OF_SAMPLES: Final = ("samples", "variance")
+NAMES: Final = (*LAYERS, *OF_SAMPLES)
 
 
 class Layer(Composed):
@@ -39,6 +41,30 @@ class Layer(Composed):
     def compose(self, assembly: Assembly) -> str:
         """Add the function that maps the frame to the layer's values, and return its name."""
         return SceneLowering(assembly, self._scene).layer(self._layer, steered=self._steered)
+
+    def functions(self) -> Iterable[Func]:
+        """Yield the scene functions that this object calls."""
+        return self._scene.functions()
+
+
+class PathLayer(Composed):
+    """One layer of a scene as the mean over samples, which follow mirrors and clear glass."""
+
+    kind: ClassVar[EntryKind] = EntryKind.IMAGE
+    signature = (("frame", FRAME),)
+    result = VEC4
+    refined = True
+
+    def __init__(self, scene: Scene, layer: str, filter: str, *, steered: bool) -> None:
+        copy_loaded_from(scene, self)
+        self.name = f"{scene.name} (layer {layer})"
+        self._scene, self._layer, self._filter = scene, layer, filter
+        self._steered = steered
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function that maps the frame to the layer's values, and return its name."""
+        made = SceneLowering(assembly, self._scene, paths=True)
+        return made.path_layer(self._layer, self._filter, steered=self._steered)
 
     def functions(self) -> Iterable[Func]:
         """Yield the scene functions that this object calls."""

@@ -27,11 +27,13 @@ from distal.lang.functions import Func
 from distal.render import (
     bounce,
     film,
+    filters,
     footprint,
     layers,
     legend,
     lettering,
     path_film,
+    path_layers,
     paths,
     ranges,
     settings,
@@ -77,6 +79,7 @@ RENDERERS: Final[dict[str, Func]] = {
 PATHS: Final[Func] = paths.path_light
 # The type checker infers only ``object`` for tables of different functions.
 LAYERS: Final = cast(Mapping[str, Func], layers.LAYERS)
+PATH_LAYERS: Final = cast(Mapping[str, Func], path_layers.PATH_LAYERS)
 LEGENDS: Final = cast(Mapping[str, Func], legend.LEGENDS)
 VIEWS: Final = cast(Mapping[str, Func], views.VIEWS)
 # The views whose values have a range, and the numbers of the range (``render.ranges``).
@@ -140,6 +143,7 @@ class SceneLowering:
         steered: bool = False,
         adaptive: bool = False,
         paths: bool = False,
+        filter: str = filters.NAMES[0],
     ) -> str:
         """Add the function that maps the frame to a pixel, and return its name.
 
@@ -149,8 +153,9 @@ class SceneLowering:
             sampled: Whether a pixel is the mean of ``Samples`` rays.
             encoded: Whether pixels are display values instead of linear light.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
-            adaptive: Whether it is rendered in two passes.
+            adaptive: Whether it is rendered in several passes, of all pixels or of a list.
             paths: Whether the light is that of random paths.
+            filter: The reconstruction filter of random paths.
         """
         frame = Read("frame", FRAME)
         body = StatementList(taken={"frame"})
@@ -182,9 +187,10 @@ class SceneLowering:
             given["step"] = self.composer.call(film.lattice_step, {"count": samples})
         exposed: Func = film.exposed_again if adaptive else film.exposed
         if paths:
-            exposed = path_film.exposed_paths
-            given["first_sample"] = self._assembly.number(film.FIRST_SAMPLE, INT, 0)
-            given |= {name: field(frame, name) for name in ("seed", "index")}
+            exposed = path_film.exposed_paths_again if adaptive else path_film.exposed_paths
+            given |= self._exposure(frame, resolution, filter, steered=steered)
+            if adaptive:
+                given["largest"] = self._assembly.number(path_film.LARGEST, FLOAT, UNBOUNDED)
         color = body.let("color", self.composer.call(exposed, given))
         if view in LEGENDS:
             title = self._assembly.constant(lettering.word(legend.TITLES[view]), IVEC4)
@@ -210,6 +216,47 @@ class SceneLowering:
             "places": assembly.resource(places, "Places"),
             "firsts": assembly.resource(firsts, "Firsts"),
         }
+
+    def _exposure(
+        self, frame: Expr, resolution: Expr, filter: str, *, steered: bool
+    ) -> dict[str, Expr]:
+        """Return what ``path_film.exposed_paths`` takes besides the values of ``film.exposed``.
+
+        Args:
+            frame: The frame.
+            resolution: Size of the picture in pixels.
+            filter: The name of the reconstruction filter.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
+        return {
+            "camera": self.camera.exposed(resolution, steered=steered),
+            "first_sample": self._assembly.number(film.FIRST_SAMPLE, INT, 0),
+            "filter": integer(filters.NAMES.index(filter)),
+            **{name: field(frame, name) for name in ("seed", "index")},
+        }
+
+    def path_layer(self, name: str, filter: str, *, steered: bool) -> str:
+        """Add the function that maps the frame to the mean of a layer, and return its name.
+
+        Args:
+            name: A name of ``path_layers.PATH_LAYERS``.
+            filter: The name of the reconstruction filter.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
+        frame = Read("frame", FRAME)
+        resolution = field(frame, "resolution")
+        given: dict[str, Expr] = {
+            "coord": field(frame, "coord"),
+            "resolution": resolution,
+            "cone": self._cone(resolution, "color", steered=steered),
+            "transparent": boolean(True),
+            "samples": self._assembly.number(film.SAMPLES, INT, 1),
+            "radiance": self._radiance(PATH_LAYERS[name], resolution, name, steered=steered),
+            **self._exposure(frame, resolution, filter, steered=steered),
+        }
+        value = self.composer.call(path_film.exposed_paths, given)
+        params = (Param("frame", FRAME),)
+        return self._assembly.define("layer", params, VEC4, (Return(value),), self._scene.place)
 
     def layer(self, name: str, *, steered: bool) -> str:
         """Add the function that maps the frame to a layer's values, and return its name.
@@ -374,7 +421,6 @@ class SceneLowering:
         """
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            follows = shown is PATHS
             known = self.given(body, given["resolution"], steered=steered, paths=follows)
             asked = {**known, **given}
             asked["counted"] = counted
@@ -398,10 +444,11 @@ class SceneLowering:
                 asked["identity"] = self._material_number(kind)
             return self.composer.call(shown, asked)
 
-        shines = shown is PATHS or shown in RENDERERS.values()
+        follows = shown is PATHS or shown in PATH_LAYERS.values()
+        shines = follows or shown in RENDERERS.values()
         struct = self._assembly.struct
         params: list[tuple[str, Type]] = [("ray", struct(Ray)), ("cone", struct(Cone))]
-        if shown is PATHS:
+        if follows:
             params.append(("stream", struct(Stream)))
         params.append(("resolution", VEC2))
         return self._function("radiance", params, make, (resolution,))

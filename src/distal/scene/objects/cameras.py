@@ -8,6 +8,7 @@ y up; by default a camera looks along -z.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
@@ -16,6 +17,7 @@ from distal.ir.nodes import Expr, Uniform
 from distal.ir.types import FLOAT
 from distal.lang import tan
 from distal.lang.expressions import Expression
+from distal.lang.functions import Func
 from distal.render import camera as library
 from distal.render.declarations import CAMERAS
 from distal.scene.objects.declared import (
@@ -25,7 +27,7 @@ from distal.scene.objects.declared import (
     scene_call,
 )
 from distal.scene.objects.scene_object import CalledObject
-from distal.scene.tree.calls import Composer
+from distal.scene.tree.calls import Composer, FunctionCall
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -43,11 +45,13 @@ class BaseCamera(CalledObject):
     Attributes:
         call: ``(uv) -> Ray``. uv.y is -1 to 1 from bottom to top; uv.x has the same unit. The
             function may also take ``resolution``, the size of the picture in pixels.
+        lens: ``() -> vec2``, the numbers of ``camera.thin_lens``; None for a pinhole.
     """
 
-    __slots__ = ()
+    __slots__ = ("lens",)
 
     noun: ClassVar[str] = "camera"
+    lens: FunctionCall | None
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         place, what, declaration = author_place(), type(self).__name__, self.declaration
@@ -55,7 +59,8 @@ class BaseCamera(CalledObject):
         angle = _angle(what, given.get("fov"), given.get("fov_deg"), place, declaration.widest)
         if angle is not None:
             given["fov"] = angle
-        self._keep(call=declared_call(declaration, given, place, what=what))
+        lens = _lens(what, given.get("aperture", 0.0), given.get("focus_distance"), place)
+        self._keep(call=declared_call(declaration, given, place, what=what), lens=lens)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
@@ -63,6 +68,12 @@ class BaseCamera(CalledObject):
     def number(self, composer: Composer, name: str) -> Expr | None:
         """Emit one of the camera's values, such as its target; None if it has no such value."""
         return self.call.value(composer, name) if name in self.call.values else None
+
+    def functions(self) -> Iterator[Func]:
+        """Yield the scene functions that the camera calls."""
+        yield from self.call.functions()
+        if self.lens is not None:
+            yield from self.lens.functions()
 
 
 class TurnedCamera(BaseCamera):
@@ -77,6 +88,10 @@ class TurnedCamera(BaseCamera):
         screen_distance: Distance of the screen from the eye; computed from ``fov`` by default.
         fov: Vertical field of view in radians, instead of ``screen_distance``.
         fov_deg: The same in degrees.
+        aperture: Diameter of the lens, in scene units; 0 for a pinhole, which shows everything
+            sharp. In mode "path" only.
+        focus_distance: The distance along the viewing direction at which everything is sharp, in
+            scene units; required if there is an aperture.
         mirror: Whether left and right are swapped, as in left-handed coordinate systems.
 
     Raises:
@@ -97,6 +112,8 @@ class TurnedCamera(BaseCamera):
         screen_distance: Number | None = None,
         fov: Number | None = None,
         fov_deg: Number | None = None,
+        aperture: Number = 0.0,
+        focus_distance: Number | None = None,
         mirror: bool = False,
     ) -> None:
         place = author_place()
@@ -122,7 +139,15 @@ class TurnedCamera(BaseCamera):
             "screen_distance": distance,
             "mirror": mirror,
         }
-        self._keep(call=scene_call(CAMERAS, library.turned, given, "TurnedCamera", place))
+        lens = _lens("TurnedCamera", aperture, focus_distance, place)
+        if lens is not None and focus_distance is None:
+            refuse_kind(
+                "TurnedCamera has no target to focus on",
+                "give the distance that is sharp: focus_distance=4.0",
+                place,
+            )
+        call = scene_call(CAMERAS, library.turned, given, "TurnedCamera", place)
+        self._keep(call=call, lens=lens)
 
 
 class PlacedCamera(BaseCamera):
@@ -138,6 +163,20 @@ CLASSES: Final = {
     for name, found in CAMERAS.members.items()
 }
 globals().update(CLASSES)
+
+
+def _lens(what: str, aperture: Any, focus: Any, place: Span | None) -> FunctionCall | None:
+    """Return the call of ``thin_lens``; None for a pinhole.
+
+    Args:
+        what: The name of the camera in messages.
+        aperture: The author's diameter of the lens.
+        focus: The author's distance of focus, or None.
+        place: The author's line.
+    """
+    given = {"aperture": aperture} | ({} if focus is None else {"focus_distance": focus})
+    call = scene_call(CAMERAS, library.thin_lens, given, what, place)
+    return None if call.values["aperture"].plain == 0.0 else call
 
 
 def _asked(name: str, place: Span | None) -> Asked:
