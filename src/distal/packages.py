@@ -70,6 +70,7 @@ PACKAGES: Final = (
     Package("av", "video", "video files"),
     Package("OpenEXR", "exr", "EXR files"),
     Package("anywidget", "notebook", "sliders in notebooks"),
+    Package("pyoidn", "denoise", "removing noise"),
     Package("fonttools", "text", "letters of fonts", "fontTools"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}

@@ -7,8 +7,10 @@ record of how it was made. Needs NumPy; scenes compile without this module.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.images.denoising import check_denoiser, denoised
 from distal.lang.render_options import Progress, Refinement, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.scene.checks.warnings import (
@@ -61,6 +63,10 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
         warn_of_camera(scene)
     else:
         settings |= view.path_settings
+    if refinement is not None and view.denoise:
+        check_denoiser()
+        guided = replace(options, settings=moved, progress=None, refinement=refinement)
+        refinement = replace(refinement, finish=partial(_denoised, scene, view, guided))
     asked = replace(options, settings=settings, progress=shares[0], refinement=refinement)
     asked = with_range(image, asked)
     picture = executor().render(image, asked)
@@ -93,6 +99,12 @@ def _check_visible(
         message = f"the camera is inside '{scene.subject.name}', and no ray finds a way out"
         refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
     warn_of_black(scene, picture, options.params, options.time)
+
+
+def _denoised(scene: Scene, view: ViewOptions, options: RenderOptions, light: Any) -> Any:
+    """Return linear light without noise, guided by layers of the same samples."""
+    albedo, normal = (_layer(scene, name, view, options) for name in ("albedo", "normal"))
+    return denoised(light, albedo, normal)
 
 
 def _layer(scene: Scene, name: str, view: ViewOptions, options: RenderOptions) -> Any:
