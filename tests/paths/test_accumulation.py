@@ -16,8 +16,10 @@ from distal import PointLight, Scene, Sphere
 from distal.devices.base import Cancelled
 from distal.images.atomic_files import SaveError
 from distal.images.picture_files import read
-from distal.lang.render_options import Refinement
+from distal.lang.render_options import Refinement, RenderOptions
+from distal.lang.runtime_access import executor
 from distal.runtime import film_files
+from distal.runtime import passes as runtime_passes
 from distal.runtime.accumulation import Film, accumulate
 from distal.runtime.allocation import MOST_OF_A_PASS, next_pass
 
@@ -255,3 +257,80 @@ def test_a_picture_knows_how_it_was_made(tmp_path):
     picture(4).save(file)
     origin = read(file).provenance
     assert (origin.mode, origin.samples) == ("path", 4)
+
+
+def test_long_runs_do_not_drift(tmp_path):
+    """10,000 samples in 8x8 pixels: both halves agree, and the sums are those of one run."""
+    lamp = PointLight((2, 3, 4), intensity=9.0, radius=1.0)
+    made = Scene(Sphere(), lights=lamp, floor=True)
+
+    def film(samples):
+        program, _ = made.program("color", None, mode="path")
+        options = RenderOptions(
+            size=(8, 8), seed=SEED, refinement=Refinement(samples=samples, film=kept)
+        )
+        executor().render(program, options)
+        with np.load(kept) as found:
+            return found["sums"].copy(), found["spread"].copy()
+
+    kept = tmp_path / "split.film"
+    half, half_spread = film(4992)  # a multiple of a pass
+    whole, _ = film(10000)
+    kept = tmp_path / "whole.film"
+    unbroken, _ = film(10000)
+    assert np.array_equal(whole, unbroken)
+    first, second = half / 4992, (whole - half) / 5008
+    deviation = np.sqrt(half_spread / (4992 / 16) / 4992)
+    apart = (first - second)[..., :3] @ (0.2126, 0.7152, 0.0722)
+    # The error of the difference is that of both halves.
+    assert np.abs(apart / (np.sqrt(2.0) * deviation + 1e-9)).max() < 4.0
+    assert np.abs(apart).mean() < 1e-3
+    assert np.array_equal(first[..., 3], second[..., 3])
+
+
+def test_bright_samples_are_clamped_and_it_is_said():
+    plain, clamped = picture(32), picture(32, clamp=0.2)
+    assert "clamp" not in plain.stats and clamped.stats["clamp"] == 0.2
+    assert clamped.linear[..., :3].max() <= 0.2 + 1e-6 < plain.linear[..., :3].max()
+    dark = plain.linear[..., :3].max(axis=-1) < 0.02
+    assert np.allclose(plain.linear[dark], clamped.linear[dark], atol=2e-3)
+    assert np.array_equal(picture(8, clamp=1e6).linear, picture(8).linear)
+
+
+def test_previews_show_the_samples_so_far(monkeypatch):
+    monkeypatch.setattr(runtime_passes, "PREVIEW_S", 0.0)
+    monkeypatch.setattr(runtime_passes, "_PREVIEW_SHARE", 0.0)
+    seen = []
+    whole = picture(16, preview=seen.append)
+    assert [made.stats["samples"] for made in seen] == [1, 2, 4, 8, 16]
+    assert np.array_equal(seen[-1].linear, whole.linear)
+    assert np.array_equal(seen[-1].array, whole.array)
+    assert seen[0].linear.shape == whole.linear.shape
+
+
+def test_previews_take_a_small_part_of_the_time(monkeypatch):
+    clock = [0.0]
+    monkeypatch.setattr(runtime_passes.time, "monotonic", lambda: clock[0])
+    shown = []
+
+    def slow(film):
+        clock[0] += 1.0
+        shown.append(clock[0])
+
+    previews = runtime_passes.Previews(slow)
+    for _ in range(200):
+        clock[0] += 1.0
+        previews.show(Film.empty(1, 1))
+    assert 3.0 <= shown[0] <= 4.0 and np.diff(shown).min() >= 20.0
+
+
+def test_a_preview_is_shown_when_the_work_is_broken_off():
+    seen, stop = [], threading.Event()
+
+    def watch(share):
+        if share > 0.3:
+            stop.set()
+
+    with pytest.raises(Cancelled):
+        picture(512, progress=watch, cancel=stop, preview=seen.append)
+    assert len(seen) == 1 and seen[0].stats["samples"] >= 16

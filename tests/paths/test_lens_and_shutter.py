@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from distal import (
     Box,
@@ -19,6 +20,7 @@ from distal import (
 from distal import time as scene_time
 from distal.lang import slider
 from distal.scene.steering import Steering
+from distal.video.formats import VideoError
 
 WHITE = emissive((1.0, 1.0, 1.0))
 FOV = 2.0 * np.arctan(0.1)  # at distance 10 the picture is 2 high
@@ -181,3 +183,20 @@ def test_what_is_refused(make, message):
     with pytest.raises((ValueError, TypeError)) as caught:
         make()
     assert message in str(caught.value)
+
+
+def test_frames_of_a_video_are_blurred(tmp_path):
+    bar = Box((0.5, 8.0, 0.1)).translate(x=8.0 * scene_time).paint(WHITE)
+    camera = OrthographicCamera((0.0, 0.0, 5.0), height=4.0)
+    made = {"lights": (), "camera": camera, "background": (0.0, 0.0, 0.0), "floor": False}
+    scene = Scene(bar, **made, mode="path")
+    shots = {"duration": 0.2, "fps": 10, "size": (16, 16), "samples": 16}
+    scene.video(tmp_path / "blurred" / "%d.png", shutter=0.05, **shots)
+    still = scene.render((16, 16), time=0.1, index=1, samples=16, shutter=0.05)
+    frame = np.asarray(Image.open(tmp_path / "blurred" / "1.png"), float)[..., :3] / 255.0
+    assert np.abs(frame - still.array[..., :3]).max() < 0.003
+    scene.video(tmp_path / "sharp" / "%d.png", **shots)
+    sharp = np.asarray(Image.open(tmp_path / "sharp" / "1.png"), float)[..., :3] / 255.0
+    assert np.abs(frame - sharp).max() > 0.2
+    with pytest.raises(VideoError, match="shutter is for mode 'path'"):
+        Scene(bar, **made).video(tmp_path / "direct" / "%d.png", shutter=0.05, **shots)

@@ -225,7 +225,7 @@ def render(
 ) -> None:
     """Render a scene, a shape or an image to a picture."""
     from distal.cli.messages import say
-    from distal.cli.preview import PreviewFile
+    from distal.cli.preview import PreviewFile, described
     from distal.cli.report import ProgressBar, stages
     from distal.images.picture import check_savable
     from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
@@ -273,6 +273,10 @@ def render(
         answer(json.dumps(figures))
     else:
         say(f"{output}: {picture.width}x{picture.height}; {stages(figures)}")
+        if picture.stats.get("noise") is not None:
+            say(described(picture.stats))
+        if clamp is not None:
+            say(f"samples brighter than {clamp:g} were scaled to it: the picture is biased")
 
 
 def read_view(

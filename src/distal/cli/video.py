@@ -53,6 +53,14 @@ def video(
         str, typer.Option("--start", "--time", metavar="S", help="When the first frame is.")
     ] = "0",
     samples: SamplesOption = None,
+    shutter: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            help="In mode path: the shutter is open for S seconds in each frame.",
+            show_default=False,
+        ),
+    ] = None,
     loop: Annotated[
         bool,
         typer.Option("--loop", help="Repeat gif, apng and webp without end; say if it jumps."),
@@ -102,6 +110,7 @@ def video(
                 params=values,
                 view=view,
                 samples=samples,
+                shutter=shutter,
                 loop=loop,
                 quality=quality or "high",
                 device=device_name,

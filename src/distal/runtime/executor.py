@@ -506,6 +506,8 @@ def _preview_of(
     preview = refinement.preview
     if preview is None:
         return None
+    # It is also shown when the work was cancelled.
+    passes = replace(passes, options=replace(passes.options, cancel=None))
 
     def show(exposed: accumulation.Film) -> None:
         linear = exposed.light

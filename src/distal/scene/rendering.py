@@ -78,6 +78,8 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
         name: _layer(scene, name, view, replace(asked, settings=moved, progress=share))
         for name, share in zip(computed, shares[1:], strict=True)
     } | of_samples
+    if refinement is not None and view.clamp is not None:
+        picture = replace(picture, stats={**picture.stats, "clamp": view.clamp})
     return picture.with_layers(layers).with_provenance(
         view=view.view,
         mode="direct" if refinement is None else "path",

@@ -13,12 +13,18 @@ from typing import TYPE_CHECKING, Any
 from distal.images.picture import Picture
 from distal.ir.nodes import Origin
 from distal.lang.chosen_values import checked_values
-from distal.lang.render_options import RenderOptions
+from distal.lang.render_options import Refinement, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.render import film
 from distal.runtime.fingerprints import fingerprint
 from distal.runtime.lowered import Lowered
-from distal.scene.checks.warnings import check_slopes, warn_of_black, warn_of_functions
+from distal.scene.checks.warnings import (
+    check_slopes,
+    warn_of_black,
+    warn_of_camera,
+    warn_of_functions,
+)
+from distal.scene.view_options import ViewOptions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
 from distal.video.formats import VideoError
@@ -82,7 +88,9 @@ class MovingPicture:
             warn_of_black(self._scene, picture, self.parameters, time)
 
 
-def moving_picture(obj: Any, options: RenderOptions, view: str) -> MovingPicture:
+def moving_picture(
+    obj: Any, options: RenderOptions, view: str, shutter: float | None = None
+) -> MovingPicture:
     """Return the animated picture of an object.
 
     Args:
@@ -90,6 +98,7 @@ def moving_picture(obj: Any, options: RenderOptions, view: str) -> MovingPicture
         options: How to render each frame. The default scene of a single shape fits the size of
             the shape at this time and for these parameters.
         view: One of its views.
+        shutter: Seconds that the shutter is open; None: as the scene says.
 
     Raises:
         LoadError: The object is not a picture.
@@ -97,6 +106,7 @@ def moving_picture(obj: Any, options: RenderOptions, view: str) -> MovingPicture
     """
     shown = viewable(obj, options.params, options.time)
     image, settings = _image(shown, view, options.samples)
+    refinement = _refinement(shown, view, options.samples, shutter)
     lowered = Lowered.of(image, None)
     values = _values(shown, lowered, options.params)
     # The range of the first frame's values, for all frames: it does not flicker.
@@ -105,10 +115,12 @@ def moving_picture(obj: Any, options: RenderOptions, view: str) -> MovingPicture
     if shown.scene is not None:
         check_slopes(shown.scene.shape, values, options.time)
         warn_of_functions(shown.scene.shape, values, options.time)
+        if refinement is None and view == COLOR:
+            warn_of_camera(shown.scene)
     return MovingPicture(
         name=shown.name,
-        options=replace(options, params=values, settings=settings),
-        fingerprint=_fingerprint(lowered, {**settings, film.SAMPLES: options.samples}),
+        options=replace(options, params=values, settings=settings, refinement=refinement),
+        fingerprint=_fingerprint(lowered, _asked(settings, options, refinement)),
         source_hash=lowered.source_hash,
         _image=image,
         _scene=shown.scene,
@@ -129,6 +141,38 @@ def _image(
         return shown.scene.program(view, samples, encoded=True)
     except ValueError as error:
         raise VideoError(str(error)) from None
+
+
+def _refinement(
+    shown: Viewable, view: str, samples: int | None, shutter: float | None
+) -> Refinement | None:
+    """Return when a frame in mode "path" is finished; None in mode "direct".
+
+    Args:
+        shown: The object.
+        view: One of its views.
+        samples: Samples in each pixel, or None.
+        shutter: Seconds that the shutter is open; None: as the scene says.
+    """
+    if shown.scene is None:
+        if shutter is not None:
+            raise VideoError("shutter is for scenes in mode 'path'")
+        return None
+    try:
+        asked = ViewOptions(view=view, shutter=shutter)
+        return asked.refinement(shown.scene.mode, samples, shown.scene.shutter)
+    except ValueError as error:
+        raise VideoError(str(error)) from None
+
+
+def _asked(
+    settings: Mapping[str, Any], options: RenderOptions, refinement: Refinement | None
+) -> dict[str, Any]:
+    """Return the numbers of a frame that its program does not contain, for the fingerprint."""
+    asked = {**settings, film.SAMPLES: options.samples}
+    if refinement is not None and refinement.shutter > 0.0:
+        asked["shutter"] = refinement.shutter
+    return asked
 
 
 def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dict[str, Any]:

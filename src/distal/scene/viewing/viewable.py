@@ -27,6 +27,7 @@ from distal.scene.lowering.picture import SceneLowering
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.steering import STILL, Steering
+from distal.scene.view_options import ViewOptions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.stage import stage
@@ -146,6 +147,9 @@ class Viewable:
         else:
             image, sampled = self.scene.program(view, options.samples, steered=steering is not None)
             settings = {**moved, **sampled}
+            asked = ViewOptions(view=view, steering=steering)
+            refinement = asked.refinement(self.scene.mode, options.samples, self.scene.shutter)
+            options = replace(options, refinement=refinement)
         picture = executor().render(image, with_range(image, replace(options, settings=settings)))
         numbers = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
