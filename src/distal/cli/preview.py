@@ -57,7 +57,7 @@ class PreviewFile:
 def described(figures: Mapping[str, Any]) -> str:
     """Return a text like "48 samples, error 0.012" of a picture's statistics."""
     count = figures["samples"]
-    text = "1 sample" if count == 1 else f"{count:.4g} samples"
+    text = "1 sample" if count == 1 else f"{round(count, 1):g} samples"
     return text if figures["noise"] is None else f"{text}, error {figures['noise']:.2g}"
 
 
