@@ -18,7 +18,7 @@ import distal
 from distal import Box, Camera, Plane, PointLight, Scene, Sphere, glass
 from distal.runtime import allocation
 
-SIZE = (96, 72)
+SIZE = (80, 64)
 
 
 def lamp_and_glass() -> Scene:
@@ -43,10 +43,10 @@ def error(picture, truth) -> float:
 
 def main() -> None:
     """Print the table."""
-    many = int(sys.argv[1]) if len(sys.argv) > 1 else 8192
+    many = int(sys.argv[1]) if len(sys.argv) > 1 else 4096
     adaptive = allocation.wanted
-    scenes = {"still life": (distal.load("example:still_life"), (0.03, 0.02))}
-    scenes["lamp and glass"] = (lamp_and_glass(), (0.03, 0.015))
+    scenes = {"lamp and glass": (lamp_and_glass(), (0.05, 0.02))}
+    scenes["still life"] = (distal.load("example:still_life"), (0.04,))
     print("scene, estimated error: way, samples, CPU s, true error")
     for name, (scene, goals) in scenes.items():
         truth = scene.render(SIZE, mode="path", spp=many, seed=1)
