@@ -37,9 +37,10 @@ GOLDEN = 0.6180339887
 # Adaptive sampling: a pixel whose contrast is larger gets so many samples besides the first one.
 CONTRAST: Final = 0.04
 MORE_SAMPLES: Final = 8
-# The CPU computes blocks of 4x16 pixels together. In strips of 4 columns, these are neighbours in
-# the list: the second pass of still_life takes 2100 ms instead of 3150 ms with rows of 64 pixels.
-STRIP_PX: Final = 4
+# The CPU computes blocks of 8x8 pixels together, with AVX2 of 8x4. In strips of 8 columns, these
+# are neighbours in the list. In strips of 4, half of a block is empty: still_life takes 1.25 times
+# as long.
+STRIP_PX: Final = 8
 # The uniforms of programs with several samples; ``PASS_NUMBERS`` differ between two passes.
 SAMPLES: Final = "Samples"
 AGAIN: Final = "Again"
