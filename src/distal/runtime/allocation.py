@@ -110,7 +110,8 @@ def wanted(film: Measured, refinement: Refinement) -> NDArray[np.float64]:
         return np.full(tiles.shape, float(FEWEST_SAMPLES))
     deviation = np.sqrt(_with_neighbors(over_tiles(film.relative_variance)))
     mean = np.average(deviation, weights=_tile_sizes(film.samples.shape))
-    return np.maximum(deviation * (mean / refinement.noise**2), FEWEST_SAMPLES)
+    needed: NDArray[np.float64] = deviation * (mean / refinement.noise**2)
+    return np.maximum(needed, float(FEWEST_SAMPLES))
 
 
 def share_done(film: Measured, refinement: Refinement) -> float:

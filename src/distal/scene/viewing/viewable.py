@@ -147,8 +147,8 @@ class Viewable:
         else:
             image, sampled = self.scene.program(view, options.samples, steered=steering is not None)
             settings = {**moved, **sampled}
-            asked = ViewOptions(view=view, steering=steering)
-            refinement = asked.refinement(self.scene.mode, options.samples, self.scene.shutter)
+            chosen = ViewOptions(view=view, steering=steering)
+            refinement = chosen.refinement(self.scene.mode, options.samples, self.scene.shutter)
             options = replace(options, refinement=refinement)
         picture = executor().render(image, with_range(image, replace(options, settings=settings)))
         numbers = steering.numbers if steering is not None and self.steers else None
