@@ -22,6 +22,7 @@ SIZE = (80, 64)
 
 
 def lamp_and_glass() -> Scene:
+    """Return a small lamp over a ball of glass."""
     lamp = PointLight((1.0, 3.0, 0.5), intensity=12.0, radius=0.3)
     ball = Sphere(0.5).translate(y=0.7).paint(glass())
     block = Box((0.4, 0.4, 0.4)).translate((-1.0, 0.2, 0.0))
@@ -36,6 +37,7 @@ def uniform(film, refinement):
 
 
 def error(picture, truth) -> float:
+    """Return the root mean square of the luma's error, as ``noise`` counts it."""
     apart = (picture.linear - truth.linear)[..., :3].astype(float) @ (0.2126, 0.7152, 0.0722)
     bright = truth.linear[..., :3].astype(float) @ (0.2126, 0.7152, 0.0722)
     return float(np.sqrt(np.mean((apart / np.maximum(bright, 1.0)) ** 2)))

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import distal
+from distal import Camera, PointLight, Scene, Sphere
 from distal.lang import Frame, image, ivec2, normalize, select, vec3, vec4
+from distal.lang.composed import Composed
 from distal.lang.render_options import RenderOptions
 from distal.render import scatter
 from distal.render.material import Surface
@@ -58,6 +60,24 @@ def expected(number: int) -> np.ndarray:
     return PythonExecutor().render(what, options).array
 
 
+@cache
+def film() -> tuple[Composed, np.ndarray]:
+    """One sample of paths through a lens, placed by a filter; on the CPU."""
+    lamp = PointLight((2.0, 3.0, 4.0), intensity=9.0, radius=1.0)
+    scene = Scene(Sphere(), lights=lamp, camera=Camera(aperture=0.2), floor=True)
+    made = scene.render(SIZE, mode="path", spp=1, filter="mitchell").linear
+    # The program gives light times alpha, and the weight as alpha.
+    return scene.view("color", paths=True, filter="mitchell"), made[..., :3]
+
+
+def compare_film(found: np.ndarray) -> None:
+    straight = found[..., :3] / np.where(found[..., 3:] > 0.0, found[..., 3:], 1.0)
+    known = (found[..., 3:] > 0.0) & (found[..., 3:] < 1.5)
+    off = np.where(known, np.abs(straight - film()[1]), 0.0).max(-1)
+    assert known.mean() > 0.8
+    assert np.quantile(off, 0.98) < 2e-3
+
+
 def compare(found: np.ndarray, number: int) -> None:
     if number == 0:
         assert np.array_equal(found, expected(0))
@@ -90,3 +110,19 @@ def test_wgsl(number: int) -> None:
         pytest.skip(str(error))
     text = distal.compile((numbers, scattered)[number], "wgsl")
     compare(gpu.run_wgsl(text, SIZE, path="fragment"), number)
+
+
+def test_film_of_glsl() -> None:
+    try:
+        egl.context()
+    except egl.EglUnavailableError as error:
+        pytest.skip(str(error))
+    compare_film(run_glsl(distal.compile(film()[0], "glsl-es300"), SIZE))
+
+
+def test_film_of_wgsl() -> None:
+    try:
+        gpu.device()
+    except gpu.GpuUnavailableError as error:
+        pytest.skip(str(error))
+    compare_film(gpu.run_wgsl(distal.compile(film()[0], "wgsl"), SIZE, path="fragment"))
