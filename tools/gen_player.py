@@ -235,14 +235,21 @@ def bindings() -> str:
     shared = [b for b in BINDINGS if b.in_page]
     actions = [camel(a) for b in shared for a in (b.action, b.opposite) if a is not None]
     names = " | ".join(f'"{action}"' for action in actions)
-    keys = {key: camel(b.action) for b in shared for key in b.keys}
+    keys = {key: camel(b.action) for b in shared for key in b.keys if not b.in_path_page}
+    own = {key: camel(b.action) for b in shared for key in b.keys if b.in_path_page}
     opposites = {key: camel(b.opposite) for b in shared if b.opposite for key in b.keys}
     lines = [[h.keys, h.meaning, camel(h.needs)] for h in HELP if h.in_page]
     rows, turned = (
         "".join(f"  {json.dumps(key)}: {json.dumps(table[key])},\n" for key in table)
         for table in (keys, opposites)
     )
-    helps = "".join(f"  {json.dumps(line, ensure_ascii=False)},\n" for line in lines)
+    rows += f"  ...(PATHS && {json.dumps(own)}),\n"
+    texts = [json.dumps(line, ensure_ascii=False) for line in lines]
+    of_paths = [line[2] in own.values() for line in lines]
+    helps = "".join(
+        f"  ...(PATHS ? [{text} as const] : []),\n" if own_line else f"  {text},\n"
+        for text, own_line in zip(texts, of_paths, strict=True)
+    )
     return (
         f"{NOTE.format('scene/viewing/key_bindings.py')}\nexport type Action = {names};\n\n"
         f"export const KEYS: Record<string, Action> = {{\n{rows}}};\n\n"

@@ -1,6 +1,6 @@
-// Builds the player: src/main.ts -> one minified ES module.
+// Builds the player: src/main.ts -> one minified ES module, and another one that also traces paths.
 //
-//   node build.mjs [OUTPUT]     default: ../src/distal/export/player.js
+//   node build.mjs [FOLDER]     default: ../src/distal/export
 //
 // The output is committed, so that nobody needs Node to export a page; a test builds it again and
 // compares the bytes. Nothing of this machine goes in: no paths, no dates, no source map.
@@ -32,16 +32,20 @@ const styles = {
   },
 };
 
-await build({
-  absWorkingDir: here,
-  entryPoints: ["src/main.ts"],
-  outfile: argv[2] ?? join(here, "../src/distal/export/player.js"),
-  bundle: true,
-  minify: true,
-  format: "esm",
-  target: "es2022",
-  charset: "utf8",
-  legalComments: "none",
-  plugins: [styles],
-  logLevel: "warning",
-});
+const folder = argv[2] ?? join(here, "../src/distal/export");
+for (const [name, paths] of [["player.js", "false"], ["path_player.js", "true"]]) {
+  await build({
+    absWorkingDir: here,
+    entryPoints: ["src/main.ts"],
+    outfile: join(folder, name),
+    define: { PATHS: paths },
+    bundle: true,
+    minify: true,
+    format: "esm",
+    target: "es2022",
+    charset: "utf8",
+    legalComments: "none",
+    plugins: [styles],
+    logLevel: "warning",
+  });
+}

@@ -18,6 +18,7 @@ await build({
   outdir: folder,
   outExtension: { ".js": ".mjs" },
   bundle: true,
+  define: { PATHS: "true" },
   platform: "node",
   format: "esm",
   target: "node20",

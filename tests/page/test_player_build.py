@@ -16,8 +16,12 @@ import pytest
 ROOT = Path(__file__).parents[2]
 WEB = ROOT / "web"
 PLAYER = ROOT / "src" / "distal" / "export" / "player.js"
+PATH_PLAYER = PLAYER.with_name("path_player.js")
+SCRIPTS = (PLAYER, PATH_PLAYER)
 # Packed it has 31 kB, so that the page of the raymarcher stays below its 60 kB.
 LARGEST_BYTES = 60_000
+# What the other player has besides.
+PATHS_BYTES = 5_000
 INSTALL_S = 100
 RUN_S = 60
 
@@ -44,7 +48,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
         # A lock that does not fit package.json is a fault; a registry out of reach is not.
         assert "EUSAGE" not in installed.stderr, installed.stderr
         pytest.skip(f"npm gets no packages here: {installed.stderr.splitlines()[-1:]}")
-    run(folder, "node", "build.mjs", "out.js")
+    run(folder, "node", "build.mjs", "out")
     return folder
 
 
@@ -54,9 +58,10 @@ def run(folder: Path, *command: str) -> str:
     return done.stdout
 
 
-def test_the_committed_script_is_fresh(built: Path) -> None:
-    assert (built / "out.js").read_bytes() == PLAYER.read_bytes(), (
-        "web/ changed: run `npm ci && npm run build` in web/ and commit src/distal/export/player.js"
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
+def test_the_committed_scripts_are_fresh(built: Path, script: Path) -> None:
+    assert (built / "out" / script.name).read_bytes() == script.read_bytes(), (
+        f"web/ changed: run `npm ci && npm run build` in web/ and commit src/distal/export/{script.name}"
     )
 
 
@@ -68,9 +73,15 @@ def test_its_pure_parts_pass_their_own_tests(built: Path) -> None:
     assert "# fail 0" in run(built, "npm", "run", "--silent", "test")
 
 
-def test_it_is_small_and_asks_for_nothing() -> None:
-    text = PLAYER.read_text(encoding="utf-8")
-    assert len(text.encode()) <= LARGEST_BYTES
+def test_pages_without_paths_do_not_carry_them() -> None:
+    texts = [script.read_text(encoding="utf-8") for script in SCRIPTS]
+    assert ["Film_offset" in text for text in texts] == [False, True]
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
+def test_it_is_small_and_asks_for_nothing(script: Path) -> None:
+    text = script.read_text(encoding="utf-8")
+    assert len(text.encode()) <= LARGEST_BYTES + (PATHS_BYTES if script == PATH_PLAYER else 0)
     # The only address is the name of SVG's vocabulary, which nobody fetches.
     assert set(re.findall(r"https?://[^\"'`\s]*", text)) == {"http://www.w3.org/2000/svg"}
     for word in ("fetch(", "XMLHttpRequest", "WebSocket", "import(", "innerHTML", "sourceMapping"):

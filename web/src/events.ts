@@ -14,6 +14,8 @@ export interface Events {
   view: { name: string };
   steering: Steering;
   error: { message: string; log: string };
+  /** Of a page with paths: whether direct light is shown instead. */
+  mode: { isDirect: boolean };
   /** The panel opened or closed. */
   panel: { isOpen: boolean };
   frame: FrameReport & { time: number; view: string };

@@ -225,6 +225,7 @@ export class Frame {
   #has(needs: Needs): boolean {
     const { payload, camera, readsMouse } = this.#player;
     if (needs === "camera") return !!camera;
+    if (PATHS && needs === "mode") return payload.views.some(({ film }) => film);
     if (needs === "mouse") return readsMouse;
     if (["pause", "back", "begin", "slower"].includes(needs)) return payload.time.animated;
     if (needs === "nextView") return payload.views.length > 1;

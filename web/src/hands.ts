@@ -87,7 +87,7 @@ export class Hands implements Hand {
 type Moves = Omit<
   Actions,
   | ("pause" | "nextView" | "lastView" | "fullScreen" | "screenshot" | "parameters" | "help")
-  | "copyCamera"
+  | ("copyCamera" | "mode")
 >;
 
 /** What keys do to the camera and the time; `timed` and `sped` are called after the clock changed. */

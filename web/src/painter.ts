@@ -13,9 +13,10 @@ import { trusted, trusting } from "./trust";
 import { setUniforms, type Inputs } from "./uniforms";
 import { gpuDone } from "./waiting";
 
-interface Target {
+export interface Target {
   frame: WebGLFramebuffer;
-  pixels: WebGLRenderbuffer;
+  /** Null where a texture is drawn onto. */
+  pixels: WebGLRenderbuffer | null;
   width: number;
   height: number;
 }
@@ -124,8 +125,9 @@ export class Painter {
   draw(program: Linked, inputs: Inputs, size: [number, number], from: number, columns: number): void {
     const { gl } = this;
     const [width, height] = size;
-    resize(gl, this.#work, width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.#work.frame);
+    const target = (PATHS && program.film?.onto) || this.#work;
+    resize(gl, target, width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
     gl.viewport(0, 0, width, height);
     gl.enable(gl.SCISSOR_TEST);
     gl.scissor(from, 0, columns, height);

@@ -56,6 +56,16 @@ export interface Program {
   trust: Record<string, string>;
   lines: LineRange[];
   vertex_lines: LineRange[];
+  /** Its light by random paths; left out where that is not wanted. */
+  film?: FilmPrograms | undefined;
+}
+
+/** The programs of a film: one adds samples to it, one shows it. */
+export interface FilmPrograms {
+  trace: Program;
+  show: Program;
+  /** The texture that is the film. */
+  name: string;
 }
 
 export type Format = "rgba8" | "float16" | "float32" | "int32" | "uint32";
@@ -72,6 +82,8 @@ export interface View {
   name: string;
   label: string;
   program: number;
+  /** The numbers of the programs of its film, where its light is that of random paths. */
+  film?: { trace: number; show: number; name: string };
 }
 
 /** How a scene's camera is written as Python. */

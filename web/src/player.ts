@@ -56,6 +56,8 @@ export class Player {
   #ticked = 0;
   #held = false;
   #isGone = false;
+  /** Of a page with paths: whether direct light is shown instead. */
+  declare isDirect?: boolean;
 
   constructor(
     readonly host: HTMLElement,
@@ -88,6 +90,13 @@ export class Player {
       parameters: () => !this.payload.embed && done(this.togglePanel()),
       help: () => done(this.showHelp()),
       copyCamera: () => !!this.camera && done(void this.copyCamera()),
+      ...((PATHS && {
+        mode: () => {
+          this.isDirect = !this.isDirect;
+          this.#emitter.emit("mode", { isDirect: this.isDirect });
+          return done(this.#compile());
+        },
+      }) as Pick<Actions, "mode">),
     };
     for (const parameter of parameters) {
       const given = checked(parameter, payload.values[parameter.name]);
@@ -248,7 +257,8 @@ export class Player {
     const steering = this.camera?.moved ? this.camera.steering : null;
     // `render` begins at 0, wherever the page does; that of an `@image` knows no views.
     const view = this.camera ? this.#view : "color";
-    return pythonOf(parameters, this.#values, time.animated ? this.time : 0, view, steering);
+    const text = pythonOf(parameters, this.#values, time.animated ? this.time : 0, view, steering);
+    return PATHS && view === "color" ? `${text}, mode="${this.isDirect ? "direct" : "path"}"` : text;
   }
 
   async copyCode(): Promise<void> {
@@ -377,6 +387,11 @@ export class Player {
   #compile(): void {
     const view = this.payload.views.find(({ name }) => name === this.#view)!;
     const program = this.#programs[view.program];
+    if (PATHS && program && view.film) {
+      const { trace, show, name } = view.film;
+      const film = { trace: this.#programs[trace]!, show: this.#programs[show]!, name };
+      program.film = this.isDirect ? undefined : film;
+    }
     if (program) void this.#renderer.use(program);
   }
 
@@ -421,6 +436,13 @@ export class Player {
       },
       drawn: (report) => player.#drawn(report),
       state: (state, error) => player.#enter(state, error),
+      ...(PATHS && {
+        noPaths: (error: unknown) => {
+          player.#frame.notices.brief(`${String((error as Error).message)}: direct light is shown.`);
+          player.isDirect = true;
+          player.#emitter.emit("mode", { isDirect: true });
+        },
+      }),
     };
   }
 

@@ -5,6 +5,7 @@
  * `ShaderError` with the driver's words and the table that maps them to the author's lines.
  */
 
+import type { FilmUse } from "./paths";
 import type { LineRange, Program, UniformEntry } from "./payload";
 import { nextFrame, pause } from "./waiting";
 
@@ -12,6 +13,8 @@ export interface Linked {
   source: Program;
   handle: WebGLProgram;
   uniforms: [UniformEntry, WebGLUniformLocation][];
+  /** Of a program of a film: what it reads and draws. */
+  film?: FilmUse;
 }
 
 export class ShaderError extends Error {

@@ -3,17 +3,20 @@
  *
  * Input: "something changed", the view's program, whether anybody looks. Output: pictures, as sharp as
  * time allows: small ones while things move, a full one, in bands, once they rest, then with more
- * samples for each pixel, where the program can take them. Nothing is drawn when nothing changed, when the canvas is out of sight, or while the context is lost.
+ * samples for each pixel, where the program can take them. A program with a film shows direct light
+ * while things move, and random paths once they rest. Nothing is drawn when nothing changed, when the
+ * canvas is out of sight, or while the context is lost.
  */
 
 import { Painter } from "./painter";
+import { Paths } from "./paths";
 import type { Payload, Program } from "./payload";
 import { LostError, type Linked } from "./program";
 import { PACKED, PROBE, hasRange, rangeOf } from "./range";
 import { PROBE_PIXELS, Resolution } from "./resolution";
 import { forget } from "./trust";
 import type { Given, Inputs } from "./uniforms";
-import { gpuDone, nextFrame } from "./waiting";
+import { gpuDone, nextFrame, soonFrame } from "./waiting";
 
 export type State = "waiting" | "compiling" | "ready" | "lost" | "failed" | "unsupported";
 export type Scale = number | "auto";
@@ -27,6 +30,8 @@ export interface FrameReport {
   fps: number;
   /** Of each pixel. */
   samples: number;
+  /** Of random paths: samples a second. */
+  rate?: number;
 }
 
 /** What the schedule needs to know of the scene it draws. */
@@ -41,6 +46,8 @@ export interface Subject {
   /** A picture was drawn from the inputs. */
   drawn(report: FrameReport): void;
   state(state: State, error?: unknown): void;
+  /** Direct light is shown, because paths cannot be traced. */
+  noPaths?(error: unknown): void;
 }
 
 interface Plan {
@@ -52,6 +59,8 @@ interface Plan {
   abortable: boolean;
   /** A picture to save, which is not shown. */
   isAside: boolean;
+  /** More samples of the film. */
+  isTraced?: boolean;
 }
 
 interface Capture {
@@ -97,6 +106,8 @@ export class Renderer {
   #resting: ((isSharp: boolean) => void)[] = [];
   #isBroken = false;
   #times: number[] = [];
+  /** The film of the program in use, if it has one. */
+  declare paths?: Paths | null;
 
   constructor(
     readonly subject: Subject,
@@ -132,8 +143,17 @@ export class Renderer {
       if (isStale()) return;
       this.#program = program;
       this.#resolution.forget();
+      if (PATHS) this.paths = source.film ? new Paths(painter, source.film) : null;
       this.#enter("ready");
       this.change();
+      if (PATHS && this.paths) {
+        await this.paths.prepare().catch((error: unknown) => {
+          if (isStale() || error instanceof LostError) return;
+          this.paths = null;
+          this.subject.noPaths?.(error);
+        });
+        void this.#pump();
+      }
     } catch (error) {
       if (!isStale() && !(error instanceof LostError)) this.#enter("failed", error);
     }
@@ -238,13 +258,15 @@ export class Renderer {
 
   #wants(): boolean {
     if (!this.#visible || !this.#painter || !this.#program) return false;
-    const isDone = this.#isSharp && !this.#nextSamples();
+    const isTraced = PATHS && !!this.paths?.wants(this.#revision);
+    const isDone = this.#isSharp && !this.#nextSamples() && !isTraced;
     return this.subject.playing || !isDone || this.#captures.length > 0;
   }
 
   /** How many samples the picture that rests gets next; 0 if it has enough. */
   #nextSamples(): number {
     const program = this.#program;
+    if (PATHS && this.paths) return 0;
     if (this.subject.playing || !this.#isSharp || !program || !canSample(program)) return 0;
     const next = SAMPLES.find((samples) => samples > this.#shown.samples) ?? 0;
     const [width, height] = this.#painter!.size(this.#stillScale);
@@ -256,7 +278,8 @@ export class Renderer {
     this.#pumping = true;
     try {
       while (this.#wants()) {
-        const now = await nextFrame();
+        const traces = PATHS && this.paths && !this.subject.playing;
+        const now = await (traces ? soonFrame() : nextFrame());
         if (!this.#wants()) break;
         this.subject.tick(now);
         const plan = this.#plan();
@@ -275,6 +298,7 @@ export class Renderer {
   #endRest(): void {
     // The old view's picture is outdated while the new one compiles.
     const isThere = this.#isSharp && this.#program?.source === this.#wanted;
+    if (PATHS && this.paths && this.paths.samples < FINEST_SAMPLES && !this.#isBroken) return;
     if (!isThere && !this.#isBroken) return;
     for (const resolve of this.#resting.splice(0)) resolve(isThere);
   }
@@ -294,7 +318,17 @@ export class Renderer {
     const plan = (scale: number, abortable: boolean, samples = 1, isAside = false): Plan => {
       return { scale, samples, size: painter.size(scale), revision, abortable, isAside };
     };
-    if (this.#captures[0]) {
+    const isNew = revision !== this.#shown.revision;
+    if (PATHS && this.paths && !this.subject.playing) {
+      const { paths } = this;
+      // Until there are samples, the poster or direct light is to be seen.
+      if (!isNew || (this.#shown.revision < 0 && this.subject.hasPoster)) {
+        if (performance.now() - this.#changed < REST_MS || !paths.isReady) return null;
+        const [width, height] = painter.size(this.#stillScale);
+        const scale = paths.scale(revision, width * height, this.#stillScale, isNew);
+        return { ...plan(scale, true), isTraced: true };
+      }
+    } else if (this.#captures[0]) {
       const samples = canSample(this.#program!) ? this.#captures[0].samples : 1;
       return plan(Math.max(1, this.#stillScale), false, samples, true);
     }
@@ -306,17 +340,16 @@ export class Renderer {
     if (cost === null) return plan(1, true); // Settled after the probe.
     const pixels = this.canvas.width * this.canvas.height;
     const playing = this.subject.playing;
-    const isNews = revision !== this.#shown.revision;
     if (!playing && rests) {
       // A still that takes long is heralded by a coarse picture.
       const isAwaited = this.#shown.revision >= 0 || !this.subject.hasPoster;
-      if (!isNews || !isAwaited || cost * pixels < LONG_MS) return plan(1, true);
-    } else if (!playing && !isNews) return null; // It may come to rest.
+      if (!isNew || !isAwaited || cost * pixels < LONG_MS) return plan(1, true);
+    } else if (!playing && !isNew) return null; // It may come to rest.
     return plan(this.#resolution.moving(pixels), false);
   }
 
   async #picture(plan: Plan): Promise<void> {
-    if (this.#resolution.cost === null) {
+    if (this.#resolution.cost === null && !(PATHS && plan.isTraced)) {
       await this.#probe();
       return; // The cost is known now: plan again.
     }
@@ -325,6 +358,21 @@ export class Renderer {
     const { samples, isAside } = plan;
     const [width, height] = plan.size;
     const inputs = this.subject.inputs(width, height, isAside);
+    if (PATHS && this.paths && plan.isTraced) {
+      const { paths } = this;
+      const isStale = () => plan.revision !== this.#revision || painter !== this.#painter || paths !== this.paths;
+      const { floor } = this.#resolution;
+      const ms = await paths.add(plan.revision, plan.size, inputs, floor, isStale);
+      if (ms === null || !paths.isShown) return;
+      const { samples, rate } = paths;
+      paths.show(inputs);
+      const [wanted] = this.#captures;
+      const blob = wanted && samples >= wanted.samples && plan.scale >= this.#stillScale && painter.png(this.transparent);
+      this.#present(painter, { ...plan, samples });
+      if (blob) this.#captures.shift()!.resolve(await blob);
+      this.#endRest();
+      return this.subject.drawn({ ms, width, height, fps: 0, samples, rate });
+    }
     const range = await this.#rangeOf(painter, program, plan.revision);
     if (painter !== this.#painter) return;
     inputs.number = { ...inputs.number, ...range, Samples: samples };

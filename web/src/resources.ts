@@ -34,7 +34,10 @@ export class Resources {
     const { textures, buffers } = program.source;
     [...textures, ...buffers].forEach((entry, unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
-      const [target, texture] = this.#texture(entry);
+      const [target, texture] =
+        PATHS && entry.name === program.film?.name
+          ? ([gl.TEXTURE_2D, program.film.texture] as const)
+          : this.#texture(entry);
       gl.bindTexture(target, texture);
       gl.uniform1i(gl.getUniformLocation(program.handle, entry.uniform), unit);
       if ("count" in entry) {

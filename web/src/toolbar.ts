@@ -19,6 +19,7 @@ export function toolbarOf(player: Player): HTMLElement {
   if (!embed) {
     bar.append(
       views(player) || "",
+      (PATHS && samples(player)) || "",
       iconButton("Save a picture (S)", ICONS.camera, () => void player.saveScreenshot()),
     );
   } else if (player.payload.steering) {
@@ -79,6 +80,28 @@ function timeline(player: Player): HTMLElement[] {
   player.on("time", show);
   show();
   return [slider, text];
+}
+
+/** How many samples the picture has; a press shows direct light instead, or paths again. */
+function samples(player: Player): HTMLElement {
+  const button = make("button", { type: "button", className: "text" });
+  button.style.cssText = "font-size:12px;font-variant-numeric:tabular-nums;white-space:nowrap";
+  button.onclick = () => player.actions.mode(false);
+  const show = (text: string) => (button.textContent = text);
+  const wait = () => show(player.isDirect ? "Direct light" : "Paths …");
+  const name = () => {
+    rename(button, `${player.isDirect ? "Trace paths" : "Show direct light"} (M)`);
+    button.setAttribute("aria-pressed", String(!player.isDirect));
+    wait();
+  };
+  player.on("frame", ({ samples, rate }) => {
+    if (rate === undefined) wait();
+    else show(`${samples} samples, ${rate.toFixed(rate < 10 ? 1 : 0)}/s`);
+  });
+  player.on("mode", name);
+  player.on("view", ({ name }) => (button.hidden = !player.payload.views.find((v) => v.name === name)?.film));
+  name();
+  return button;
 }
 
 /** The picture, and what helps to understand it: one menu. */

@@ -4,6 +4,11 @@ export function nextFrame(): Promise<number> {
   return new Promise((resolve) => requestAnimationFrame(resolve));
 }
 
+/** The next frame, or soon after: browsers delay frames of pages that nobody seems to look at. */
+export function soonFrame(): Promise<number> {
+  return Promise.race([nextFrame(), pause(30).then(() => performance.now())]);
+}
+
 export function pause(ms: number): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, ms));
 }

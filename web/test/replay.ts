@@ -49,7 +49,7 @@ const other = () => false;
 const actions: Actions = {
   ...movesOf(hands, clock, true, () => {}, () => {}),
   ...{ pause: other, nextView: other, lastView: other, fullScreen: other, screenshot: other },
-  ...{ parameters: other, help: other, copyCamera: other },
+  ...{ parameters: other, help: other, copyCamera: other, mode: other },
 };
 listen(canvas as unknown as HTMLCanvasElement, hands, () => true);
 

@@ -118,6 +118,14 @@ LookOption = Annotated[
         show_default=False,
     ),
 ]
+ModeOption = Annotated[
+    str | None,
+    typer.Option(
+        "--mode",
+        help="direct: from each light to the first surface; path: exact, by many random paths.",
+        show_default=False,
+    ),
+]
 TimeOption = Annotated[str, typer.Option("--time", metavar="S", help="Seconds.")]
 SetOption = Annotated[
     list[str] | None,

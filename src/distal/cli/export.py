@@ -16,6 +16,7 @@ from distal.backends import TEXT_TARGETS
 from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
     LookOption,
+    ModeOption,
     SceneArgument,
     SetOption,
     TimeOption,
@@ -72,6 +73,7 @@ def export(
         ),
     ] = None,
     look: LookOption = None,
+    mode: ModeOption = None,
     title: Annotated[
         str | None, typer.Option(help="Of a page: what it is called.", show_default=False)
     ] = None,
@@ -95,6 +97,7 @@ def export(
     flags: dict[str, tuple[str, Any]] = {
         "--size": ("size", _size(size)),
         "--duration": ("duration", _duration(duration)),
+        "--mode": ("mode", mode),
         "--title": ("title", title),
         "--views": ("views", None if views is None else _views(views)),
         "--embed": ("embed", embed or None),
@@ -150,7 +153,10 @@ def _write(
     from distal.scene.viewing.viewable import viewable
 
     obj, values = load_picture(scene, assignments)
-    seen = viewable(obj, values, options["time"], look)
+    try:
+        seen = viewable(obj, values, options["time"], look).in_mode(options.get("mode"))
+    except ValueError as error:
+        raise UsageError(str(error)) from None
     for name in (options["view"], *(options.get("views") or ())):
         check_view(seen, name)
     options["params"] = values

@@ -26,6 +26,8 @@ from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__
 
 PLAYER: Final = Path(__file__).with_name("player.js")
+# The same player, which also traces paths: 4 kB that other pages do not need.
+PATH_PLAYER: Final = Path(__file__).with_name("path_player.js")
 # In a page that resets all styles, the text of scripts would be visible without this.
 _UNSEEN: Final = ' style="display:none"'
 # A module, to keep its names out of the page. The script that it inserts must be invisible too.
@@ -74,7 +76,8 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
     """
     for name in (options.view, *(options.views or ())):
         seen.image(name)  # raises if there is no such view
-    player = player_script()
+    seen = seen.in_mode(options.mode)
+    player = player_script(player_of(seen))
     omitted: dict[str, str] = {}
     content = payload(
         seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
@@ -106,13 +109,18 @@ class PlayerScript:
     hashes: tuple[str, ...]
 
 
+def player_of(seen: Viewable) -> Path:
+    """Return the file of the player for an object."""
+    return PATH_PLAYER if seen.mode == "path" else PLAYER
+
+
 @cache
-def player_script() -> PlayerScript:
+def player_script(file: Path = PLAYER) -> PlayerScript:
     """Return the compressed player: a page of 60 kB becomes one of 36 kB.
 
     Decompression needs no newer browser than the player itself.
     """
-    player = PLAYER.read_text(encoding="utf-8").strip()
+    player = file.read_text(encoding="utf-8").strip()
     press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
     packed = press.compress(player.encode("utf-8")) + press.flush()
     text = _UNPACK % (base64.b64encode(packed).decode("ascii"), TOO_OLD)

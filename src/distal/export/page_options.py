@@ -41,6 +41,7 @@ class PageOptions(TextOptions):
         poster: Whether to show a still picture before the first frame.
         views: The views to include; None for all.
         device: The device that renders the poster, as for ``Scene.render``.
+        mode: How light is computed: "direct" or "path"; None: as the scene says.
 
     Raises:
         TypeError: A value has the wrong type.
@@ -55,6 +56,7 @@ class PageOptions(TextOptions):
     poster: bool = True
     views: Sequence[str] | None = None
     device: str = "cpu"
+    mode: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "size", checked_size(self.size))

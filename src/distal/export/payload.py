@@ -31,6 +31,7 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
 from distal.passes.entry import FRAME_OFFSET
+from distal.render.live_film import FILM
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
@@ -76,6 +77,8 @@ def payload(
                 omit(name, error)
             continue
         shown.append({"name": name, "label": view_label(name), "program": number})
+        if seen.film is not None and seen.is_traced(name):
+            shown[-1]["film"] = programs.add_film(*seen.film)
     name = options.title or name_of(seen)
     return {
         "format": FORMAT,
@@ -232,6 +235,20 @@ class PagePrograms:
         return self._added_program(
             self._seen.image(view, steered=scene, encoded=True, sampled=sampled)
         )
+
+    def add_film(self, added: Composed, shown: Composed) -> dict[str, Any]:
+        """Add the programs of a picture by paths; return their indices and the film's name.
+
+        Args:
+            added: The program that adds a pass to the film.
+            shown: The program that shows the film.
+
+        Raises:
+            CompileError: WebGL 2 cannot run them.
+        """
+        trace, show = (self._added_program(image) for image in (added, shown))
+        name = self._resource("Film", FILM, FILM.__distal_type__)
+        return {"trace": trace, "show": show, "name": name}
 
     def add_guide(self, guide: Guide) -> int:
         """Add the program that guides the camera; -1 if WebGL 2 cannot run it."""

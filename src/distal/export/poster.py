@@ -12,13 +12,15 @@ from PIL import Image as PillowImage
 
 from distal.export.page_options import PageOptions
 from distal.images.png import quantise
-from distal.lang.render_options import RenderOptions
+from distal.lang.render_options import Refinement, RenderOptions
 from distal.scene.viewing.viewable import Viewable
 
 WIDTH_PX: Final = 480
 MOST_BYTES: Final = 10_000
 # Tried in order until the file is small enough; below the last one, blocks would be visible.
 QUALITIES: Final = (82, 74, 66, 58, 50, 42, 34)
+# Of a picture by paths: as many samples as its size shows, within a time.
+PATHS: Final = Refinement(samples=32, time_limit=30.0)
 
 
 def poster(seen: Viewable, options: PageOptions) -> bytes:
@@ -30,6 +32,7 @@ def poster(seen: Viewable, options: PageOptions) -> bytes:
         time=options.time,
         params=options.params or {},
         device=options.device,
+        refinement=PATHS if seen.is_traced(options.view) else None,
     )
     picture = seen.render(small, view=options.view)
     pixels = PillowImage.fromarray(quantise(picture.array)[..., :3])

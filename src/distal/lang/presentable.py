@@ -31,6 +31,7 @@ class ShowOptions(TypedDict, total=False):
     playing: bool | None
     view: str
     panel: bool
+    mode: str | None
 
 
 class ExportOptions(TypedDict, total=False):
@@ -47,6 +48,7 @@ class ExportOptions(TypedDict, total=False):
     view: str
     views: Sequence[str] | None
     device: str
+    mode: str | None
 
 
 class VideoOptions(TypedDict, total=False):
@@ -83,7 +85,7 @@ class Presentable:
 
         Args:
             options: ``size`` (width and height in CSS pixels), ``params``, ``time``, ``playing``,
-                ``view``, ``panel``.
+                ``view``, ``panel``, ``mode`` ("direct" or "path"; None: as the scene says).
 
         Raises:
             CompileError: The scene code has mistakes, or uses something that WebGL lacks.
@@ -109,8 +111,9 @@ class Presentable:
             path: ``page.html``, or for a text: ``.frag``, ``.glsl``, ``.wgsl``, ``.fs`` (ISF).
             target: The output format if the suffix does not determine it: "html" or a text target.
             options: For a page ``size``, ``time``, ``duration``, ``params``, ``title``, ``view``,
-                ``views``, ``embed``, ``panel``, ``poster``, and ``device``, which renders the
-                poster, as for ``render``; for a text ``params``, ``view``, ``time``.
+                ``views``, ``embed``, ``panel``, ``poster``, ``mode`` ("direct" or "path"; None:
+                as the scene says), and ``device``, which renders the poster, as for ``render``;
+                for a text ``params``, ``view``, ``time``.
 
         Raises:
             CompileError: The scene code has mistakes, or uses something that the target lacks.

@@ -1,6 +1,6 @@
 // Made by tools/gen_player.py from src/distal/scene/viewing/key_bindings.py: change that, and run it.
 
-export type Action = "left" | "right" | "up" | "down" | "nearer" | "farther" | "resetCamera" | "frame" | "front" | "backSide" | "rightSide" | "leftSide" | "top" | "bottom" | "copyCamera" | "pause" | "back" | "forth" | "frameBack" | "frameForth" | "begin" | "slower" | "faster" | "nextView" | "lastView" | "parameters" | "screenshot" | "fullScreen" | "help";
+export type Action = "left" | "right" | "up" | "down" | "nearer" | "farther" | "resetCamera" | "frame" | "front" | "backSide" | "rightSide" | "leftSide" | "top" | "bottom" | "copyCamera" | "pause" | "back" | "forth" | "frameBack" | "frameForth" | "begin" | "slower" | "faster" | "nextView" | "lastView" | "mode" | "parameters" | "screenshot" | "fullScreen" | "help";
 
 export const KEYS: Record<string, Action> = {
   "ArrowLeft": "left",
@@ -34,6 +34,7 @@ export const KEYS: Record<string, Action> = {
   "F": "fullScreen",
   "h": "help",
   "?": "help",
+  ...(PATHS && {"m": "mode"}),
 };
 
 /** The actions of digits with shift. */
@@ -60,6 +61,7 @@ export const HELP: readonly (readonly [string, string, Needs])[] = [
   ["Home", "Back to the start time", "begin"],
   ["[  ]", "Slower, faster", "slower"],
   ["V, shift V", "Next view, the one before", "nextView"],
+  ...(PATHS ? [["M", "Direct light or paths", "mode"] as const] : []),
   ["P", "Parameters", "parameters"],
   ["S", "Save a picture", "screenshot"],
   ["Shift F", "Full screen", "fullScreen"],

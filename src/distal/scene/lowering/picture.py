@@ -32,6 +32,7 @@ from distal.render import (
     layers,
     legend,
     lettering,
+    live_film,
     path_film,
     path_layers,
     paths,
@@ -144,6 +145,7 @@ class SceneLowering:
         adaptive: bool = False,
         paths: bool = False,
         filter: str = filters.NAMES[0],
+        kept: bool = False,
     ) -> str:
         """Add the function that maps the frame to a pixel, and return its name.
 
@@ -156,6 +158,7 @@ class SceneLowering:
             adaptive: Whether it is rendered in several passes, of all pixels or of a list.
             paths: Whether the light is that of random paths.
             filter: The reconstruction filter of random paths.
+            kept: Whether a pixel is that of a film, to which a pass by paths is added.
         """
         frame = Read("frame", FRAME)
         body = StatementList(taken={"frame"})
@@ -178,7 +181,7 @@ class SceneLowering:
             **again,
         }
         # Pictures of linear light carry marks, which the executor counts and removes.
-        given["counted"] = boolean(view == "color" and not encoded)
+        given["counted"] = boolean(view == "color" and not encoded and not kept)
         shown = PATHS if paths else self._shown(view)
         given["radiance"] = self._radiance(
             shown, resolution, view, steered=steered, counted=given["counted"]
@@ -192,6 +195,10 @@ class SceneLowering:
             if adaptive:
                 given["largest"] = self._assembly.number(path_film.LARGEST, FLOAT, UNBOUNDED)
         color = body.let("color", self.composer.call(exposed, given))
+        if kept:
+            before = body.let("before", self._film_texel(given["coord"]))
+            given |= {"before": before, "light": color}
+            color = self.composer.call(live_film.film_after, given)
         if view in LEGENDS:
             title = self._assembly.constant(lettering.word(legend.TITLES[view]), IVEC4)
             asked = {**self.given(body, resolution, steered=steered), **given}
@@ -274,6 +281,22 @@ class SceneLowering:
         value = self.composer.call(layers.through_middle, given)
         params = (Param("frame", FRAME),)
         return self._assembly.define("layer", params, VEC4, (Return(value),), self._scene.place)
+
+    def film(self) -> str:
+        """Add the function that maps the frame to a pixel of a film, and return its name."""
+        frame = Read("frame", FRAME)
+        mean = self._film_texel(field(frame, "coord"))
+        shown = self.displayed(self.composer.call(live_film.film_light, {"mean": mean}))
+        params = (Param("frame", FRAME),)
+        return self._assembly.define("film", params, VEC4, (Return(shown),), self._scene.place)
+
+    def _film_texel(self, coord: Expr) -> Expr:
+        """Return the texel of a pixel on the host's film."""
+        offset = self._assembly.number(live_film.FILM_OFFSET, VEC2, (0.0, 0.0))
+        film = self._assembly.resource(live_film.FILM, "Film")
+        return self.composer.call(
+            live_film.film_texel, {"film": film, "coord": coord, "offset": offset}
+        )
 
     def displayed(self, color: Expr) -> Expr:
         """Return linear light encoded for display."""

@@ -20,6 +20,7 @@ class Binding:
             capital, unless the capital has an action.
         in_page: Whether pages and notebooks have the action; those of windows only do not.
         window_keys: Further keys in windows, which a browser uses itself.
+        in_path_page: Whether only pages of scenes in mode "path" have it; ``in_page`` is True.
         opposite: The action of the same keys with shift or ctrl, if they are digits: what they
             type with shift depends on the keyboard.
     """
@@ -29,6 +30,7 @@ class Binding:
     in_page: bool = True
     window_keys: tuple[str, ...] = ()
     opposite: str | None = None
+    in_path_page: bool = False
 
 
 BINDINGS: Final = (
@@ -56,6 +58,7 @@ BINDINGS: Final = (
     Binding("faster", ("]",)),
     Binding("next_view", ("v",)),
     Binding("last_view", ("V",)),
+    Binding("mode", ("m",), in_path_page=True),
     Binding("parameters", ("p",), window_keys=("Tab",)),
     Binding("screenshot", ("s",)),
     Binding("full_screen", ("F",), window_keys=("F11",)),
@@ -99,6 +102,7 @@ HELP: Final = (
     Help("Home", "Back to the start time", "begin"),
     Help("[  ]", "Slower, faster", "slower"),
     Help("V, shift V", "Next view, the one before", "next_view"),
+    Help("M", "Direct light or paths", "mode"),
     Help("P", "Parameters", "parameters"),
     Help("P, then arrows", "Choose and change one (shift: finely)", "parameters", False),
     Help("Backspace", "Reset a parameter (shift: all)", "reset_parameter", False),

@@ -6,6 +6,7 @@ one, and its parameters. Does not depend on windows or pages.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
@@ -21,13 +22,14 @@ from distal.lang.parameters import Parameter
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.render.views import VIEWS
+from distal.scene.lowering.live_film import FilmPass, ShownFilm
 from distal.scene.lowering.local_views import PREFIX, locals_of, view_of_image
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.steering import STILL, Steering
-from distal.scene.view_options import ViewOptions
+from distal.scene.view_options import MODES, ViewOptions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.stage import stage
@@ -45,13 +47,35 @@ class Viewable:
         name: The author's name for it.
         scene: The scene; the default scene of a single shape; None for an ``@image``.
         views: The names of the views; "color" is the first.
+        mode: How the light of the view "color" is computed: "direct" or "path".
     """
 
     def __init__(self, name: str, source: Scene | Image) -> None:
         self.name = name
         self._source = source
         self.scene = source if isinstance(source, Scene) else None
+        self.mode = "direct" if self.scene is None else self.scene.mode
         self._images: dict[str, Image | Composed] = {}
+
+    def in_mode(self, mode: str | None) -> Viewable:
+        """Return the same object whose light is computed in another way.
+
+        Args:
+            mode: "direct" or "path"; None: as the scene says.
+
+        Raises:
+            ValueError: There is no such mode.
+            LoadError: It is an ``@image``, which has no light.
+        """
+        if mode is not None and mode not in MODES:
+            raise ValueError(f"there is no mode '{mode!s:.40}'; modes: {', '.join(MODES)}")
+        if mode is None or mode == self.mode:
+            return self
+        if self.scene is None:
+            raise LoadError(f"modes are for scenes and shapes; '{self.name}' is an @image")
+        made = copy.copy(self)
+        made.mode = mode
+        return made
 
     @cached_property
     def views(self) -> tuple[str, ...]:
@@ -123,6 +147,17 @@ class Viewable:
             self._images[view] = view_of_image(self._source, view)
         return self._images[view]
 
+    def is_traced(self, view: str) -> bool:
+        """Return whether the light of a view is that of random paths."""
+        return self.mode == "path" and view == COLOR
+
+    @cached_property
+    def film(self) -> tuple[FilmPass, ShownFilm] | None:
+        """The programs of a live picture by paths; None in mode "direct"."""
+        if self.scene is None or self.mode != "path":
+            return None
+        return FilmPass(self.scene), ShownFilm(self.scene)
+
     def is_sampled(self, view: str) -> bool:
         """Return whether a still of a view gets several samples in a pixel: a scene's colors."""
         return self.scene is not None and view == COLOR
@@ -145,16 +180,24 @@ class Viewable:
         if self.scene is None:
             image, settings = self.image(view), {}
         else:
-            image, sampled = self.scene.program(view, options.samples, steered=steering is not None)
+            image, sampled = self.scene.program(
+                view, options.samples, steered=steering is not None, mode=self.mode
+            )
             settings = {**moved, **sampled}
             chosen = ViewOptions(view=view, steering=steering)
-            refinement = chosen.refinement(self.scene.mode, options.samples, self.scene.shutter)
+            refinement = chosen.refinement(self.mode, options.samples, self.scene.shutter)
             options = replace(options, refinement=refinement)
         picture = executor().render(image, with_range(image, replace(options, settings=settings)))
         numbers = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
         asked = {} if self.scene is None else self.scene.asked_display
-        return picture.with_provenance(view=view, steering=numbers, stage=staged, **asked)
+        return picture.with_provenance(
+            view=view,
+            mode="path" if self.is_traced(view) else "direct",
+            steering=numbers,
+            stage=staged,
+            **asked,
+        )
 
 
 class _Elevation(Composed):
